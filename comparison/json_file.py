@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from reference.support.files import read_file
 
-LARGEST = 2**26  # bytes of a file
+LARGEST = 2**26  # bytes of the largest file that is read
 
 T = TypeVar("T")
 
@@ -39,7 +39,7 @@ def replace_unstorable(content: Any) -> Any:
 
 
 @cache
-def _reader(kind: Any) -> TypeAdapter[Any]:
+def _type_adapter(kind: Any) -> TypeAdapter[Any]:
     return TypeAdapter(kind)  # made once: it takes a hundred times as long as a small file
 
 
@@ -56,7 +56,7 @@ class StoredFile(Generic[T]):
         """Return the meaning of the field of the results that shows the file."""
         return f"{meaning}; null unless {self.command} left it next to the report"
 
-    def word_origin(self, argument: str = "") -> str:
+    def word_how_to_make(self, argument: str = "") -> str:
         """Return what makes the section that shows the file; argument: what the command is given, in words."""
         return f"{self.command}{argument} makes it, next to the report; the next run of the study shows it"
 
@@ -66,7 +66,7 @@ class StoredFile(Generic[T]):
 
     def read(self, content: bytes) -> T:
         """Return the results in the content of a file. Raises ValidationError."""
-        results: T = _reader(self.kind).validate_json(content)  # type: ignore[arg-type]
+        results: T = _type_adapter(self.kind).validate_json(content)  # type: ignore[arg-type]
         return results
 
     def load(self, folder: Path) -> T | None:

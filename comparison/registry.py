@@ -23,33 +23,33 @@ from comparison.study.selection import Selection
 from comparison.study.study import Study
 
 
-def _feature(folder: str) -> Feature:
+def _load_feature(folder: str) -> Feature:
     feature: Feature = import_module(f"comparison.{folder}.feature").FEATURE
     return feature
 
 
 FEATURES: tuple[Feature, ...] = (
     core.SURFACES,
-    _feature("analyses.records"),
-    _feature("analyses.motions"),
-    _feature("analyses.families"),
-    _feature("analyses.worst_phases"),
-    _feature("analyses.demands"),
+    _load_feature("analyses.records"),
+    _load_feature("analyses.motions"),
+    _load_feature("analyses.families"),
+    _load_feature("analyses.worst_phases"),
+    _load_feature("analyses.demands"),
     core.DIFFERENCES,
     core.BUDGET,
-    _feature("analyses.conditioning"),
-    _feature("evidence.scaling"),
-    _feature("evidence.convergence"),
+    _load_feature("analyses.conditioning"),
+    _load_feature("evidence.scaling"),
+    _load_feature("evidence.convergence"),
     core.OUTCOMES,
     core.MODELS,
-    _feature("evidence.claims"),
-    _feature("analyses.assumptions"),
-    _feature("analyses.measured"),
-    _feature("evidence.validation"),
-    _feature("evidence.benchmarks"),
-    _feature("evidence.extremes"),
-    _feature("evidence.tradeoff"),
-    _feature("evidence.effective"),
+    _load_feature("evidence.claims"),
+    _load_feature("analyses.assumptions"),
+    _load_feature("analyses.measured"),
+    _load_feature("evidence.validation"),
+    _load_feature("evidence.benchmarks"),
+    _load_feature("evidence.extremes"),
+    _load_feature("evidence.tradeoff"),
+    _load_feature("evidence.effective"),
     core.VERIFICATION,
     core.PROVENANCE,
     core.COMPLETION,
@@ -103,6 +103,6 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
     ]
 
 
-def levels(study: Study) -> list[StudyLevel]:
+def study_levels(study: Study) -> list[StudyLevel]:
     """The levels of a study, from coarse to fine."""
     return levels_of(study, {analysis.key: analysis.level for analysis in select_analyses(study)})

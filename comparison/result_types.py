@@ -22,23 +22,23 @@ def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
     return "inf" if value == math.inf else finite_or_none(value)
 
 
-def _nan(value: Any) -> Any:
+def _null_as_nan(value: Any) -> Any:
     return math.nan if value is None else value
 
 
-def _encodable(value: Any) -> Any:
+def _replace_surrogates(value: Any) -> Any:
     """The text with single surrogates, which no UTF-8 holds, replaced."""
     return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
 
 
 Array = NDArray[np.float64]
-Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(finite_or_none, return_type=float | None)]
+Number = Annotated[float, BeforeValidator(_null_as_nan), PlainSerializer(finite_or_none, return_type=float | None)]
 Radius = Annotated[
     float,
-    BeforeValidator(_nan),
+    BeforeValidator(_null_as_nan),
     PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
 ]
-Text = Annotated[str, BeforeValidator(_encodable)]
+Text = Annotated[str, BeforeValidator(_replace_surrogates)]
 Phases = tuple[Number, Number]
 
 

@@ -12,9 +12,9 @@ goes on where it stopped.
 """
 
 if __name__ == "__main__":
-    from comparison.cli.start import start
+    from comparison.cli.start import run_command
 
-    start("comparison.run")  # does not return: the module is loaded once, under its own name
+    run_command("comparison.run")  # does not return: the module is loaded once, under its own name
 
 import sys
 from collections.abc import Sequence
@@ -24,17 +24,17 @@ from importlib import import_module
 
 from comparison.cli.arguments import EndedEarlyError, command, command_line, edit_command_line, resume_hint
 from comparison.cli.closing import print_check, print_closing, print_faults, print_level
-from comparison.cli.computing import workers
+from comparison.cli.computing import open_workers
 from comparison.cli.options import Options, parse_options
 from comparison.cli.reports import CompleteLevel, Reports, compute_level
-from comparison.cli.start import Clock, start_time
+from comparison.cli.start import Clock, command_start
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.cli.user_models import Engines, as_words
-from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
+from comparison.registry import first_tasks, seconds_by_stage, select_analyses, study_levels
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import Deadline, TimeUpError, progress, wide_console
+from comparison.runner.progress import Deadline, TimeUpError, show_progress, wide_console
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.costs import WRITING, seconds_of_model
@@ -61,7 +61,7 @@ def main(
     open. models: engines of the user by name, as `--model` enters them: a function at the top level of a module, or its
     place as "module:function".
     """
-    began = start_time()
+    began = command_start()
     with stop_on_signals():
         try:
             words = edit_command_line(argv, as_words(models or {}))
@@ -72,7 +72,7 @@ def main(
                 return 0
             code = run.compute(executor)
             if options.check and code < 2 and any(scene.acceptance.confirm for scene in options.scenes):
-                words = _tighter(options, words)
+                words = _tighter_command(options, words)
                 run.say(f"Again at a tenth of the tolerance: {command_line(words)}")
                 again = StudyRun(parse_options(words), words, hierarchy, Clock.now()).compute(executor)
                 return max(code, again)
@@ -82,14 +82,14 @@ def main(
             return 130
 
 
-def _tighter(options: Options, words: Sequence[str]) -> list[str]:
+def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
     """Return the command that computes the differences at a tenth of the tolerance, its report next to the first."""
     place = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(place), "--only", "differences,budget"]
     return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
 
 
-def _study(options: Options, hierarchy: Sequence[Model]) -> Study:
+def _make_study(options: Options, hierarchy: Sequence[Model]) -> Study:
     """Return the whole question."""
     hierarchy = with_softened_bars(hierarchy, options.scenes)
     if options.max_work is not None:
@@ -107,7 +107,7 @@ class StudyRun:
 
     def __init__(self, options: Options, words: Sequence[str], hierarchy: Sequence[Model], began: Clock) -> None:
         self._options, self._words, self._began = options, words, began
-        self._study, self._console = _study(options, hierarchy), wide_console()
+        self._study, self._console = _make_study(options, hierarchy), wide_console()
         self._cache = Cache(locate_store(options.out))
         print_models_left_out(self._console, self._study)
 
@@ -118,7 +118,7 @@ class StudyRun:
     def compute(self, executor: Pool) -> int:
         """Compute the study on the workers of the options and close it; return the exit code."""
         options, models = self._options, {model.amplification for model in self._study.hierarchy}
-        with workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
+        with open_workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
             clear_dead(options.out)
             results = self._open_results()
             stages = seconds_by_stage(self._study)
@@ -126,7 +126,7 @@ class StudyRun:
             total = WRITING + sum(stages.values()) + models_seconds
             reports = Reports(options, jobs, self._words, self._began)
             with (
-                progress(self._console, total, jobs) as display,
+                show_progress(self._console, total, jobs) as display,
                 Deadline(self._began.wall, options.budget) as deadline,
             ):
                 stop = self._compute_levels(Runner(results, jobs, pool, display, stages), reports, deadline)
@@ -171,7 +171,7 @@ class StudyRun:
         """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
         complete: CompleteLevel | None = None
         try:
-            planned = levels(self._study)
+            planned = study_levels(self._study)
             for level in planned if runner.results.missing(surface_tasks(self._study)) else planned[-1:]:
                 complete = compute_level(level, runner)
                 if level.last or reports.is_due(complete, runner):

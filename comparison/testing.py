@@ -13,11 +13,11 @@ import xarray as xr
 
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
-from comparison.study.study import Study
+from comparison.study.study import STUDY_TOLERANCE, Study
 from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import label_surfaces
-from comparison.surfaces.unanswered import unanswered
+from comparison.surfaces.unanswered import list_unanswered
 from reference.problem import Scene, load_family
 from reference.problem.acceptance import DemandLimits
 from reference.problem.keys import range_of
@@ -37,7 +37,7 @@ def assert_consistent(
     like_for_like_maximum: float | None = None,
     total_maximum: float | None = None,
     grid: int = 4,
-    tolerance: float = 1e-3,
+    tolerance: float = STUDY_TOLERANCE,
     engine: Callable[..., Any] | None = None,
     law: str = "regularised",
     failed: int = 0,
@@ -133,7 +133,7 @@ def _broken_limits(
         for compared, measure, _ in [name.partition("_maximum")]
         for line in _word_breaches(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
-    gaps = unanswered(study, surfaces)
+    gaps = list_unanswered(study, surfaces)
     if sum(gap.points + gap.unusable for gap in gaps) > failed:
         why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
         broken += [f"{gap.sentence.removesuffix('.')}; {failed} allowed" for gap in gaps] + list(why)
@@ -228,7 +228,7 @@ def _word_breaches(
         row, column = np.unravel_index(np.nanargmax(beyond), beyond.shape)
         at = "under the record" if step.recorded else f"at ({step.alpha1[row]:.4f}, {step.alpha2[column]:.4f}) rad"
         place = surfaces.sel(scene=scene.name, body=body, alpha1=step.alpha1[row], alpha2=step.alpha2[column])
-        values = ", ".join(_value(place, model) for model in (pair.first, pair.second))
+        values = ", ".join(_word_value(place, model) for model in (pair.first, pair.second))
         measure = "maximum" if maximum else "median"
         yield (
             f"{scene.name}, body {body}: {name}: {measure} difference {value:.3g}, allowed {limit:g}; "
@@ -236,6 +236,6 @@ def _word_breaches(
         )
 
 
-def _value(place: xr.Dataset, model: Model) -> str:
+def _word_value(place: xr.Dataset, model: Model) -> str:
     mu, error = (float(place[name].sel(model=model.key)) for name in ("mu", "error"))
     return f"{model.title} {mu:.6g} ± {error:.1g}" if np.isfinite(error) else f"{model.title} {mu:.6g} (error unknown)"

@@ -24,7 +24,7 @@ MEANING: Mapping[Verdict, str] = {
 CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-limit", NOT_COMPARED: "v-refused"}  # on the page
 
 
-def judge(error: float | None, allowed: float | None) -> Verdict:
+def judge_error(error: float | None, allowed: float | None) -> Verdict:
     """Return whether an error is within what the uncertainties together allow; not compared where either is unknown."""
     if error is None or allowed is None or not (math.isfinite(error) and math.isfinite(allowed)):
         return NOT_COMPARED

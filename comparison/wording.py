@@ -5,7 +5,7 @@ import re
 
 from markupsafe import Markup, escape
 
-from reference.support.drawing import verbatim
+from reference.support.drawing import escape_for_matplotlib
 
 MAX_DECIMALS = 4  # percentage below which a size is nothing
 SHOWN_ERROR = 0.01  # share of a size below which its error is not seen in two digits
@@ -43,7 +43,7 @@ def signed(value: float) -> str:
     return ("+" if value > 0.0 else "−") + percent(abs(value))
 
 
-def difference(size: float, error: float) -> str:
+def difference_with_error(size: float, error: float) -> str:
     """A share with its sign and as many digits as its error leaves; with the error where these digits show it."""
     decimals = _decimals(size, error)
     if decimals is None:
@@ -56,8 +56,8 @@ def difference(size: float, error: float) -> str:
 
 
 def more_or_less(size: float, error: float) -> str:
-    """A share in the digits of `difference`, its sign in words."""
-    return f"{difference(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
+    """A share in the digits of `difference_with_error`, its sign in words."""
+    return f"{difference_with_error(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
 
 
 def _decimals(size: float, error: float) -> int | None:
@@ -95,7 +95,7 @@ def symbols(text: str) -> Markup:
 
 def mathtext(text: str) -> str:
     """Names such as v_reg and mu_1 for matplotlib, with indices and Greek letters."""
-    return INDEXED.sub(r"$\1_{\\mathrm{\2}}$", verbatim(_with_greek(text)))
+    return INDEXED.sub(r"$\1_{\\mathrm{\2}}$", escape_for_matplotlib(_with_greek(text)))
 
 
 def _with_greek(text: str) -> str:

@@ -29,7 +29,7 @@ from comparison.evidence.claims.readings import CASES, READINGS, PeakReading, ef
 from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
 from comparison.evidence.forced_ratios import forced_ratios
 from comparison.json_file import json_text
-from comparison.runner.environment import provenance
+from comparison.runner.environment import describe_provenance
 from comparison.runner.task import execute
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
@@ -114,7 +114,7 @@ def main() -> None:
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     if "--measure" in sys.argv[1:]:
         record |= {
-            "commit": provenance()["commit"][:8],
+            "commit": describe_provenance()["commit"][:8],
             "table": TABLE.dump_python(compute_table(), mode="json"),
             "met_by_grid": {str(grid): numbers_met(compute_table(grid)) for grid in GRIDS},
         }

@@ -23,14 +23,14 @@ from xml.etree import ElementTree
 import yielding_friction
 
 from comparison.evidence.benchmarks.table import STORED as PUBLISHED
-from comparison.evidence.benchmarks.table import Benchmarks, page
+from comparison.evidence.benchmarks.table import Benchmarks, word_page
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import statements
 from comparison.evidence.validation.command import compare_folder
 from comparison.evidence.validation.table import STORED as MEASURED
 from comparison.evidence.validation.table import load_record
 from comparison.report.verification import CHECKS, Check
-from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge, word_counts, word_verdict
+from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge_error, word_counts, word_verdict
 
 DOCS = Path(__file__).parent
 ROOT, STORE = DOCS.parent, DOCS / "evidence.json"
@@ -128,7 +128,7 @@ def check_row(check: Check) -> str:
     else:
         value, limit = found["value"], found["limit"]
         result = f"{value:.2g} of it" if limit == 1.0 else f"{value:.1e}"
-        verdict = word_verdict(judge(value, limit), value, None)
+        verdict = word_verdict(judge_error(value, limit), value, None)
         at = f"{found['commit']}, {found['date']}"
     test = f"`{check.file}::{check.test}`"
     return f"| {CLAIMS[check.side]} | {check.against} | {result} | {check.closeness} | {verdict} | {test} | {at} |"
@@ -174,7 +174,7 @@ def facts() -> str:
 def limits() -> str:
     """Return what the measured motions validate, and what they hide."""
     table = load_record()
-    sentences = [statements.word_validated(table), statements.word_calibrated(table)]
+    sentences = [statements.word_what_is_validated(table), statements.word_calibrated(table)]
     sentences += [f"{statements.word_fit(table, law)}: {statements.word_motions(table, law)}" for law in (True, False)]
     sentences += [statements.word_instants(table), statements.word_predicted_pendulum(table)]
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in sentences)
@@ -183,7 +183,7 @@ def limits() -> str:
 def findings() -> str:
     """Return what the errors of several quantities have in common."""
     table = load_record()
-    words = (statements.word_farther_off, statements.word_last_swings, statements.word_large_angles)
+    words = (statements.word_motions_farther_off, statements.word_last_swings, statements.word_large_angles)
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in (word(table) for word in words))
 
 
@@ -222,7 +222,7 @@ def with_readme_rows(text: str) -> str:
 
 def published_short() -> list[str]:
     """Return the table of five published numbers."""
-    return [line for line in page(published()).split("\n## ")[0].splitlines() if line.startswith("|")]
+    return [line for line in word_page(published()).split("\n## ")[0].splitlines() if line.startswith("|")]
 
 
 if __name__ == "__main__":
@@ -234,4 +234,4 @@ if __name__ == "__main__":
         made.write_text(with_blocks(made), encoding="utf-8")
     readme = ROOT / "README.md"
     readme.write_text(with_readme_rows(readme.read_text(encoding="utf-8")), encoding="utf-8")
-    (DOCS / "benchmarks.md").write_text(page(published()), encoding="utf-8")
+    (DOCS / "benchmarks.md").write_text(word_page(published()), encoding="utf-8")

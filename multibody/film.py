@@ -23,7 +23,7 @@ from PIL import Image
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from reference.problem import Scene, Trajectory, verbatim
+from reference.problem import Scene, Trajectory, escape_for_matplotlib
 
 Array = NDArray[np.float64]
 
@@ -176,7 +176,9 @@ def draw_film(scene: Scene, motion: Trajectory, model: str, look: Look, count: i
     figure = Figure((LAYOUT_WIDTH, LAYOUT_WIDTH * height / width), dpi=width / LAYOUT_WIDTH)
     canvas: Any = FigureCanvasAgg(figure)
     figure.subplots_adjust(left=0.05, right=0.99, bottom=0.21, top=0.8, wspace=0.15)
-    figure.suptitle(f"{verbatim(scene.title)}: {model} model of the engine\n{drawn.scales}", fontsize="medium")
+    figure.suptitle(
+        f"{escape_for_matplotlib(scene.title)}: {model} model of the engine\n{drawn.scales}", fontsize="medium"
+    )
     panels = figure.subplots(1, 3)
     views = [_FromAbove(panels[0], drawn), _FromSide(panels[1], drawn, 0), _FromSide(panels[2], drawn, 1)]
     handles: dict[str, Any] = {}

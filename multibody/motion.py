@@ -15,7 +15,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
-from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
+from reference.problem import Accuracy, Scene, State, Trajectory, check_phase, ground_acceleration
 from reference.problem.ranges import TOLERANCE, check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
@@ -85,7 +85,7 @@ def trajectory(
     True
     """
     scene = scene.softened() if softened else scene
-    checked = checked_phase(phase)
+    checked = check_phase(phase)
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
     max_work = check_number("max_work", max_work, WORK)
     initial = _check_initial(scene, initial)
@@ -170,7 +170,7 @@ def single_run(
     >>> len(multibody.single_run(scene, (0.3, 1.1), step=2e-3).time)
     501
     """
-    pair = checked_phase(phase)
+    pair = check_phase(phase)
     if (level is None) == (step is None):
         raise ValueError("level, step: give exactly one of the two")
     check_choice("integrator", integrator, INTEGRATORS)

@@ -193,7 +193,10 @@ class _ReducedModel:
 
 
 def _reduce_model(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _ReducedModel:
-    """Assemble the model that is required, in a plane without the coordinates across it."""
+    """
+    Assemble the cheapest model that gives the same mu: without the coordinates across the plane where the motion stays
+    in one. `complete` of the result assembles the asked one.
+    """
     chosen = choose_model(scene, model, full)
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene

@@ -225,7 +225,7 @@ class _Line:
 
 def _find_sensitivity(line: _Line) -> Sensitivity:
     """Return the derivative, the finite changes, and the kink that makes them contradict each other."""
-    derivative, middle = _differentiate(line), line.middle
+    derivative, middle = _differentiate_line(line), line.middle
     moved = [line.answer_at(line.value * (1.0 + share)) for share in SHARES]
     change = Estimates(
         np.array([each.value - middle.value for each in moved]), np.array([each.error + middle.error for each in moved])
@@ -264,7 +264,7 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
     return f"{kind} at {place}: slope {slopes[0]:.3g} below and {slopes[1]:.3g} beyond it"
 
 
-def _differentiate(line: _Line) -> Estimates:
+def _differentiate_line(line: _Line) -> Estimates:
     """Return the derivative from the step with the smallest error."""
     middle, value = line.middle, line.value
 
@@ -298,7 +298,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     steps = np.abs(value) * np.array(SHARES[len(SHARES) // 2 :])
     below, above = (np.reshape(part, (len(steps), -1)) for part in np.split(change.value, 2))
     low_error, high_error = (np.reshape(part, (len(steps), -1)) for part in np.split(change.error, 2))
-    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # from the nearest on
+    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # the nearest change first
     mean = sign * (above - below) / (2.0 * steps[:, None])
     mean_error = (high_error + low_error) / (2.0 * steps[:, None])
     slope, slope_error = np.ravel(derivative.value), np.ravel(derivative.error)

@@ -16,7 +16,7 @@ from reference.problem import (
     Scene,
     State,
     Trajectory,
-    checked_phase,
+    check_phase,
     ground_acceleration,
     loading_period,
 )
@@ -92,7 +92,7 @@ def trajectory(
     >>> motion.position.shape, motion.status
     ((2, 2, 3), 'ok')
     """
-    pair = checked_phase(phase)
+    pair = check_phase(phase)
     system, settings = prepare_run(scene, equations, regularization, tolerance, None, rest_condition)
     asked = None if times is None else _check_times(scene, times)
     bodies = len(scene.bodies)

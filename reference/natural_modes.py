@@ -125,7 +125,7 @@ def modes(scene: Scene) -> Modes:
     >>> round(float(natural.effective_mass[0].sum()), 12)  # kg, the mass of both bodies
     2.0
     """
-    per_axis = [_solve_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
+    per_axis = [_solve_modes_along_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
     frequency, shape, participation = (np.stack(parts) for parts in zip(*per_axis))
     return Modes(frequency, shape, participation)
 
@@ -189,7 +189,7 @@ def _solve_damped_axis(
     return values, shape / shape[largest, np.arange(2 * count)]
 
 
-def _solve_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
+def _solve_modes_along_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     """Return frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
     frequency, shape = solve_chain(masses, stiffness)
     participation = masses @ shape

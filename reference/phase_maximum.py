@@ -21,7 +21,7 @@ from reference.measures.local_search import (
     merge_searches,
     search_round,
 )
-from reference.problem import Scene, checked_phases
+from reference.problem import Scene, check_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
@@ -138,7 +138,7 @@ def worst_phases(
     if starts is None:
         phases, taken = distinct_pairs(scene, GRID)
         starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
-    points = surface.compute(checked_phases(starts))
+    points = surface.compute(check_phases(starts))
     searches = [
         LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
         for n in np.flatnonzero(np.isfinite(points.value))

@@ -11,10 +11,10 @@ from reference.support.arguments import Range
 
 LOAD_PER_SUPPORT = Range(1e3, 1e8, "N")
 NORMALIZED = 10.0  # kg: a scene of unit masses, as those of the paper, is meant as no building
-FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # of the first mode along either axis
+FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # period of the first mode along either axis
 LARGEST_RADIUS = 50.0  # m
 LARGEST_FRICTION = 1.0
-LARGEST_DAMPING = 0.2  # ratio of critical of the first fixed-base mode
+LARGEST_DAMPING = 0.2  # damping ratio of the first fixed-base mode
 LARGEST_PEAK = 3.0  # g
 LARGEST_DRIFT_RATIO = 0.1
 MASS_RATIO = 1e6
@@ -26,7 +26,7 @@ def implausible_values(scene: Scene) -> list[str]:
     lines = [*_implausible_modes(building)]
     load = building.load_per_support
     if load is not None and load not in LOAD_PER_SUPPORT and scene.total_mass > NORMALIZED:
-        limit = _beyond(load, LOAD_PER_SUPPORT, word_force)
+        limit = _word_end_beyond(load, LOAD_PER_SUPPORT, word_force)
         lines.append(f"the weight on each support is {word_force(load)}, {limit}: is mass in kg?")
     if LARGEST_RADIUS < scene.radius < math.inf:
         unit = "mm" if scene.isolator.period is None else "is period in s"
@@ -58,7 +58,7 @@ def _implausible_modes(building: Building) -> list[str]:
     lines: list[str] = []
     for period in sorted(map(float, building.fixed_base_period[:, 0]), reverse=True):
         if period not in FIXED_BASE_PERIOD and not lines:
-            limit = _beyond(period, FIXED_BASE_PERIOD, lambda value: f"{value:g} s")
+            limit = _word_end_beyond(period, FIXED_BASE_PERIOD, lambda value: f"{value:g} s")
             lines.append(f"the period above a fixed base is {period:.4g} s, {limit}: stiffness in N/m, mass in kg?")
     if (ratio := float(building.modal_damping[:, 0].max())) > LARGEST_DAMPING:
         share = f"{100.0 * ratio:.4g} % of critical, above {100.0 * LARGEST_DAMPING:g} %"
@@ -66,6 +66,6 @@ def _implausible_modes(building: Building) -> list[str]:
     return lines
 
 
-def _beyond(value: float, allowed: Range, word: Callable[[float], str]) -> str:
+def _word_end_beyond(value: float, allowed: Range, word: Callable[[float], str]) -> str:
     """Return which end of a range a value lies beyond."""
     return f"below {word(allowed.lowest)}" if value < allowed.lowest else f"above {word(allowed.highest)}"

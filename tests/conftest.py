@@ -19,7 +19,7 @@ import pytest
 from hypothesis import settings
 from numba.core.dispatcher import Dispatcher
 
-from comparison.runner.processes import cores, one_thread_each
+from comparison.runner.processes import count_cores, one_thread_each
 
 try:
     import fcntl
@@ -75,7 +75,7 @@ def within(record_property: Callable[[str, object], None]) -> Callable[[float, f
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     """One more than processors: tests that wait for processes and for limits of time leave theirs idle."""
-    return cores() + 1
+    return count_cores() + 1
 
 
 def compile_in_turn() -> None:

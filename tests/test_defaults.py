@@ -11,6 +11,9 @@ import multibody
 import multibody.defaults
 import reference
 import reference.defaults
+from comparison.cli.options import parse_options
+from comparison.study.study import STUDY_TOLERANCE
+from comparison.testing import assert_consistent
 
 NAMES = {
     "multibody": {
@@ -64,3 +67,9 @@ def test_the_main_functions_state_their_defaults() -> None:
     for function, count in stating:
         names = NAMES[function.__module__.partition(".")[0]]
         assert sum(f"(`{name}`)" in (inspect.getdoc(function) or "") for name in names.values()) == count
+
+
+def test_a_study_asks_of_its_models_what_the_engine_asks_of_itself() -> None:
+    assert STUDY_TOLERANCE == multibody.defaults.DEFAULT_TOLERANCE
+    assert inspect.signature(assert_consistent).parameters["tolerance"].default == STUDY_TOLERANCE
+    assert parse_options(["fig3-I", "--plan"]).tolerance == STUDY_TOLERANCE

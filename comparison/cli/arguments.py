@@ -16,7 +16,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from comparison.runner.attempts import attempt
 from comparison.runner.cache import Cache
-from comparison.runner.processes import cores
+from comparison.runner.processes import count_cores
 from comparison.runner.task import BATCH, RESULT
 from reference.problem import SceneError
 from reference.problem.families import BOUND_FACTOR
@@ -26,7 +26,8 @@ Rest = ParamSpec("Rest")
 Value = TypeVar("Value", int, float)
 
 BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest
-STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
+# Help of --out where a command writes nothing else into the folder
+STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"
 
 
 class EndedEarlyError(RuntimeError):
@@ -66,7 +67,7 @@ class CommandParser(OneLineParser):
 
     def add_computing(self) -> None:
         """Add the options that say where to compute, and whether to compute anew what is stored."""
-        self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
+        self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {count_cores()})")
         self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
         self.add_argument(
             "--fresh",
@@ -80,7 +81,7 @@ def number_of_jobs(options: argparse.Namespace) -> int:
     if options.scheduler is not None and options.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", options.jobs, rule)
-    return cores() if options.jobs is None else read_whole_number("--jobs", options.jobs, 1, 1024)
+    return count_cores() if options.jobs is None else read_whole_number("--jobs", options.jobs, 1, 1024)
 
 
 def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
@@ -95,15 +96,15 @@ def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
 
 def read_whole_number(option: str, text: str, least: int, most: int) -> int:
     """The value of an option that takes a whole number. Raises SceneError."""
-    return _within(option, text, int, least, most, f"must be a whole number from {least} to {most}")
+    return _refuse_beyond(option, text, int, least, most, f"must be a whole number from {least} to {most}")
 
 
 def read_number(option: str, text: str, least: float, most: float, unit: str) -> float:
     """The value of an option that takes a number. Raises SceneError."""
-    return _within(option, text, float, least, most, f"must be a number from {least:g} to {most:g}, {unit}")
+    return _refuse_beyond(option, text, float, least, most, f"must be a number from {least:g} to {most:g}, {unit}")
 
 
-def _within(option: str, text: str, kind: type[Value], least: Value, most: Value, rule: str) -> Value:
+def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most: Value, rule: str) -> Value:
     try:
         value = kind(text)
     except ValueError:

@@ -80,15 +80,15 @@ def print_closing(console: Console, results: Results, options: Options, words: S
 def print_level(console: Console, results: Results, before: Results | None, level: StudyLevel, report: Path) -> None:
     """Print what there is after a level that is not the last: the place of its report, and its first new sentences."""
     console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
-    known = set(_sentences(before)) if before else set()
-    sentences = [sentence for sentence in _sentences(results) if sentence not in known]
+    known = set(_headline_sentences(before)) if before else set()
+    sentences = [sentence for sentence in _headline_sentences(results) if sentence not in known]
     for sentence in sentences[:FIRST_SENTENCES]:
         console.print(f"  {sentence}", soft_wrap=True)
     if len(sentences) > FIRST_SENTENCES:
         console.print(f"  and {len(sentences) - FIRST_SENTENCES} more on the page.")
 
 
-def _sentences(results: Results) -> list[str]:
+def _headline_sentences(results: Results) -> list[str]:
     return [headline.sentence for scene in results.scenes for headline in scene.headlines]
 
 
@@ -98,26 +98,26 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
     filmed = [
         (headline, source)
         for scene in results.phased
-        if (source := _source(scene, words))
+        if (source := _source_of_scene(scene, words))
         for headline in scene.headlines
         if headline.maximum_model in FILMED and math.isfinite(headline.maximum)
     ]
     if filmed:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
-        lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
+        lines.append(f"Next: a film of the largest difference: {_film_command(largest, source)}")
     if results.phased and not any(word.startswith("--budget") for word in words):
         finer = command_line(edit_command_line(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
 
 
-def _film(headline: Headline, source: str) -> str:
+def _film_command(headline: Headline, source: str) -> str:
     phases = " ".join(f"{phase:.4f}" for phase in headline.maximum_phases)
     source = f"./{source}" if source.startswith("-") else source  # else it is read as an option
     return f"python -m multibody.animate {shlex.quote(source)} --phases {phases} --model {headline.maximum_model}"
 
 
-def _source(scene: SceneResult, words: Sequence[str]) -> str:
+def _source_of_scene(scene: SceneResult, words: Sequence[str]) -> str:
     """
     Return how the scene is named on a command line, "" for one of a family and one whose loading the command changed.
     """

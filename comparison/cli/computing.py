@@ -18,11 +18,11 @@ from rich.console import Console
 
 from comparison.cli.arguments import EndedEarlyError, command_line, edit_command_line, number_of_jobs, resume_hint
 from comparison.runner.cache import Cache, StoreError, locate_store, refuse_foreign_store
-from comparison.runner.dask import cluster
-from comparison.runner.environment import provenance
-from comparison.runner.output import destination
+from comparison.runner.dask import connect_cluster
+from comparison.runner.environment import describe_provenance
+from comparison.runner.output import resolve_destination
 from comparison.runner.processes import ExecutorLostError, Pool, process_pool
-from comparison.runner.progress import Display, progress
+from comparison.runner.progress import Display, show_progress
 from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -39,7 +39,7 @@ def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], b
         "began": (datetime.now(UTC) - timedelta(seconds=seconds)).isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
         "jobs": number_of_jobs(options),
-        "provenance": provenance(),
+        "provenance": describe_provenance(),
     }
 
 
@@ -59,7 +59,7 @@ def compute_tasks(
     then: returns the tasks that follow from the results of the others.
     """
     width = number_of_jobs(options)
-    out = destination(options.out)
+    out = resolve_destination(options.out)
     refuse_foreign_store(out)
     cache = Cache(locate_store(out))
     if options.fresh:
@@ -71,8 +71,8 @@ def compute_tasks(
         console.print(line, soft_wrap=True)  # a path is copied whole
     hint = partial(resume_hint, cache, command=command)
     with (
-        workers(width, options.scheduler, models, executor, words, hint) as (count, pool),
-        progress(console, sum(task.seconds for task in missing), count) as display,
+        open_workers(width, options.scheduler, models, executor, words, hint) as (count, pool),
+        show_progress(console, sum(task.seconds for task in missing), count) as display,
     ):
         runner = Runner(results, count, pool, display)
         runner.run(missing, compiling_task)
@@ -81,7 +81,7 @@ def compute_tasks(
 
 
 @contextmanager
-def workers(
+def open_workers(
     jobs: int,
     scheduler: str | None,
     models: set[str],
@@ -96,7 +96,7 @@ def workers(
     """
     try:
         if scheduler is not None:
-            with cluster(scheduler, models) as remote:
+            with connect_cluster(scheduler, models) as remote:
                 yield remote.width, remote
         elif executor is process_pool:
             with process_pool(jobs) as pool:

@@ -12,8 +12,8 @@ from importlib.resources import files
 from pathlib import Path
 
 from comparison.cli.arguments import command, report_write_errors
-from comparison.cli.requirement import requirement
-from comparison.runner.output import destination, make_parents, refuse_unwritable
+from comparison.cli.requirement import requirement_line
+from comparison.runner.output import make_parents, refuse_unwritable, resolve_destination
 from reference.problem import SceneError
 from reference.support.command import OneLineParser
 from reference.support.files import NEW, staging_directory
@@ -36,11 +36,11 @@ def main(argv: Sequence[str]) -> int:
     """Write the study; the exit code: 0, 2 for a directory that cannot be taken, 3 if it could not be written."""
     parser = OneLineParser("phase-resonance init", "A directory with a study to start from.")
     parser.add_argument("directory", metavar=PLACE, type=Path, help="a new one, or one that holds nothing but .git")
-    place = _free(parser.parse_args(argv).directory)
+    place = _find_free_directory(parser.parse_args(argv).directory)
     with report_write_errors(place, PLACE):
         write_directory(place, study_files(place.resolve().name))
     print(f"{place}: a study to start from; README.md in it says how: change building.toml, then python study.py")
-    if " @ file:" in requirement():
+    if " @ file:" in requirement_line():
         print(
             "requirements.txt names a folder of this machine: continuous integration elsewhere needs another line there"
         )
@@ -51,7 +51,7 @@ def study_files(name: str) -> dict[str, bytes]:
     """The files of a new study, by their path in its directory."""
     folder = files("comparison.cli") / "study_template"
     texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in TEMPLATE.items()}
-    source = requirement()
+    source = requirement_line()
     return {
         file: text.replace("@NAME@", name).replace("@REQUIREMENT@", source).encode() for file, text in texts.items()
     }
@@ -93,12 +93,12 @@ def _move_entries(source: Path, target: Path) -> None:
         raise
 
 
-def _free(path: Path) -> Path:
+def _find_free_directory(path: Path) -> Path:
     """The directory that is meant. Raises SceneError, one line, if it cannot be made or has something in it."""
     refusal = partial(SceneError, "command line", PLACE, str(path))
     if not str(path).isprintable():
         raise refusal("must be a name of printable characters")
-    place = destination(path, PLACE)
+    place = resolve_destination(path, PLACE)
     try:
         taken = sorted({*os.listdir(place)} - {".git"}) if place.exists() else []
     except OSError as error:

@@ -10,14 +10,14 @@ from comparison.cli.arguments import CommandParser, number_of_jobs, read_bounds,
 from comparison.cli.user_models import add_models, user_models
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
-from comparison.runner.output import destination, refuse_foreign_report
+from comparison.runner.output import refuse_foreign_report, resolve_destination
 from comparison.study.models import Model
-from comparison.study.selection import Selection, refuse_unknown, select
-from comparison.study.study import refuse_same_names
+from comparison.study.selection import Selection, make_selection, refuse_unknown
+from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 
-DEFAULT_TOLERANCE, TIGHTEST = 1e-3, 1e-8
+TIGHTEST_TOLERANCE = 1e-8  # relative error of mu
 DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have a `most` of their own
 
 
@@ -52,23 +52,26 @@ def parse_options(argv: Sequence[str]) -> Options:
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = None if words.amplitude is None else read_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
     families = tuple(load_family(name, amplitude, read_bounds(words)) for name in names)
-    only, skip, also = (_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
+    only, skip, also = (_read_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
         families=families,
         grid=DEFAULT_GRID if words.grid is None else read_whole_number("--grid", words.grid, 2, 512),
-        out=destination(words.out),
+        out=resolve_destination(words.out),
         jobs=number_of_jobs(words),
-        tolerance=_optional("--tolerance", words.tolerance, TIGHTEST, 0.1, "relative error of mu") or DEFAULT_TOLERANCE,
-        budget=_optional("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
+        tolerance=_read_optional_number("--tolerance", words.tolerance, TIGHTEST_TOLERANCE, 0.1, "relative error of mu")
+        or STUDY_TOLERANCE,
+        budget=_read_optional_number("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
         check=words.check,
         plan=words.plan,
         fresh=words.fresh,
         full=words.full,
-        max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
+        max_work=_read_optional_number("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
         scheduler=words.scheduler,
-        selection=select(SELECTABLE, (scene for family in families for scene in family.scenes), only, skip, also),
+        selection=make_selection(
+            SELECTABLE, (scene for family in families for scene in family.scenes), only, skip, also
+        ),
         models=user_models(words.model, words.model_limit, words.scheduler),
     )
     if options.check:
@@ -120,7 +123,7 @@ def _parser() -> CommandParser:
         "--tolerance",
         metavar="X",
         help="relative error asked of every mu; the equations are asked for 1e-6 or better "
-        f"(default {DEFAULT_TOLERANCE:g})",
+        f"(default {STUDY_TOLERANCE:g})",
     )
     parser.add_argument(
         "--budget",
@@ -152,7 +155,7 @@ def _parser() -> CommandParser:
     return parser
 
 
-def _analyses(option: str, text: str | None) -> list[str] | None:
+def _read_analyses(option: str, text: str | None) -> list[str] | None:
     """The analyses that an option lists, separated by commas."""
     if text is None:
         return None
@@ -164,5 +167,5 @@ def _analyses(option: str, text: str | None) -> list[str] | None:
         raise SceneError("command line", option, text, str(error)) from None
 
 
-def _optional(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:
+def _read_optional_number(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:
     return None if text is None else read_number(option, text, least, most, unit)

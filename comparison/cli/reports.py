@@ -14,12 +14,12 @@ from comparison.cli.arguments import command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
 from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
-from comparison.report.building import note_lost
+from comparison.report.building import note_missing_part
 from comparison.report.feature import ResultField
 from comparison.report.results import Results
 from comparison.report.section import Report
 from comparison.runner.attempts import attempt
-from comparison.runner.environment import provenance
+from comparison.runner.environment import describe_provenance
 from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
@@ -128,21 +128,21 @@ class Reports:
             "jobs": self._jobs,
             "level": complete.level.number,
             "levels": complete.level.of,
-            "provenance": provenance(),
+            "provenance": describe_provenance(),
         }
         lost: list[str] = []
         found: dict[str, Any] = {}
         for analysis in select_analyses(study):
             collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
-            found[analysis.key] = attempt(f"section {analysis.key}", collect, partial(note_lost, lost))
+            found[analysis.key] = attempt(f"section {analysis.key}", collect, partial(note_missing_part, lost))
         fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
-        found |= {field.name: _load(field, self._options.out) for field in fields}
+        found |= {field.name: _load_stored(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
-        faults = _faults(complete.tasks, runner.results)
+        faults = _list_faults(complete.tasks, runner.results)
         return report_of(study, surfaces, found, faults, run, families=families, lost=lost)
 
 
-def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
+def _list_faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
     """Return what solvers reported, once for each scene, model and message."""
     texts = {
         (task.argument.scene.name, f"{task.stage}: {result.error_message}")
@@ -152,7 +152,7 @@ def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
     return [Alert(level="amber", kind="fault", scene=scene, text=text, help="") for scene, text in sorted(texts)]
 
 
-def _load(field: ResultField[Any], out: Path) -> Any:
+def _load_stored(field: ResultField[Any], out: Path) -> Any:
     """Return what another command left next to the report; None for a file that has come since and cannot be read."""
     assert field.load is not None
     try:

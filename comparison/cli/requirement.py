@@ -9,7 +9,7 @@ from typing import Any
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import url2pathname
 
-from comparison.runner.environment import git
+from comparison.runner.environment import ask_git
 from reference.support.version import __version__
 
 NAME = "phase-resonance"
@@ -18,7 +18,7 @@ BY_SSH = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # as git writes an address: us
 REMOTE = ("https", "http", "ssh", "git")
 
 
-def requirement() -> str:
+def requirement_line() -> str:
     """A line of requirements.txt: the address that pip recorded, a commit that others reach, a folder or a version."""
     about = _pip_record()
     url = str(about.get("url", ""))
@@ -46,10 +46,10 @@ def _pip_record() -> dict[str, Any]:
 def _commit_elsewhere(folder: Path) -> str:
     """Return where others find the commit of a checkout; empty if nobody does."""
     try:
-        commit = git(folder, "rev-parse", "HEAD")
-        if not git(folder, "branch", "--remotes", "--contains", commit):
+        commit = ask_git(folder, "rev-parse", "HEAD")
+        if not ask_git(folder, "branch", "--remotes", "--contains", commit):
             return ""
-        url = git(folder, "remote", "get-url", "origin")
+        url = ask_git(folder, "remote", "get-url", "origin")
     except (OSError, subprocess.CalledProcessError):
         return ""
     if match := BY_SSH.fullmatch(url):

@@ -48,11 +48,11 @@ def commands() -> dict[str, Command]:
     found = dict(COMMANDS)
     for file in sorted(PACKAGE.glob("*/*/command.py"), key=lambda file: file.parent.name):
         folder = ".".join(file.parent.relative_to(PACKAGE.parent).parts)
-        found[file.parent.name] = Command(f"{folder}.command", _purpose(folder))
+        found[file.parent.name] = Command(f"{folder}.command", _purpose_of_package(folder))
     return found
 
 
-def _purpose(package: str) -> str:
+def _purpose_of_package(package: str) -> str:
     """Return the first sentence of a package, as the help lists it."""
     text = import_module(package).__doc__ or ""
     return f"{text[:1].lower()}{text[1:].strip().rstrip('.')}"
@@ -87,12 +87,12 @@ def _of_children() -> float:
 _started: list[Clock] = []
 
 
-def start_time() -> Clock:
+def command_start() -> Clock:
     """When the command of this process started, before its modules were loaded; now where a program calls it."""
     return _started.pop() if _started else Clock.now()
 
 
-def start(module: str) -> NoReturn:
+def run_command(module: str) -> NoReturn:
     """Import a command by its full name, run its `main` and end the process with its exit code."""
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)
@@ -100,7 +100,7 @@ def start(module: str) -> NoReturn:
     if not sys.warnoptions:  # warnings of libraries: a sentence says what a user must know
         warnings.simplefilter("ignore")
         os.environ.setdefault("PYTHONWARNINGS", "ignore")  # in worker processes
-    sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command
+    sys.modules["__main__"].__spec__ = __spec__  # worker processes import this module again, not the command
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
@@ -138,4 +138,4 @@ def main() -> NoReturn:
         print(f"command line: COMMAND = {name!r}: {rule}", file=sys.stderr)
         raise SystemExit(2)
     sys.argv = [f"{SCRIPT} {name}", *sys.argv[2:]]
-    start(known[name].module)
+    run_command(known[name].module)

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
+from comparison.registry import first_tasks, seconds_by_stage, select_analyses, study_levels
 from comparison.runner.analysis import Analysis
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
@@ -18,7 +18,7 @@ from comparison.study.batches import refusal_of
 from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.records import describe_records
-from comparison.study.reductions import reductions
+from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
 from reference.building import describe_building, word_buildings
@@ -30,7 +30,7 @@ NAMES = 4  # names of a list that the terminal shows
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """Print what would be computed, and roughly how long it would take."""
-    for reason, of in _refusals(study).items():
+    for reason, of in _list_refusals(study).items():
         console.print(f"{_list_names(of)}: {reason}.", soft_wrap=True)
     _print_models(console, study, options.families)
     analyses = select_analyses(study)
@@ -77,9 +77,9 @@ def _print_analyses(console: Console, study: Study, analyses: Sequence[Analysis[
 
 def _print_levels(console: Console, study: Study) -> None:
     """Print the grids of phases of every level; a study without phases has none."""
-    for level in levels(study) if study.phased else ():
+    for level in study_levels(study) if study.phased else ():
         models = level.study.hierarchy
-        kinds = {"equations" if m.side == "reference" else m.title: len(level.study.axis(m)) for m in models}
+        kinds = {"equations" if m.side == "reference" else m.title: len(level.study.phase_indices(m)) for m in models}
         grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
         console.print(f"{level.title.capitalize()}: {grids}.")
 
@@ -130,7 +130,7 @@ def print_models_left_out(console: Console, study: Study) -> None:
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)
 
 
-def _refusals(study: Study) -> dict[str, list[str]]:
+def _list_refusals(study: Study) -> dict[str, list[str]]:
     """Why surfaces would have no value, with the scenes and models."""
     refused: dict[str, list[str]] = {}
     for scene in study.scenes:
@@ -144,7 +144,7 @@ def _print_reductions(console: Console, study: Study) -> None:
     """Print what the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
-    elif rows := reductions(study):
+    elif rows := list_omissions(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
             console.print(f"  {row.what} ({row.models}; {_list_names(row.scenes)}): {row.why}", soft_wrap=True)

@@ -18,7 +18,16 @@ from comparison.cli.arguments import CommandParser, read_number
 from comparison.runner.environment import engine_fingerprint
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
-from comparison.study.user_models import LAWS, LIKE, TIME_LIMIT, names_of, note_line, quiet, user_function, user_model
+from comparison.study.user_models import (
+    LAWS,
+    LIKE,
+    TIME_LIMIT,
+    names_of,
+    note_line,
+    silence_output,
+    user_function,
+    user_model,
+)
 from comparison.wording import exception_line
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
@@ -56,7 +65,7 @@ def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str |
     seconds = TIME_LIMIT if limit is None else read_number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
         raise _refusal(specs[0], "is a function of this machine, --scheduler computes on others: give one of the two")
-    parts = [_parts(spec) for spec in specs]
+    parts = [_split_spec(spec) for spec in specs]
     names = [name for name, _, _ in parts]
     for spec, name in zip(specs, names):
         if name in TAKEN:
@@ -86,7 +95,7 @@ def as_words(engines: Engines) -> list[str]:
     return words
 
 
-def _parts(spec: str) -> tuple[str, str, str]:
+def _split_spec(spec: str) -> tuple[str, str, str]:
     """Name, place of the function and key of the model with the same law."""
     match = SPEC.fullmatch(spec)
     if match is None:
@@ -118,7 +127,7 @@ def _inspect_function(spec: str, path: str) -> dict[str, Any]:
 def look_at(path: str) -> tuple[str, dict[str, str]]:
     """Import a function inside a worker process: why it cannot be used, or "", and what its numbers depend on."""
     module, name = path.split(":")
-    with quiet():
+    with silence_output():
         try:
             function = user_function(path)
             return "", {"names": names_of(function), **engine_fingerprint(module)}

@@ -32,12 +32,12 @@ def forced_ratios(scene: Scene) -> list[ForcedRatio]:
         for harmonic, s in enumerate(exponents(scene), start=1)
         if scene.amplitudes[axis, harmonic - 1] != 0.0
         for body, (forced, steady) in enumerate(
-            zip(*(_ratios(scene, axis, each) for each in (s, 1j * s.imag))), start=2
+            zip(*(_amplitude_ratios(scene, axis, each) for each in (s, 1j * s.imag))), start=2
         )
     ]
 
 
-def _ratios(scene: Scene, axis: int, s: complex) -> Array:
+def _amplitude_ratios(scene: Scene, axis: int, s: complex) -> Array:
     """|A_i / A_1| for the bodies above the platform: (m_i s^2 + links) A = link to the platform times A_1."""
     links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
     matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))

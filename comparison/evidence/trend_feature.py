@@ -7,8 +7,8 @@ from typing import Any
 
 from comparison.evidence.trends import Trend, word_trends
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import panel
-from comparison.report.plots import MAX_CURVES, Panel, plain
+from comparison.report.panels import make_panel
+from comparison.report.plots import MAX_CURVES, Panel, json_numbers
 from comparison.report.section import Section
 from comparison.runner.mapped_analysis import MappedAnalysis
 
@@ -49,11 +49,11 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
         series: list[dict[str, Any]] = []
         for number, trend in enumerate(rows[:MAX_CURVES]):
             slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
-            points = {"x": list(values), "y": plain(trend.medians), "color": number, "marks": True}
+            points = {"x": list(values), "y": json_numbers(trend.medians), "color": number, "marks": True}
             series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
         axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
         label = f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series)
         axes = {"title": axis, "log": True}, {"title": "median relative difference", "log": True}
         cut = f", {MAX_CURVES} of {len(rows)} differences: the table has all" if len(rows) > MAX_CURVES else ""
-        panels.append(panel(f"{scene}{cut}", label, *axes, series))
+        panels.append(make_panel(f"{scene}{cut}", label, *axes, series))
     return panels

@@ -71,7 +71,7 @@ def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
     return Slope(exponent, 2.0 * float(np.sqrt(scatter + carried)), points, len(rows))
 
 
-def trend(
+def fit_trend(
     scene: str,
     body: int,
     what: str,
@@ -86,14 +86,21 @@ def trend(
     columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
     medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)
     return Trend(
-        scene, body, what, tuple(parameter), medians, *slope, expected, error_message or _verdict(slope, expected)
+        scene,
+        body,
+        what,
+        tuple(parameter),
+        medians,
+        *slope,
+        expected,
+        error_message or _verdict_on_slope(slope, expected),
     )
 
 
 def word_trends(trends: Sequence[Trend]) -> str:
     """Return how many exponents that theory gives are met, and the first that is not."""
     expected = [each for each in trends if each.expected is not None]
-    verdicts = {id(each): _judge(each) for each in expected}
+    verdicts = {id(each): _judge_trend(each) for each in expected}
     missed = [each for each in expected if verdicts[id(each)] == NOT_MET]
     where = ""
     if missed:
@@ -104,13 +111,13 @@ def word_trends(trends: Sequence[Trend]) -> str:
     return f"{words} (first: {where})" if where else words
 
 
-def _judge(each: Trend) -> Verdict:
+def _judge_trend(each: Trend) -> Verdict:
     if each.verdict == f"like the power {each.expected:g}":
         return MET
     return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
 
 
-def _verdict(slope: Slope, expected: float | None) -> str:
+def _verdict_on_slope(slope: Slope, expected: float | None) -> str:
     if not np.isfinite(slope.exponent):
         return "within the error bars: no slope can be told"
     if slope.uncertainty > SETTLED:

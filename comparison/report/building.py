@@ -15,15 +15,15 @@ from comparison.runner.output import on_stderr
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits, pairs_without_limit
-from comparison.surfaces.alerts import Alert, alerts
+from comparison.surfaces.alerts import Alert, list_alerts
 from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
-from comparison.surfaces.budget import budget
-from comparison.surfaces.completion import CompletedSurfaces, completions, with_completed
-from comparison.surfaces.distribution import distributions, grid_maxima
-from comparison.surfaces.headline import headline
+from comparison.surfaces.budget import budget_entries
+from comparison.surfaces.completion import CompletedSurfaces, complete_surfaces, with_completed
+from comparison.surfaces.distribution import compute_distributions, grid_maxima
+from comparison.surfaces.headline import make_headline
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts, values_of
-from comparison.surfaces.unanswered import advice, unanswered
-from comparison.surfaces.waterfall import waterfall
+from comparison.surfaces.unanswered import advise_on_outcome, list_unanswered
+from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Family, Outcome, Scene
 
 
@@ -46,18 +46,20 @@ def build_report(
     lines = [*lost]
 
     def compute(name: str, *words: Any, function: Callable[..., Any]) -> Any:
-        return attempt(f"section {name}", partial(function, *words), partial(note_lost, lines))
+        return attempt(f"section {name}", partial(function, *words), partial(note_missing_part, lines))
 
-    comparisons, lacking = body_comparisons(study, surfaces), unanswered(study, surfaces)
+    comparisons, lacking = body_comparisons(study, surfaces), list_unanswered(study, surfaces)
     completed = [
-        each for scene in study.scenes for each in completions(study, surfaces, scene, found.get(CompletedSurfaces.key))
+        each
+        for scene in study.scenes
+        for each in complete_surfaces(study, surfaces, scene, found.get(CompletedSurfaces.key))
     ]
     surfaces = with_completed(surfaces, completed)
     limits = check_limits(comparisons, lacking)
     parts: dict[str, Sequence[Any]] = {
         "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
         "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
-        "budget": budget(comparisons), "completions": completed, "limits": limits,
+        "budget": budget_entries(comparisons), "completions": completed, "limits": limits,
     }  # fmt: skip
     findings = Findings(study, surfaces, found, families)
     fields = [field for feature in features for field in feature.scene_fields]
@@ -67,7 +69,7 @@ def build_report(
         of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
         more = {field.name: compute(field.name, findings, scene, function=field.compute) or [] for field in fields}
         bodies = [comparison for comparison in comparisons if comparison.scene is scene]
-        scenes.append(scene_kind(**_scene(study, surfaces, scene, bodies), **of_scene, **more))
+        scenes.append(scene_kind(**_scene_fields(study, surfaces, scene, bodies), **of_scene, **more))
     summaries: dict[str, Any] = {
         field.name: compute(field.name, findings, scenes, function=field.compute)
         if field.compute
@@ -83,23 +85,25 @@ def build_report(
         scenes=scenes,
         absent=study.absent,
         unanswered=lacking,
-        alerts=alerts(study, surfaces, lacking, limits, faults),
+        alerts=list_alerts(study, surfaces, lacking, limits, faults),
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
     return Report(study, surfaces, completed, results, found, features, lines)
 
 
-def note_lost(lines: list[str], line: str) -> None:
+def note_missing_part(lines: list[str], line: str) -> None:
     """Add a line on a part that could not be made, and say it on standard error, once."""
     if line not in lines:
         lines.append(line)
         on_stderr(line)
 
 
-def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]) -> dict[str, Any]:
+def _scene_fields(
+    study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]
+) -> dict[str, Any]:
     """Return what the surfaces of a scene say."""
-    waterfalls = [waterfall(comparison) for comparison in comparisons]
+    waterfalls = [make_waterfall(comparison) for comparison in comparisons]
     return {
         "name": scene.name,
         "title": scene.title,
@@ -109,31 +113,35 @@ def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequen
         "recorded": scene.recorded,
         "analyses": [name for name in study.selection.names if study.selection.has(name, scene.name)],
         "acceptance": scene.acceptance,
-        "models": {model.key: _model(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)},
-        "headlines": [headline(*each) for each in zip(comparisons, waterfalls)],
+        "models": {
+            model.key: _model_outcome(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)
+        },
+        "headlines": [make_headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
         "unchecked": pairs_without_limit(study, scene),
-        "distributions": [] if scene.recorded else distributions(study, surfaces, scene),
+        "distributions": [] if scene.recorded else compute_distributions(study, surfaces, scene),
         "grid_maxima": grid_maxima(study, surfaces, scene),
-        "values": _values(study, surfaces, scene) if scene.recorded else [],
+        "values": _record_values(study, surfaces, scene) if scene.recorded else [],
     }
 
 
-def _model(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> ModelOutcome:
+def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> ModelOutcome:
     counts = outcome_counts(surfaces, scene.name, model)
     return ModelOutcome(
-        phases_per_axis=len(study.axis(model, scene)),
+        phases_per_axis=len(study.phase_indices(model, scene)),
         points=study.points(model, scene),
         computed=len(study.solved(scene, model)),
         outcomes=counts,
-        advice={outcome: advice(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK},
+        advice={
+            outcome: advise_on_outcome(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK
+        },
         cap_share=largest_cap_share(surfaces, scene.name, model.key),
         travel_share=largest_travel_share(surfaces, scene, model.key),
         cost=float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
     )
 
 
-def _values(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[RecordValue]:
+def _record_values(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[RecordValue]:
     """mu under the record, by model and body."""
     listed = []
     for model in models_of(scene, study.hierarchy):

@@ -40,7 +40,7 @@ GLOSSARY = {
 WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
 
 
-def term(word: str, text: str = "") -> Markup:
+def mark_term(word: str, text: str = "") -> Markup:
     """`text`, or the word itself, with the explanation of the word at the pointer and the keyboard."""
     explanation = GLOSSARY.get(word)
     shown = symbols(text or word)
@@ -50,16 +50,16 @@ def term(word: str, text: str = "") -> Markup:
     return Markup('<span class="term" tabindex="0" data-tip="{}">{}</span>').format(tip, shown)
 
 
-def explained(sentence: str, seen: set[str] | None = None) -> Markup:
+def explain_words(sentence: str, seen: set[str] | None = None) -> Markup:
     """The sentence with every word of the glossary explained where it stands first."""
     seen = set() if seen is None else seen
 
-    def first(word: str) -> Markup:
+    def mark_first_mention(word: str) -> Markup:
         known = word in seen
         seen.add(word)
-        return symbols(word) if known else term(word)
+        return symbols(word) if known else mark_term(word)
 
-    return _by_parts(WORDS.finditer(sentence), sentence, first, symbols)
+    return _by_parts(WORDS.finditer(sentence), sentence, mark_first_mention, symbols)
 
 
 def _by_parts(

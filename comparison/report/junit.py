@@ -37,7 +37,7 @@ class JUnitSuite:
     said: str = ""
 
 
-def junit(results: Results) -> str:
+def junit_xml(results: Results) -> str:
     """The acceptance limits of every scene as JUnit XML; a broken limit is a failure with its line as the message."""
     return junit_text([_suite_of(scene, results.run.began) for scene in results.scenes])
 

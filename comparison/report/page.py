@@ -10,9 +10,9 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from comparison.report.building import note_lost
-from comparison.report.glossary import explained, term
-from comparison.report.page_data import pack, page_data
+from comparison.report.building import note_missing_part
+from comparison.report.glossary import explain_words, mark_term
+from comparison.report.page_data import compress_to_text, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report, Section
 from comparison.report.surface_sections import models_in_use
@@ -28,16 +28,16 @@ DRAWN = 0.01  # share of mu: shorter bars are left out
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
-def pages(report: Report) -> dict[str, str]:
+def render_pages(report: Report) -> dict[str, str]:
     """
     Return index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself.
 
     A part of a page that raises is one line at its top and, where it is a section, in its place.
     """
-    lost, nothing = [*report.lost], pack(b"null")
+    lost, nothing = [*report.lost], compress_to_text(b"null")
 
     def part(what: str, act: Callable[[], Any]) -> Any:
-        return attempt(what, act, partial(note_lost, lost))
+        return attempt(what, act, partial(note_missing_part, lost))
 
     packed = {
         each.key: part(each.key, partial(_pack_numbers, each.packed_data, report))
@@ -49,18 +49,19 @@ def pages(report: Report) -> dict[str, str]:
         "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
         "alerts": part("alerts", partial(render_alerts, report)) or "",
         "summary": part("summary", partial(render_summary, report)) or "",
-        "data": part("surfaces", lambda: pack(page_data(report, partial(note_lost, lost)).encode())) or nothing,
+        "data": part("surfaces", lambda: compress_to_text(page_data(report, partial(note_missing_part, lost)).encode()))
+        or nothing,
         "packed": {key: numbers or "" for key, numbers in packed.items()},
     }
     verification = {"data": nothing, "packed": {}}
     return {
-        "index.html": _page("report.html.j2", report, False, answers, lost),
-        "verification.html": _page("verification.html.j2", report, True, verification, [*report.lost]),
+        "index.html": _render_page("report.html.j2", report, False, answers, lost),
+        "verification.html": _render_page("verification.html.j2", report, True, verification, [*report.lost]),
     }
 
 
 def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
-    return pack(numbers(report))
+    return compress_to_text(numbers(report))
 
 
 def word_answer(results: Results) -> str:
@@ -120,7 +121,7 @@ def lead_lines(report: Report) -> list[tuple[str, str]]:
     return [(line, f"{page if section.verifies else ''}#{section.name}") for line, section in lines if line]
 
 
-def _page(
+def _render_page(
     template: str,
     report: Report,
     verifies: bool,
@@ -144,9 +145,9 @@ def _page(
     }
     parts = []
     for section in shown:
-        say = partial(note_lost, lost)
+        say = partial(note_missing_part, lost)
         verdict = attempt(f"verdict of section {section.name}", partial(word_section, section, results), say)
-        body = attempt(f"section {section.name}", partial(_render, section, common, report), say)
+        body = attempt(f"section {section.name}", partial(_render_section, section, common, report), say)
         parts.append((section, lost_line(lost[-1]) if body is None else body, verdict or ""))
     return render_page(template, {**common, **context, "absent": absent}, parts, lost)
 
@@ -181,7 +182,7 @@ def render_page(
 
 def render_template(template: str, context: Mapping[str, Any]) -> Markup:
     """Return a template of the report, or of the folder of a feature, with its context."""
-    return Markup(_environment().get_template(template).render(context))
+    return Markup(_template_environment().get_template(template).render(context))
 
 
 def word_section(section: Section, results: Results) -> str:
@@ -189,7 +190,7 @@ def word_section(section: Section, results: Results) -> str:
     return section.verdict(results) if section.verdict else ""
 
 
-def _render(section: Section, common: Mapping[str, Any], report: Report) -> Markup:
+def _render_section(section: Section, common: Mapping[str, Any], report: Report) -> Markup:
     """Return what stands below the heading of a section."""
     return render_template(section.template, {**common, **section.context(report)})
 
@@ -211,7 +212,7 @@ def content_policy(script: str, style: str) -> str:
 
 
 @cache
-def _environment() -> jinja2.Environment:
+def _template_environment() -> jinja2.Environment:
     loader = jinja2.ChoiceLoader(
         [
             jinja2.PackageLoader("comparison.report", "templates"),
@@ -220,9 +221,9 @@ def _environment() -> jinja2.Environment:
         ]
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explain_words)
     environment.filters.update({function.__name__: function for function in filters})
-    environment.globals["term"] = term  # in macros, too
+    environment.globals["term"] = mark_term  # in macros, too
     return environment
 
 

@@ -32,10 +32,10 @@ def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
     of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
-    first, second (models), supplied (whether the second is an engine of the user), contours (per body: polylines
+    first, second (models), user (whether the second is an engine of the user), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
-    phases of both, or null where both are surfaces); models (by key: see `_model`); and what the `page_data` of every
-    feature adds. A surface is a list of rows, one per alpha1, of values, one per alpha2.
+    phases of both, or null where both are surfaces); models (by key: see `_model_data`); and what the `page_data` of
+    every feature adds. A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = report.study
     data = {
@@ -50,8 +50,8 @@ def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
                 "duration": scene.duration,
                 "recorded": scene.recorded,
                 "flat": scene.flat,
-                "pairs": [_pair(report, scene, pair) for pair in study.pairs(scene)],
-                "models": {model.key: _model(report, scene, model) for model in models_of(scene, study.hierarchy)},
+                "pairs": [_pair_data(report, scene, pair) for pair in study.pairs(scene)],
+                "models": {model.key: _model_data(report, scene, model) for model in models_of(scene, study.hierarchy)},
                 **_data_of_features(report, scene, say),
             }
             for scene in study.scenes
@@ -79,12 +79,12 @@ def _json_text(data: Any) -> str:
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
-def pack(content: bytes) -> str:
+def compress_to_text(content: bytes) -> str:
     """Compress and write in letters; the browser undoes both."""
     return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
 
 
-def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
+def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
     """Return where |size| = uncertainty on the closed square, both (alpha1, alpha2): polylines of phases, rad."""
     over = np.pad(np.abs(size) - uncertainty, ((0, 1), (0, 1)), mode="wrap")
     axis = np.append(phase, 2.0 * np.pi)
@@ -92,8 +92,12 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
     return [np.round(np.asarray(line), 4).tolist() for line in lines]
 
 
-def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
-    surfaces = not scene.recorded and _surface(report, scene, pair.first) and _surface(report, scene, pair.second)
+def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
+    surfaces = (
+        not scene.recorded
+        and _is_drawn_as_surface(report, scene, pair.first)
+        and _is_drawn_as_surface(report, scene, pair.second)
+    )
     steps = [difference_of(report.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
         "key": pair.key,
@@ -102,18 +106,18 @@ def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
         "first": pair.first.key,
         "second": pair.second.key,
         "user": pair.second.side == "user",
-        "contours": [crossings(step.size, step.uncertainty, step.alpha1) if surfaces else [] for step in steps],
-        "uncertainty": None if surfaces else [_rows(step.uncertainty, ERROR_DIGITS) for step in steps],
+        "contours": [find_crossings(step.size, step.uncertainty, step.alpha1) if surfaces else [] for step in steps],
+        "uncertainty": None if surfaces else [_round_rows(step.uncertainty, ERROR_DIGITS) for step in steps],
     }
 
 
-def _surface(report: Report, scene: Scene, model: Model) -> bool:
+def _is_drawn_as_surface(report: Report, scene: Scene, model: Model) -> bool:
     """Return whether the values of a model are drawn as a surface as they are: what may need completing is not."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 
 
-def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
+def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     """
     One model of a scene.
 
@@ -123,16 +127,16 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     refused).
     """
     bodies = range(1, len(scene.bodies) + 1)
-    surface = not scene.recorded and _surface(report, scene, model)
+    surface = not scene.recorded and _is_drawn_as_surface(report, scene, model)
     place = scene.name, model.key
     completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
     def list_rows(name: str, digits: int) -> list[Rows]:
         values = values_of(report.surfaces, name, scene.name, model)
-        return [_rows(values[body - 1], digits) for body in bodies]
+        return [_round_rows(values[body - 1], digits) for body in bodies]
 
     return {
-        "phases": len(report.study.axis(model, scene)),
+        "phases": len(report.study.phase_indices(model, scene)),
         "computed": len(report.study.solved(scene, model)),
         "surface": surface,
         "mu": list_rows("mu", DIGITS),
@@ -149,9 +153,9 @@ def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
         "certificate": completion.certificate if completion.accepted else "",
         "reason": completion.reason,
         "difference": completion.difference_accepted,
-        "mu": _rows(completion.mu, DIGITS) if completion.accepted else None,
+        "mu": _round_rows(completion.mu, DIGITS) if completion.accepted else None,
     }
 
 
-def _rows(values: Array, digits: int) -> Rows:
+def _round_rows(values: Array, digits: int) -> Rows:
     return [[float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in row] for row in values]

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparison.report.plots import Panel, plain
+from comparison.report.plots import Panel, json_numbers
 from comparison.report.results import Results
 from comparison.surfaces.distribution import CURVE
 from comparison.wording import mathtext
-from reference.support.drawing import verbatim
+from reference.support.drawing import escape_for_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ LEGEND_ROWS, LEGEND_ROW = 4, 11.5  # rows of a legend in one column; height of a
 MARKERS = "os^Dv<>PX*"  # told apart without colors, too
 
 
-def panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: Any, **more: Any) -> Panel:
+def make_panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: Any, **more: Any) -> Panel:
     """A panel with its plot, as plot.js has it; label: the plot in words."""
     return {"title": title, "plot": {"label": label, "x": x, "y": y, "series": series, **more}}
 
@@ -34,34 +34,34 @@ def distribution_panels(results: Results, scene: str, quantity: str, unit: str, 
     """The share of all phases at which a quantity stays below a value, by (model, values); none without curves."""
     models = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     series = [
-        {"name": models[key][0], "x": plain(values), "y": CURVE.tolist(), "color": models[key][1], "dash": dash}
+        {"name": models[key][0], "x": json_numbers(values), "y": CURVE.tolist(), "color": models[key][1], "dash": dash}
         for (key, values), dash in zip(curves, cycle(DASHES))
     ]
     title = f"{scene}, {quantity}"
     label = f"{title}: share of the phases at which it stays below a value, by model"
     axes = {"title": f"{quantity}, {unit}".removesuffix(", ")}, {"title": "share of the phases"}
-    return [panel(title, label, *axes, series)] if series else []
+    return [make_panel(title, label, *axes, series)] if series else []
 
 
 def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 3, height: float = 4.0) -> None:
     """Write the panels below a title to `path`, PNG, and as PDF."""
     from matplotlib.figure import Figure  # matplotlib: only what draws needs it
 
-    from comparison.surfaces.figures.pairs import save
+    from comparison.surfaces.figures.pairs import save_figure
 
     columns = min(columns, max(len(panels), 1))
     rows = -(-len(panels) // columns) or 1
     figure = Figure(figsize=(5.0 * columns, height * rows + 0.6), dpi=110, layout="constrained")
-    figure.suptitle(verbatim(title), fontsize=12)
+    figure.suptitle(escape_for_matplotlib(title), fontsize=12)
     for axes, each in zip_longest(figure.subplots(rows, columns, squeeze=False).flat, panels):
         if each is None:
             axes.set_axis_off()
         else:
-            _draw(axes, each)
-    save(figure, path)
+            _draw_series(axes, each)
+    save_figure(figure, path)
 
 
-def _draw(axes: Axes, each: Panel) -> None:
+def _draw_series(axes: Axes, each: Panel) -> None:
     plot = each["plot"]
     axes.grid(color="0.92")
     for line in plot["series"]:

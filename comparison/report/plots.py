@@ -23,7 +23,7 @@ DEMANDS = (
 )
 
 
-def plain(values: Sequence[float]) -> list[float | None]:
+def json_numbers(values: Sequence[float]) -> list[float | None]:
     """Return what JSON can hold: NaN is null."""
     return [finite_or_none(value) for value in values]
 

@@ -23,8 +23,8 @@ SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
 
 
-# what measured motions say of the models, for every report: `word_validated` of comparison.evidence.validation words it
-# from the record, which the gate repeats; the report itself knows no analysis
+# What measured motions say of the models, for every report: `word_what_is_validated` of comparison.evidence.validation
+# words it from the record, which the gate repeats; the report itself knows no analysis.
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
     " fitted at 250 g and 450 g, at 350 g met (E = +1.4 %, within 2.2 %), at 550 g met (E = +0.68 %, within 3.3 "
@@ -32,7 +32,7 @@ VALIDATED = (
     "+7.7 %), at 550 g not met (by +12 %). No building has been compared"
 )
 
-# the same by `word_validated_briefly`, for the first screen
+# the same by `word_what_is_validated_briefly`, for the first screen
 VALIDATED_BRIEFLY = (
     "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
     "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "

@@ -16,19 +16,19 @@ def summary_text(results: Results) -> str:
     models = [model for model in results.models[1:] if model.key in used]
     loader = jinja2.PackageLoader("comparison.report", "templates")
     environment = jinja2.Environment(loader=loader, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    environment.filters.update(code=_code, plain=_plain, degrees=degrees, percent=percent, signed=signed)
+    environment.filters.update(code=_as_code, plain=_as_plain_text, degrees=degrees, percent=percent, signed=signed)
     text = environment.get_template("summary.md.j2").render(results=results, models=models, validated=VALIDATED)
     return f"{text}\n"
 
 
-def _code(text: str) -> str:
+def _as_code(text: str) -> str:
     """A text as code, between more backticks than stand in it anywhere."""
     fence = "`" * (1 + max((len(ticks) for ticks in re.findall("`+", text)), default=0))
     space = " " if "`" in text else ""
     return f"{fence}{space}{text}{space}{fence}"
 
 
-def _plain(text: str) -> str:
+def _as_plain_text(text: str) -> str:
     """A text on one line in which nothing is read as Markdown, HTML or a formula."""
     shown = "".join(letter if letter.isprintable() else " " for letter in text)
     return MARKS.sub(r"\\\g<0>", shown)

@@ -18,17 +18,17 @@ def models_in_use(study: Study) -> list[Any]:
     return [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
 
 
-def _differences(report: Report) -> Mapping[str, Any]:
+def _differences_context(report: Report) -> Mapping[str, Any]:
     rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
     return {"rows": rows, "dots": log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
 
-def _grids(report: Report) -> Mapping[str, Any]:
+def _grids_context(report: Report) -> Mapping[str, Any]:
     rows = [row for scene in report.results.scenes for row in (*scene.differences, *scene.effects)]
     return {"grids": sorted({grid.phases_per_axis for row in rows for grid in row.grids})}
 
 
-def _costs(report: Report) -> Mapping[str, Any]:
+def _costs_context(report: Report) -> Mapping[str, Any]:
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
         "limited": any(not math.isnan(model.travel_share) for model in outcomes),
@@ -36,30 +36,32 @@ def _costs(report: Report) -> Mapping[str, Any]:
     }
 
 
-def _models(report: Report) -> Mapping[str, Any]:
+def _models_context(report: Report) -> Mapping[str, Any]:
     models = models_in_use(report.study)
     own = [model for model in models if model.side != "user"]
     names = dict.fromkeys(name for model in own for name in model.assumptions)
     return {"hierarchy": own, "supplied": [model for model in models if model.side == "user"], "names": names}
 
 
-def _feature(key: str, title: str, selectable: bool = False, **about: Any) -> Feature:
+def _surface_feature(key: str, title: str, selectable: bool = False, **about: Any) -> Feature:
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 
-SURFACES = _feature("surfaces", "Amplification and motions", selectable=True, folded=False)  # one value under a record
-DIFFERENCES = _feature("differences", "Differences", selectable=True, context=_differences)
-BUDGET = _feature("budget", "Causes of the difference", selectable=True, context=_grids)
-OUTCOMES = _feature("outcomes", "Outcomes and cost", context=_costs)
-MODELS = _feature("models", "Models compared", context=_models)
-VERIFICATION = _feature(
+SURFACES = _surface_feature(
+    "surfaces", "Amplification and motions", selectable=True, folded=False
+)  # one value under a record
+DIFFERENCES = _surface_feature("differences", "Differences", selectable=True, context=_differences_context)
+BUDGET = _surface_feature("budget", "Causes of the difference", selectable=True, context=_grids_context)
+OUTCOMES = _surface_feature("outcomes", "Outcomes and cost", context=_costs_context)
+MODELS = _surface_feature("models", "Models compared", context=_models_context)
+VERIFICATION = _surface_feature(
     "verification",
     "Tests of each code alone",
     context=lambda report: {"checks": CHECKS},
     verifies=True,
     verdict=lambda results: f"{len(CHECKS)} tests, run by the test command of the README, not by this report",
 )
-PROVENANCE = _feature("provenance", "Provenance")
+PROVENANCE = _surface_feature("provenance", "Provenance")
 COMPLETION = Feature(CompletedSurfaces.key, analysis=CompletedSurfaces(), selectable=False)
 PICTURES = Feature(
     Pictures.key,

@@ -8,26 +8,26 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from comparison.report.building import note_lost
-from comparison.report.junit import junit
-from comparison.report.page import pages
+from comparison.report.building import note_missing_part
+from comparison.report.junit import junit_xml
+from comparison.report.page import render_pages
 from comparison.report.results import schema_json
 from comparison.report.section import Report
 from comparison.report.summary_text import summary_text
 from comparison.runner.attempts import attempt
-from comparison.runner.output import netcdf
+from comparison.runner.output import netcdf_content
 
 
 def write_report(folder: Path, report: Report) -> None:
     """Write every file of the report that can be made into a folder that exists and is empty."""
     results, lost = report.results, [*report.lost]
-    say = partial(note_lost, lost)
+    say = partial(note_missing_part, lost)
     contents: dict[str, Callable[[], str | bytes]] = {
         "surfaces.nc": partial(surfaces_file, report),
         "summary.json": results.as_json,
         "summary.schema.json": lambda: schema_json(type(results)),
         "summary.md": lambda: summary_text(results),
-        "junit.xml": lambda: junit(results),
+        "junit.xml": lambda: junit_xml(results),
     }
     for name, make in contents.items():
         content = attempt(name, make, say)
@@ -39,7 +39,7 @@ def write_report(folder: Path, report: Report) -> None:
         pictures = feature.figures and attempt(f"pictures of {feature.key}", partial(feature.figures, report), say)
         for name, picture in (pictures or {}).items():
             (figures / name).write_bytes(picture)
-    for name, text in pages(replace(report, lost=lost)).items():
+    for name, text in render_pages(replace(report, lost=lost)).items():
         (folder / name).write_text(text, encoding="utf-8")
 
 
@@ -50,4 +50,4 @@ def surfaces_file(report: Report) -> bytes:
         if feature.dataset:
             surfaces = feature.dataset(surfaces, report.found.get(feature.key))
     run = report.results.run
-    return netcdf(surfaces.assign_attrs({"command": run.command, **run.provenance}))
+    return netcdf_content(surfaces.assign_attrs({"command": run.command, **run.provenance}))

@@ -79,7 +79,7 @@ class Cache:
             digest, content = file[len(MAGIC) : len(MAGIC) + DIGEST], file[len(MAGIC) + DIGEST :]
             if not file.startswith(MAGIC) or _checksum(key, content) != digest:
                 return None  # damaged, or of another question
-            value = _unpack(content, declared)
+            value = _unpack_value(content, declared)
         except Exception:  # whatever is wrong with a file, the result is computed again
             return None
         self.kept[key.kind] += 1
@@ -93,12 +93,12 @@ class Cache:
 
     def put(self, key: CacheKey, value: Any) -> None:
         """Store a result, unless it names a fault. Raises StoreError, and leaves what is stored as it was."""
-        if faulty(value):
+        if names_fault(value):
             return
         place = self.folder / key.name
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            content = _pack(json.loads(key.about), value)
+            content = _pack_value(json.loads(key.about), value)
             write_atomically(place, MAGIC + _checksum(key, content) + content)
         except OSError as error:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
@@ -119,10 +119,10 @@ class Cache:
         with suppress(OSError):  # a store that cannot be looked through is not worth ending a run for
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]
             groups.sort(key=lambda group: (group.stat().st_mtime, group.name))
-            sizes = {group: _size(group) for group in groups}
+            sizes = {group: _size_of_group(group) for group in groups}
             for group in groups:
                 if sum(sizes.values()) > LIMIT and group.name not in needed:
-                    _drop(group)
+                    _drop_group(group)
                     del sizes[group]
 
 
@@ -150,10 +150,10 @@ def refuse_foreign_store(out: Path) -> None:
         raise refusal(f"cannot be used: {error.strerror}") from None
 
 
-def faulty(result: Any) -> bool:
+def names_fault(result: Any) -> bool:
     """Return whether a result, or a part of it, names a fault."""
     if isinstance(result, tuple | list):
-        return any(map(faulty, result))
+        return any(map(names_fault, result))
     return bool(getattr(result, "error_message", ""))
 
 
@@ -161,7 +161,7 @@ def _checksum(key: CacheKey, content: bytes) -> bytes:
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
 
-def _drop(group: Path) -> None:
+def _drop_group(group: Path) -> None:
     """Remove the results in a directory, and it if nothing else is in it."""
     if group.is_symlink():
         return
@@ -187,7 +187,7 @@ def _is_result(entry: os.DirEntry[str]) -> bool:
     return False
 
 
-def _size(group: Path) -> int:
+def _size_of_group(group: Path) -> int:
     """Bytes on disk; what killed runs left is removed on the way."""
     total = 0
     for entry in os.scandir(group):
@@ -200,7 +200,7 @@ def _size(group: Path) -> int:
     return total
 
 
-def _pack(about: Any, value: Any) -> bytes:
+def _pack_value(about: Any, value: Any) -> bytes:
     """A line of JSON, and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
     arrays = BytesIO()
     count = 0
@@ -226,7 +226,7 @@ def _pack(about: Any, value: Any) -> bytes:
     return text.encode() + b"\n" + arrays.getvalue()
 
 
-def _unpack(content: bytes, declared: Any) -> Any:
+def _unpack_value(content: bytes, declared: Any) -> Any:
     """The value of type `declared` that `_packed` has written. Raises an exception for anything else."""
     text, _, rest = content.partition(b"\n")
     arrays, stream = [], BytesIO(rest)
@@ -238,9 +238,9 @@ def _unpack(content: bytes, declared: Any) -> Any:
             return arrays[part[ARRAY]]
         return arrays[part[BYTES]].tobytes() if BYTES in part else part
 
-    return _reader(declared).validate_python([json.loads(text, object_hook=with_arrays)["value"]])[0]
+    return _type_adapter(declared).validate_python([json.loads(text, object_hook=with_arrays)["value"]])[0]
 
 
 @cache
-def _reader(declared: Any) -> TypeAdapter[tuple[Any]]:
+def _type_adapter(declared: Any) -> TypeAdapter[tuple[Any]]:
     return TypeAdapter(tuple[declared], config=ConfigDict(arbitrary_types_allowed=True))  # a dataclass takes no config

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_TIMEOUT = 10.0  # s for the scheduler to answer
-LONGEST_KNOCK = 12.0  # s for that to end: what accepts a connection and stays silent takes longer
-LONGEST = 200  # letters of what Dask says of that
+LONGEST_KNOCK = 12.0  # s for the attempt to end: what accepts a connection and stays silent takes longer
+LONGEST = 200  # letters that are shown of what Dask says when it does not answer
 PATIENCE = 60.0  # s without any worker, before the run ends
 RECOUNT = 2.0  # s between counts of the workers: some may join, or leave, at any time
 GONE = "the connection to the scheduler was lost"
@@ -38,7 +38,7 @@ _ONE = threading.Lock()
 
 
 @contextmanager
-def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
+def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
     """An executor on a cluster, which is left as it was. Raises SceneError if none answers or has other code."""
     refusal = partial(SceneError, "command line", "--scheduler", address)
     try:
@@ -54,20 +54,20 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
         await (await connect(address, timeout=CONNECT_TIMEOUT)).close()
 
     try:
-        _finish(lambda: asyncio.run(knock()))  # a client that reaches nobody leaves threads behind
+        _finish_call(lambda: asyncio.run(knock()))  # a client that reaches nobody leaves threads behind
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
     except MemoryError:  # what Dask takes for the length of a message is text
         raise refusal("no scheduler answers there: another protocol is spoken: give tcp://HOST:PORT of one") from None
     except Exception as error:  # whatever Dask makes of what it is told, and of TLS without a configuration
         raise refusal(f"no scheduler answers there: {' '.join(str(error).split())[:LONGEST]}") from None
     try:
-        _same_code(client, models, refusal)
+        _refuse_other_code(client, models, refusal)
         yield ClusterExecutor(client)
     finally:
         client.close(timeout=1.0)
 
 
-def _finish(call: Call) -> None:
+def _finish_call(call: Call) -> None:
     """Make a call, and raise what it raises; TimeoutError where it does not end, which costs a thread."""
     ended: Future[Any] = Future()
 
@@ -96,7 +96,7 @@ class ClusterExecutor(Executor):
         """Workers there are now. Raises ExecutorLostError if there has been none for PATIENCE or no scheduler."""
         now = time.monotonic()
         if now - self._counted > RECOUNT:
-            self._count, self._counted = _workers(self._client), now
+            self._count, self._counted = _count_workers(self._client), now
         if self._count:
             self._seen = now
         elif now - self._seen > PATIENCE:
@@ -129,11 +129,11 @@ def _one_at_a_time(call: Call, seconds: float | None) -> Any:
             numba.set_num_threads(1)
             return call()
         multiprocessing.current_process().daemon = False  # a worker under a nanny may not start processes otherwise
-        return _child().start(call, seconds).result()
+        return _child_workers().start(call, seconds).result()
 
 
 @cache
-def _child() -> Workers:
+def _child_workers() -> Workers:
     """The process of this worker for calls with a limit."""
     return Workers(1)
 
@@ -153,14 +153,14 @@ def _pass_on(remote: Future[Any], answer: Future[Any]) -> None:
         answer.set_exception(error)
 
 
-def _workers(client: Client) -> int:
+def _count_workers(client: Client) -> int:
     with suppress(OSError, TimeoutError, CancelledError):
         if client.status == "running":
             return len(client.nthreads())
     raise ExecutorLostError(GONE)
 
 
-def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneError]) -> None:
+def _refuse_other_code(client: Client, models: set[str], refusal: Callable[[str], SceneError]) -> None:
     """Numbers from other code must not be taken for ours."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
@@ -172,7 +172,7 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
     ours = _all_fingerprints(sorted(models))
     for worker, versions in theirs.items():
         if isinstance(versions, OSError):
-            continue  # it died or left meanwhile
+            continue  # this worker died or left meanwhile
         if isinstance(versions, Exception):
             raise refusal(f"worker {worker} cannot import this project ({versions}): install it there")
         for name, value in ours.items():

@@ -27,20 +27,20 @@ ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses"
 def environment_fingerprint(model: str) -> dict[str, str]:
     """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
     module = model.split(":")[0]
-    return _environment(PACKAGES, (*SHARED, module if module == USER_MODELS else module.split(".")[0]))
+    return _describe_environment(PACKAGES, (*SHARED, module if module == USER_MODELS else module.split(".")[0]))
 
 
 def task_environment_fingerprint(module: str) -> dict[str, str]:
     """Return the fingerprint of what is computed in addition to the surfaces: it asks both sides and may draw."""
-    return _environment((*PACKAGES, *DRAWING), (*ANSWERING, module.rpartition(".")[0] or module))
+    return _describe_environment((*PACKAGES, *DRAWING), (*ANSWERING, module.rpartition(".")[0] or module))
 
 
-def _environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, str]:
+def _describe_environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, str]:
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),
         "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
-        **{name: _version(name) for name in packages},
+        **{name: _version_of(name) for name in packages},
         **{f"source of {name}": source_digest(name) for name in sources},
     }
 
@@ -51,7 +51,8 @@ def engine_fingerprint(module: str) -> dict[str, str]:
     """
     package = module.split(".")[0]
     spec = find_spec(package)
-    names = {package if spec is not None and spec.origin is not None else module}  # a folder alone has no source
+    # a namespace package has no source file
+    names = {package if spec is not None and spec.origin is not None else module}
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
         names |= _packages_in_use(Path(file.origin).read_text(encoding="utf-8"))
@@ -98,46 +99,46 @@ def source_digest(name: str) -> str:
 
 
 @cache
-def _version(name: str) -> str:
+def _version_of(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError:
         return "absent"
 
 
-def provenance() -> dict[str, str]:
+def describe_provenance() -> dict[str, str]:
     """Versions, machine and commit, in the order a report shows them."""
     return {
         "phase-resonance": __version__,
-        "commit": _commit(),
+        "commit": _commit_of_checkout(),
         "python": platform.python_version(),
         **{name: version(name) for name in SHOWN},
         "exudyn module": import_module("multibody.models.engine").MODULE,
         "system": f"{platform.system()} {platform.release()} {platform.machine()}",
-        "processor": _processor(),
+        "processor": _processor_name(),
         "processors": str(os.cpu_count()),
     }
 
 
-def _commit() -> str:
+def _commit_of_checkout() -> str:
     """Commit of the checkout this package runs from; says so if it has changes, or if there is no checkout."""
     folder = Path(__file__).resolve().parents[2]
     try:
-        if Path(git(folder, "rev-parse", "--show-toplevel")).resolve() != folder:
+        if Path(ask_git(folder, "rev-parse", "--show-toplevel")).resolve() != folder:
             return "installed, not a checkout"
-        changed = git(folder, "status", "--porcelain", "--untracked-files=no")
-        return git(folder, "rev-parse", "HEAD") + (" with uncommitted changes" if changed else "")
+        changed = ask_git(folder, "status", "--porcelain", "--untracked-files=no")
+        return ask_git(folder, "rev-parse", "HEAD") + (" with uncommitted changes" if changed else "")
     except (OSError, subprocess.CalledProcessError):
         return "installed, not a checkout"
 
 
-def git(folder: Path, *arguments: str) -> str:
+def ask_git(folder: Path, *arguments: str) -> str:
     """Return what git says about a folder. Raises OSError or CalledProcessError."""
     done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 
 
-def _processor() -> str:
+def _processor_name() -> str:
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

@@ -18,13 +18,13 @@ class MappedAnalysis(Analysis[Result]):
     without_value: ClassVar[Any]  # makes the value of a task that returned none, from its argument and result
     needs_compiled_reference: ClassVar[bool] = True
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:
         """Return what the function is called with."""
         raise NotImplementedError
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One for each argument."""
-        compiled, arguments = self.needs_compiled_reference, self.arguments(study, surfaces)
+        compiled, arguments = self.needs_compiled_reference, self.task_arguments(study, surfaces)
         return [Task(self.function, each, self.stage, 1.0, each[0], compiled) for each in arguments]
 
     def values(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Any]:

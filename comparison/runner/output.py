@@ -56,7 +56,7 @@ def on_stderr(line: str) -> None:
     print(line, file=sys.stderr)
 
 
-def destination(path: Path, option: str = "--out") -> Path:
+def resolve_destination(path: Path, option: str = "--out") -> Path:
     """The folder that a path means, without symbolic links and "..". Raises SceneError where none can be made."""
     refusal = partial(SceneError, "command line", option, str(path))
     if path.name == ".." and set(path.parts) != {".."}:
@@ -86,7 +86,7 @@ def destination(path: Path, option: str = "--out") -> Path:
 
 
 def refuse_foreign_report(out: Path) -> None:
-    """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a `destination`."""
+    """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a destination."""
     refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
     refuse_other_page(out, REPORT)
@@ -107,7 +107,7 @@ def refuse_foreign_report(out: Path) -> None:
 
 
 def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
-    """Raise SceneError, one line, if files of these names in `out`, a `destination`, would replace ones of the user."""
+    """Raise SceneError, one line, if files of these names in `out`, a destination, would replace ones of the user."""
     manifest = read_manifest(out)
     for name in names if manifest else (MANIFEST, *names):
         if os.path.lexists(out / name) and not is_own(out / name, manifest.get(name)):
@@ -174,7 +174,7 @@ def clear_dead(out: Path) -> None:
         clear_staging(staging_folder)
 
 
-def publish(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path]:
+def publish_files(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path]:
     """Write files of a command into a folder; one that is not the study's stays, and is said. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
@@ -183,14 +183,14 @@ def publish(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path
             file, digest, manifest = folder / name, hash_of(content), read_manifest(folder)
             ours = is_own(file, manifest.get(name))
             if ours or not os.path.lexists(file):  # noted before: whatever ends the writing, the file remains ours
-                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))})
+                _write_manifest(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))})
             if ours:
                 write_atomically(file, content)
             else:
                 file = write_new(file, content)
             if file.name != name:
                 on_stderr(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} next to it")
-                _note(folder, manifest | {file.name: Own(command, (digest,))})
+                _write_manifest(folder, manifest | {file.name: Own(command, (digest,))})
             written.append(file)
     return written
 
@@ -200,7 +200,7 @@ def _old_or_new(old: Own | None, new: Own) -> Own:
     return Own(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
 
-def _note(folder: Path, manifest: Mapping[str, Own]) -> None:
+def _write_manifest(folder: Path, manifest: Mapping[str, Own]) -> None:
     """Write the manifest, unless something else has its name."""
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
         on_stderr(
@@ -210,7 +210,7 @@ def _note(folder: Path, manifest: Mapping[str, Own]) -> None:
         write_atomically(folder / MANIFEST, manifest_json(manifest))
 
 
-def netcdf(values: xr.Dataset) -> bytes:
+def netcdf_content(values: xr.Dataset) -> bytes:
     """The content of a netCDF file, made in memory: HDF5 ends the process where it cannot write all of a file."""
     return bytes(values.to_netcdf(engine="h5netcdf"))
 
@@ -240,7 +240,7 @@ def _install_report(new: Path, place: Path) -> Path:
             (there / name).unlink()
         with suppress(OSError):
             (there / name).parent.rmdir()
-    # before the files: whatever ends the moving, all of them are the study's own
+    # The manifest moves first: if the moving is interrupted, every file is known as the study's own
     replaced = {name: _old_or_new(old.get(name), own) for name, own in mine.items()}
     (new / MANIFEST).write_bytes(manifest_json(kept | replaced))
     for name in (MANIFEST, *mine):

@@ -38,10 +38,12 @@ except ImportError:  # Windows limits no process: the wall time has to do
 
 CONTEXT = multiprocessing.get_context("spawn")
 STALLED = 20.0  # times the limit: wall time after which a silent process waits for something that never comes
-SLOWEST, SPARE = 5.0, 60.0  # times a limit of more than a few seconds, and s: the same, on a processor that is shared
-LONGEST_WAIT = 1e6  # s: the system takes no longer one
+# A limit of more than a few seconds leaves less wall time: SLOWEST times the limit, for a shared processor, and SPARE s
+SLOWEST, SPARE = 5.0, 60.0
+LONGEST_WAIT = 1e6  # s, the longest timeout that the system takes
 EXIT = 5.0  # s from the end of a pipe to the end of its process
-SAFE_PATH = "PYTHONSAFEPATH"  # set: Python does not put the working directory in front of what it searches
+# Variable of the environment: where it is set, Python does not search the working directory first
+SAFE_PATH = "PYTHONSAFEPATH"
 
 Call = Callable[[], Any]
 Pool = Executor | Callable[[int], Executor]  # an executor that somebody else ends, or what makes one for N jobs
@@ -65,13 +67,13 @@ class ExecutorLostError(RuntimeError):
     """No task can be computed any more. `str(error)` is one line that says why."""
 
 
-def cores() -> int:
+def count_cores() -> int:
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager
-def executing(pool: Pool, jobs: int) -> Iterator[Executor]:
+def open_executor(pool: Pool, jobs: int) -> Iterator[Executor]:
     """The executor; one that is made for the block ends with it, and without waiting if the block raises."""
     if isinstance(pool, Executor):
         yield pool
@@ -165,9 +167,9 @@ class _Process:
 
     def __init__(self) -> None:
         self._pipe, theirs = CONTEXT.Pipe()
-        with _processes, _safe_path() as before, _deaf_to_ctrl_c():
+        with _processes, _safe_import_path() as before, _deaf_to_ctrl_c():
             about = theirs, gc.get_threshold(), before
-            self._process = CONTEXT.Process(target=_serve, args=about, daemon=True)
+            self._process = CONTEXT.Process(target=_serve_calls, args=about, daemon=True)
             self._process.start()
         theirs.close()
 
@@ -207,7 +209,7 @@ class _Process:
         self._pipe.close()
 
 
-def _serve(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
+def _serve_calls(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
     """
     Call what messages name until the parent of this process closes the pipe or ends.
 
@@ -229,11 +231,11 @@ def _call_function(message: bytes) -> bytes:
     error: BaseException | None = None
     try:
         call, seconds = pickle.loads(message)
-        _allow(seconds)
+        _limit_processor_time(seconds)
         try:
             value = call()
         finally:
-            _allow(None)
+            _limit_processor_time(None)
     except BaseException as raised:
         error = raised
     try:
@@ -246,7 +248,7 @@ def _call_function(message: bytes) -> bytes:
     return answer
 
 
-def _allow(seconds: float | None) -> None:
+def _limit_processor_time(seconds: float | None) -> None:
     """Let the system end this process after so much more processor time, s, rounded up; never for None."""
     if resource is None:
         return
@@ -268,7 +270,7 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _safe_path() -> Iterator[str | None]:
+def _safe_import_path() -> Iterator[str | None]:
     """A process started meanwhile does not search the working directory first. Yields what SAFE_PATH was."""
     before = os.environ.get(SAFE_PATH)
     _set_safe_path("1")

@@ -73,7 +73,7 @@ class Display:
 
 
 @contextmanager
-def progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
+def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
     """A display for as long as the block lasts; total: all work, rough s of processor time; jobs: workers."""
     if console.is_terminal:
         with Progress(BarColumn(), TextColumn("{task.fields[text]}", markup=False), console=console) as bars:

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 import reference
-from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, executing
+from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, open_executor
 from comparison.runner.progress import Display
 from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, result_without_value
 from comparison.runner.task_results import TaskResults
@@ -88,7 +88,7 @@ class Runner:
         self._total: Counter[str] = Counter()
         for work in self._queue:
             self._total[work.task.stage] += work.task.points
-        with executing(self.executor, min(self.jobs, len(self._queue))) as executor:
+        with open_executor(self.executor, min(self.jobs, len(self._queue))) as executor:
             self._sweep(executor)
 
     def _sweep(self, executor: Executor) -> None:
@@ -100,7 +100,7 @@ class Runner:
                 try:
                     self._fill(executor, arriving=True)  # workers go on while results are stored
                 finally:
-                    for work, future in sorted(arrived, key=lambda pair: isinstance(_error(pair[1]), LOST)):
+                    for work, future in sorted(arrived, key=lambda pair: isinstance(_error_of_future(pair[1]), LOST)):
                         self._take(work, future)
         except BaseException:
             for future in self._at_work:
@@ -123,7 +123,7 @@ class Runner:
                 self._at_work[_start_task(work.task, executor)] = work
 
     def _take(self, work: _Work, future: Future[TaskResult]) -> None:
-        error = _error(future)
+        error = _error_of_future(future)
         if error is None:
             self._keep(work, future.result())
         elif isinstance(error, WorkerDiedError):
@@ -180,7 +180,7 @@ def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
         raise ExecutorLostError(f"the executor is broken: {error}") from None
 
 
-def _error(future: Future[TaskResult]) -> BaseException | None:
+def _error_of_future(future: Future[TaskResult]) -> BaseException | None:
     """Return what the task raised, None if nothing."""
     try:
         return future.exception()

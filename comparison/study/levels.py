@@ -39,24 +39,26 @@ def levels_of(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
     studies: list[Study] = []
     for number, most in enumerate(MOST, start=1):
         later = [key for key in made if first[key] > number]
-        coarse = _coarser(study, most)
+        coarse = _coarser_study(study, most)
         studies.append(replace(coarse, selection=coarse.selection.without(later)))
     studies.append(study)
     different = [
-        each for each, finer in zip(studies, [*studies[1:], None]) if finer is None or _work(each) != _work(finer)
+        each
+        for each, finer in zip(studies, [*studies[1:], None])
+        if finer is None or _work_of_study(each) != _work_of_study(finer)
     ]
     return [StudyLevel(each, number, len(different)) for number, each in enumerate(different, start=1)]
 
 
-def _work(study: Study) -> tuple[object, ...]:
+def _work_of_study(study: Study) -> tuple[object, ...]:
     """Return what is computed."""
     return study.grid, tuple(study.strides.items()), study.selection
 
 
-def _coarser(study: Study, most: Mapping[str, float]) -> Study:
+def _coarser_study(study: Study, most: Mapping[str, float]) -> Study:
     """The study on the finest of the nested grids of every model that has no more phases per axis than its `most`."""
     strides = {
-        model.key: _stride(study, model, most["spatial" if model.is_spatial else model.side])
+        model.key: _stride_at_level(study, model, most["spatial" if model.is_spatial else model.side])
         for model in study.hierarchy
     }
     shared = gcd(*strides.values())  # the equations have every phase of the coarser study
@@ -70,9 +72,9 @@ def _coarser(study: Study, most: Mapping[str, float]) -> Study:
     return replace(study, grid=grid, hierarchy=hierarchy)
 
 
-def _stride(study: Study, model: Model, most: float) -> int:
+def _stride_at_level(study: Study, model: Model, most: float) -> int:
     """Return every which of the study's phases a model has at a level with at most `most` per axis."""
-    stride, phases = study.strides[model.key], len(study.axis(model))
+    stride, phases = study.strides[model.key], len(study.phase_indices(model))
     if stride * phases != study.grid:  # the last phase and the first are closer than the others: no grid is nested
         return stride
     chain = nested_grids(phases)

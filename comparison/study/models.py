@@ -18,7 +18,7 @@ REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: 
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
 
-def dry(scene: Scene) -> bool:
+def has_dry_friction(scene: Scene) -> bool:
     """Return whether there is dry friction, which may be regularized."""
     return scene.has_dry_friction
 
@@ -28,12 +28,12 @@ def any_scene(scene: Scene) -> bool:
     return True
 
 
-def smooth(scene: Scene) -> bool:
+def has_smooth_friction(scene: Scene) -> bool:
     """Return whether no friction is dry, so that both readings of (5.1) are the same."""
-    return not dry(scene)
+    return not has_dry_friction(scene)
 
 
-def never(scene: Scene) -> bool:
+def no_scene(scene: Scene) -> bool:
     """Return False: for a property of a model that no scene gives it."""
     return False
 
@@ -104,7 +104,7 @@ class Model:
     assumptions: Mapping[str, str]
     batch: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
-    symmetric: Callable[[Scene], object] = field(default=never)  # true or false
+    symmetric: Callable[[Scene], object] = field(default=no_scene)  # true or false
     applies: Callable[[Scene], bool] = field(default=any_scene)
     refusal: str | None = None
     effect: str = ""
@@ -154,7 +154,7 @@ class Pair:
 def label_of(model: Model, scene: Scene) -> str:
     """Return the title of a model with the reading of (5.1) that its mu has; without it where both are the same."""
     title = model.title.removesuffix(f", {model.reading}")
-    return title if smooth(scene) else f"{title}, {model.reading}"
+    return title if has_smooth_friction(scene) else f"{title}, {model.reading}"
 
 
 def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
@@ -261,9 +261,9 @@ _PEAK = "largest value the computed motion reaches"
 _RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
 
-def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
-    """The model after `before`: the same but for `changes`, and for the assumptions in which it `departs`."""
-    return replace(before, assumptions={**before.assumptions, **departs}, **changes)
+def _model_after(before: Model, changed_assumptions: Mapping[str, str], **changes: Any) -> Model:
+    """Return the model after `before`: the same but for other assumptions, by key, and other fields, by name."""
+    return replace(before, assumptions={**before.assumptions, **changed_assumptions}, **changes)
 
 
 SMALL = Model(
@@ -287,10 +287,10 @@ SMALL = Model(
     batch=64,
     symmetric=any_scene,
     reading=LITERAL_SUPREMUM,
-    in_chain=smooth,
+    in_chain=has_smooth_friction,
     seconds=0.0005,
 )
-EXACT = _next(
+EXACT = _model_after(
     SMALL,
     {
         "equations": "(3.9)-(3.13), errata corrected",
@@ -303,7 +303,7 @@ EXACT = _next(
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
-SMALL_RESOLVED = _next(
+SMALL_RESOLVED = _model_after(
     SMALL,
     {"mu_i": _RESOLVED_PEAK},
     key="small-resolved",
@@ -311,23 +311,23 @@ SMALL_RESOLVED = _next(
     adds=f"The same motion, read at rest and while sliding faster than v_c = {V_C_TEXT}: what an integration of the "
     "printed equations with steps of about 1 ms sees, as the paper's own.",
     settings={**SMALL.settings, "cutoff": DEFAULT_V_C},
-    applies=dry,
+    applies=has_dry_friction,
     reading=AS_INTEGRATED,
     in_chain=any_scene,
 )
-RESOLVED = _next(
+RESOLVED = _model_after(
     EXACT,
     {"mu_i": _RESOLVED_PEAK},
     key="resolved",
     title="exact equations, as integrated",
     adds="The whole sphere, read like the small equations as integrated.",
     settings={**EXACT.settings, "cutoff": DEFAULT_V_C},
-    applies=dry,
+    applies=has_dry_friction,
     reading=AS_INTEGRATED,
     in_chain=any_scene,
 )
 _LINEAR = {"friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}", "mu_i": _PEAK}
-SMALL_REGULARIZED = _next(
+SMALL_REGULARIZED = _model_after(
     SMALL_RESOLVED,
     _LINEAR,
     key="small-regularised",
@@ -336,10 +336,10 @@ SMALL_REGULARIZED = _next(
     adds=f"The printed equations with friction that is linear below v_reg = {V_REG_TEXT}, as most codes have it: what "
     "geometry adds under that law is seen from here.",
     settings={"equations": "small", "regularization": DEFAULT_V_REG},
-    in_chain=never,
+    in_chain=no_scene,
     seconds=0.001,
 )
-REGULARIZED = _next(
+REGULARIZED = _model_after(
     RESOLVED,
     _LINEAR,
     key="regularised",
@@ -347,10 +347,10 @@ REGULARIZED = _next(
     effect="regularized friction",
     adds=f"Friction linear below v_reg = {V_REG_TEXT}, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": DEFAULT_V_REG},
-    applies=dry,
+    applies=has_dry_friction,
     seconds=0.001,
 )
-TRANSLATIONAL = _next(
+TRANSLATIONAL = _model_after(
     REGULARIZED,
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
@@ -374,7 +374,7 @@ TRANSLATIONAL = _next(
     most=16,
     seconds=0.06,
 )
-SPATIAL = _next(
+SPATIAL = _model_after(
     TRANSLATIONAL,
     {
         "geometry": "exact spheres at the supports, bodies as boxes at their heights, offsets and angles",
@@ -405,9 +405,9 @@ BESIDE_THE_CHAIN = (
 )
 
 
-def _soften(model: Model, applies: Callable[[Scene], bool]) -> Model:
+def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
     """The step after an engine model that softens its bars."""
-    return _next(
+    return _model_after(
         model,
         {"links": "bars as soft as the weight that they carry makes them"},
         key=f"{SOFTENED}{model.key}",
@@ -419,8 +419,8 @@ def _soften(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-SOFTENED_TRANSLATIONAL = _soften(TRANSLATIONAL, with_unloaded_bars)
-SOFTENED_SPATIAL = _soften(SPATIAL, with_unloaded_bars_in_space)
+SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, with_unloaded_bars)
+SOFTENED_SPATIAL = _soften_model(SPATIAL, with_unloaded_bars_in_space)
 
 
 def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:

@@ -35,37 +35,37 @@ class Omission(NamedTuple):
     scenes: tuple[str, ...]
 
 
-def reductions(study: Study) -> list[Omission]:
+def list_omissions(study: Study) -> list[Omission]:
     """Everything that the scenes of the study do not require and that is therefore not computed."""
     scenes: dict[tuple[str, str, str], list[str]] = {}
     for scene in () if study.full else study.scenes:
-        for row in _of(study, scene):
+        for row in _omissions_of_scene(study, scene):
             scenes.setdefault(row, []).append(scene.name)
     return [Omission(*row, tuple(names)) for row, names in scenes.items()]
 
 
-def _of(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
+def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
     models = [model for model in study.hierarchy if model.applies(scene)]
     shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
     for share in sorted(set(shares) - {1.0}, reverse=True):
         concerned = [model for model, own in zip(models, shares) if own == share]
-        yield f"mirrored phases, all but 1/{share:.3g}", _titles(concerned, models), _mirror(scene)
+        yield f"mirrored phases, all but 1/{share:.3g}", _titles_of_models(concerned, models), _word_mirror(scene)
     if no_friction(scene):
         others = [model for model in study.hierarchy if model not in models]
         laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
         if laws:
-            yield "laws of friction", _titles(laws, study.hierarchy), no_friction(scene).reason
+            yield "laws of friction", _titles_of_models(laws, study.hierarchy), no_friction(scene).reason
     for what, decided, setting, values in LEFT_OUT:
         concerned = [model for model in models if model.settings.get(setting) in values]
         if concerned and (reduction := decided(scene)):
-            yield what, _titles(concerned, models), reduction.reason
+            yield what, _titles_of_models(concerned, models), reduction.reason
 
 
-def _mirror(scene: Scene) -> str:
+def _word_mirror(scene: Scene) -> str:
     if unused_harmonics(scene):
         return "a harmonic without amplitude: its phase changes nothing"
     return (own_axes(scene) or half_turn(scene)).reason
 
 
-def _titles(concerned: Sequence[Model], models: Sequence[Model]) -> str:
+def _titles_of_models(concerned: Sequence[Model], models: Sequence[Model]) -> str:
     return "all models" if len(concerned) == len(models) else ", ".join(model.key for model in concerned)

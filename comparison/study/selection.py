@@ -93,7 +93,7 @@ def select_names(
     return tuple(each.name for each in analyses if each.name in kept and (each.needs or each.name) in kept)
 
 
-def select(
+def make_selection(
     analyses: Sequence[Selectable],
     scenes: Iterable[Scene],
     only: Sequence[str] | None,

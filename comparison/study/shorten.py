@@ -5,7 +5,7 @@ import numpy as np
 from reference.problem import Scene, exponents
 
 
-def shorten(scene: Scene, periods: float) -> Scene:
+def shorten_scene(scene: Scene, periods: float) -> Scene:
     """Return the scene with at most `periods` periods of its slower harmonic."""
     longest = float(2.0 * np.pi / exponents(scene).imag.min())
     return scene.with_values({"duration": min(scene.duration, periods * longest)})

@@ -17,6 +17,9 @@ from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
 
+# Relative error of every mu where --tolerance is not given, as the engine's own default; also of analyses by the engine
+STUDY_TOLERANCE = 1e-3
+
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
     """Raise SceneError, one line, if a name of a scene or family is there twice; names: source and name."""
@@ -44,11 +47,11 @@ def nested_grids(grid: int) -> tuple[int, ...]:
     return tuple(accumulate(factors, mul)) or (1,)
 
 
-def levels(grid: int) -> NDArray[np.intp]:
+def levels_of_phases(grid: int) -> NDArray[np.intp]:
     """
     Return which of `nested_grids` is the first with each phase of an axis.
 
-    >>> levels(8).tolist()
+    >>> levels_of_phases(8).tolist()
     [0, 2, 1, 2, 0, 2, 1, 2]
     """
     level = np.zeros(grid, dtype=np.intp)
@@ -121,7 +124,7 @@ class Study:
         """The model's stride; in a scene without phases the whole grid."""
         return self.grid if scene is not None and scene.recorded else self.strides[model.key]
 
-    def axis(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
+    def phase_indices(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
         """
         Return which of the `grid` phases of either axis a model computes, in a scene with phases if none is given.
         """
@@ -129,29 +132,29 @@ class Study:
 
     def points(self, model: Model, scene: Scene | None = None) -> int:
         """Phase pairs of one surface of this model."""
-        return len(self.axis(model, scene)) ** 2
+        return len(self.phase_indices(model, scene)) ** 2
 
     def places(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
         """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
-        axis = self.axis(model, scene)
+        axis = self.phase_indices(model, scene)
         return (self.grid * axis[:, None] + axis).ravel()
 
-    def sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
+    def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
         """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
         places = self.places(model, scene)
         if scene.recorded:
             return places
         even = self.grid % self.strides[model.key] == 0  # else the last phase and the first are closer than the others
         return (
-            places[indices_of_solved_pairs(scene, len(self.axis(model)))]
+            places[indices_of_solved_pairs(scene, len(self.phase_indices(model)))]
             if model.symmetric(scene) and even and not self.full
             else places
         )
 
     def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
         """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
-        solved, stride = np.unique(self.sources(scene, model)), self.stride(model, scene)
-        level = levels(len(self.axis(model, scene)))
+        solved, stride = np.unique(self.symmetric_sources(scene, model)), self.stride(model, scene)
+        level = levels_of_phases(len(self.phase_indices(model, scene)))
         first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
         return [solved[first == number] for number in range(level.max() + 1)]
 

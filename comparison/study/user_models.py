@@ -29,10 +29,11 @@ from reference.problem import Amplification, Outcome, Scene
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
 LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
-LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]  # that an engine may be compared with
-MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
+# Keys of the models that an engine may be compared with
+LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
+MOST = 8  # phases per axis that an engine is asked for at most: what a call costs is unknown
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
-ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
+ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # arguments that a function gets wherever it names them
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # error of an engine that states none
 LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
@@ -49,7 +50,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
     """
     Return what a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names.
     """
-    with quiet():
+    with silence_output():
         function = user_function(engine["function"])
         begin = _processor_time()
         try:
@@ -60,7 +61,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
             note_line(error, _file_of(function))
             raise
         seconds = _processor_time() - begin
-        return _read(answer, len(phases), len(scene.bodies), seconds)
+        return _read_answer(answer, len(phases), len(scene.bodies), seconds)
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
@@ -148,7 +149,7 @@ def _names_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict
     return {key: value for key, value in settings.items() if key in names}
 
 
-def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
+def _read_answer(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
     """An answer of any accepted form: an object with `mu`, an array mu, or a tuple (mu, error)."""
     if hasattr(answer, "mu"):
         mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
@@ -162,11 +163,11 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
         parts, outcomes = {"error": rest[0] if rest else None}, None
     shapes = {"mu": (points, bodies), "error": (points, bodies), "instant": (points,), "displacement": (points,)}
     arrays: dict[str, Any] = {
-        name: _array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()
+        name: _check_array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()
     }
     mu, error = arrays["mu"], arrays["error"]
     error[~(error >= 0.0)] = UNKNOWN_ERROR
-    status, error_message = _outcomes(outcomes, points)
+    status, error_message = _read_outcomes(outcomes, points)
     drop_unusable(mu, error, status, own=False)
     missing = np.isnan(mu).any(axis=1)
     for point in np.flatnonzero(missing).tolist():
@@ -177,7 +178,7 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
     return EngineAnswer(status=np.array(status), cost=seconds, error_message=error_message, **arrays)
 
 
-def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     """A new array of this shape; NaN without a value."""
     if value is None:
         return np.full(shape, np.nan)
@@ -190,7 +191,7 @@ def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
         return array.astype(float)
 
 
-def _outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
+def _read_outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
     """The outcomes that the engine states, "solver failed" in place of its own words, and a message with these."""
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
@@ -209,12 +210,12 @@ def _processor_time() -> float:
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def silence_output() -> Iterator[None]:
     """Drop what the block prints, also from compiled code, and give it nothing to read; in a worker process only."""
     if multiprocessing.parent_process() is None:
         yield
         return
-    _flush()
+    _flush_output()
     kept = [os.dup(number) for number in range(3)]
     nothing = os.open(os.devnull, os.O_RDWR)
     try:
@@ -222,14 +223,14 @@ def quiet() -> Iterator[None]:
             os.dup2(nothing, number)
         yield
     finally:
-        _flush()
+        _flush_output()
         for number, before in enumerate(kept):
             os.dup2(before, number)
         for number in (*kept, nothing):
             os.close(number)
 
 
-def _flush() -> None:
+def _flush_output() -> None:
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()

@@ -11,7 +11,7 @@ from comparison.result_types import Number, Phases, Text, result
 from comparison.study.models import models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.budget import closure
+from comparison.surfaces.budget import closure_error
 from comparison.surfaces.differences import AGREEMENT, Difference
 from comparison.surfaces.statements import word_breach
 from comparison.surfaces.unanswered import Unanswered
@@ -65,7 +65,9 @@ def check_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unansw
 def pairs_without_limit(study: Study, scene: Scene) -> list[str]:
     """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
     stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.differences()]
-    limited = {_same(study, scene, pair) for pair, _ in stated} | set(_engines_without_limits(study, scene))
+    limited = {_name_of_same_pair(study, scene, pair) for pair, _ in stated} | set(
+        _engines_without_limits(study, scene)
+    )
     return [pair.key for pair in study.pairs(scene) if pair.key not in limited]
 
 
@@ -83,16 +85,16 @@ def _check_limit(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -
     engines = _engines_without_limits(study, scene)
     defaults = [(f"{key}.ratio", key, "ratio", AGREEMENT) for key in engines]
     for key, pair, measure, allowed in (*stated.differences(), *defaults):
-        compared = [row for row in rows if row.pair == _same(study, scene, pair)]
+        compared = [row for row in rows if row.pair == _name_of_same_pair(study, scene, pair)]
         if any(row.asked > row.unanswered for row in compared):
             missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
-            breaches = _beyond([(row.body, getattr(row, measure), row) for row in compared], allowed, missing)
+            breaches = _breaches_beyond([(row.body, getattr(row, measure), row) for row in compared], allowed, missing)
         else:
             breaches = (Breach(0, NAN, f"nothing to compare ({_why_not(study, scene, pair, gaps)})"),)
         yield Limit(scene.name, key, allowed, breaches, pair in engines)
     if stated.closure is not None:
-        remainders = [(body.body, closure(body), None) for body in bodies]
-        yield Limit(scene.name, "closure", stated.closure, _beyond(remainders, stated.closure))
+        remainders = [(body.body, closure_error(body), None) for body in bodies]
+        yield Limit(scene.name, "closure", stated.closure, _breaches_beyond(remainders, stated.closure))
     allowed_points = 0 if engines and stated.failures is None else stated.failures
     if allowed_points is not None:
         counted = [gap for gap in gaps if stated.failures is not None or gap.model in engines]
@@ -105,7 +107,7 @@ def _check_limit(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -
         )
 
 
-def _beyond(
+def _breaches_beyond(
     values: Sequence[tuple[int, float, Difference | None]], allowed: float, missing: str = "no phase pair to compare"
 ) -> tuple[Breach, ...]:
     """The bodies whose value is not within the limit; no value is not within any, for the reason `missing`."""
@@ -116,7 +118,7 @@ def _beyond(
     )
 
 
-def _same(study: Study, scene: Scene, pair: str) -> str:
+def _name_of_same_pair(study: Study, scene: Scene, pair: str) -> str:
     """The pair under which a study compares these models: the translational difference may be the total one."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]

@@ -41,7 +41,7 @@ class Alert(Part):
         return f"{self.scene}: {self.text}{f'. {self.help[0].upper()}{self.help[1:]}' if self.help else ''}"
 
 
-def alerts(
+def list_alerts(
     study: Study,
     surfaces: xr.Dataset,
     unanswered: Sequence[Unanswered],
@@ -49,11 +49,11 @@ def alerts(
     faults: Sequence[Alert],
 ) -> list[Alert]:
     """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
-    listed = [*_gaps(unanswered), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
+    listed = [*_alerts_of_gaps(unanswered), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
-def _gaps(unanswered: Sequence[Unanswered]) -> list[Alert]:
+def _alerts_of_gaps(unanswered: Sequence[Unanswered]) -> list[Alert]:
     rows = []
     for lacking in unanswered:
         refused = lacking.points + lacking.unusable == lacking.asked

@@ -105,6 +105,6 @@ def independent_phases(
     orbits = np.empty((len(places), len(models)), dtype=np.intp)
     for column, model in enumerate(models):
         orbit = np.full(study.grid**2, -1)
-        orbit[reduced.places(model, scene)] = reduced.sources(scene, model)
+        orbit[reduced.places(model, scene)] = reduced.symmetric_sources(scene, model)
         orbits[:, column] = orbit[places]
     return len(np.unique(orbits, axis=0))

@@ -13,7 +13,7 @@ import numpy as np
 from comparison.result_types import Array, Number, result
 from comparison.study.models import Pair
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.differences import DifferenceStatistics, statistics
+from comparison.surfaces.differences import DifferenceStatistics, difference_statistics
 from comparison.surfaces.surfaces import values_of
 
 TOTAL = "total"
@@ -37,16 +37,16 @@ class BudgetEntry(DifferenceStatistics):
     points: Annotated[int, "phase pairs where both models have a value"]
 
 
-def budget(comparisons: Iterable[BodyComparison]) -> list[BudgetEntry]:
+def budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEntry]:
     """Return every entry of the table, in the order scene, body, step."""
     return [
-        _entry(comparison, pair, key)
+        _budget_entry(comparison, pair, key)
         for comparison in comparisons
         for key, pair in [*((pair.second.key, pair) for pair in comparison.chain_pairs), (TOTAL, comparison.total_pair)]
     ]
 
 
-def closure(comparison: BodyComparison) -> float:
+def closure_error(comparison: BodyComparison) -> float:
     """Return the largest |sum of the steps - total| relative to mu of the first model: rounding; NaN without a common
     point."""
     total = comparison.difference(comparison.total_pair)
@@ -64,10 +64,10 @@ def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
     return float(np.hypot(*np.minimum(apart, 2.0 * np.pi - apart)))
 
 
-def _entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEntry:
+def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEntry:
     scene, difference = comparison.scene.name, comparison.difference(pair)
     known = difference.known
-    about: dict[str, Any] = {**statistics(scene, difference), "step": key, "points": int(known.sum())}
+    about: dict[str, Any] = {**difference_statistics(scene, difference), "step": key, "points": int(known.sum())}
     if not known.any():
         names = ("rms", "resolved", "unresolved", "error_estimate", "peak_moves", "correlation")
         return BudgetEntry(**about | dict.fromkeys(names, float("nan")))

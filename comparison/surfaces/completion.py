@@ -140,7 +140,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
             for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
                 # with supports that stop one by one no surface may be interpolated
                 lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
-                if lacks and _finer(study, scene, model):
+                if lacks and _finer_model(study, scene, model):
                     phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
                     about = scene, model, model.arguments(study.tolerance, study.full)
                     parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
@@ -184,7 +184,7 @@ def largest_share(held_out: int) -> float:
     return float(1.0 - (1.0 - CONFIDENCE) ** (1.0 / held_out)) if held_out else 1.0
 
 
-def completions(
+def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
     """A completion for every body of every model that lacks phases, or is spatial on few, in their order."""
@@ -192,11 +192,11 @@ def completions(
         return []
     models, listed = study.compared(scene), []
     for model in models:
-        few = len(study.axis(model)) < MIN_SPATIAL_PER_AXIS
+        few = len(study.phase_indices(model)) < MIN_SPATIAL_PER_AXIS
         if study.stride(model) > 1 or (few and model.is_spatial):
-            finer, unused = _finer(study, scene, model), (held_out or {}).get((scene.name, model.key))
+            finer, unused = _finer_model(study, scene, model), (held_out or {}).get((scene.name, model.key))
             for body in range(1, len(scene.bodies) + 1):
-                listed.append(_completion(study, surfaces, scene, models[0], finer, model, body, unused))
+                listed.append(_complete_body(study, surfaces, scene, models[0], finer, model, body, unused))
     return listed
 
 
@@ -216,13 +216,13 @@ def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dat
     return found
 
 
-def _finer(study: Study, scene: Scene, model: Model) -> Model | None:
+def _finer_model(study: Study, scene: Scene, model: Model) -> Model | None:
     """The nearest model before it that has all phases."""
     models = study.compared(scene)
     return next((before for before in reversed(models[: models.index(model)]) if study.stride(before) == 1), None)
 
 
-def _completion(
+def _complete_body(
     study: Study,
     surfaces: xr.Dataset,
     scene: Scene,
@@ -232,7 +232,7 @@ def _completion(
     body: int,
     unused: HeldOut | None,
 ) -> Completion:
-    count, asked = len(study.axis(model)), model.tolerance(study.tolerance)
+    count, asked = len(study.phase_indices(model)), model.tolerance(study.tolerance)
 
     about = scene.name, model.key, finer.key if finer else "", body
 
@@ -258,7 +258,9 @@ def _completion(
         return refuse(f"{computed} values are too few for a surface", computed)
     if unused is None:
         return refuse("no phase pairs were held out to check an interpolation", computed)
-    surface = fine + interpolate(gap, phase_axis(study.grid)[study.axis(model)], phase_axis(study.grid))
+    surface = fine + interpolate_on_phases(
+        gap, phase_axis(study.grid)[study.phase_indices(model)], phase_axis(study.grid)
+    )
     truth_error = unused.error[:, body - 1]
     truth = drop_worthless(unused.mu[:, body - 1], truth_error)
     missed = np.abs(surface.ravel()[choose_held_out(study, scene, model)] - truth) / truth
@@ -283,14 +285,14 @@ def _completion(
     )
 
 
-def interpolate(values: Array, phase: Array, every: Array) -> Array:
+def interpolate_on_phases(values: Array, phase: Array, every: Array) -> Array:
     """Values (K, K) at phases (K,), NaN where not known, by thin plates at the phases `every` (L,), rad."""
     known = np.isfinite(values.ravel())
-    made: Array = RBFInterpolator(_torus(phase)[known], values.ravel()[known])(_torus(every))
+    made: Array = RBFInterpolator(_torus_coordinates(phase)[known], values.ravel()[known])(_torus_coordinates(every))
     return made.reshape(len(every), len(every))
 
 
-def _torus(phase: Array) -> Array:
+def _torus_coordinates(phase: Array) -> Array:
     """The phase pairs of a square grid on a torus in four dimensions, (K^2, 4): functions of it are periodic."""
     alpha1, alpha2 = (axis.ravel() for axis in np.meshgrid(phase, phase, indexing="ij"))
     return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)

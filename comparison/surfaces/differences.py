@@ -92,7 +92,7 @@ class Difference(DifferenceStatistics):
         return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED * self.numerical_error
 
 
-def statistics(scene: str, difference: ModelDifference) -> dict[str, Any]:
+def difference_statistics(scene: str, difference: ModelDifference) -> dict[str, Any]:
     """Return the fields of `DifferenceStatistics`."""
     size = np.abs(difference.size[difference.known])
     median, percentile95, maximum = (fractile(size, p) if size.size else np.nan for p in (0.5, 0.95, 1.0))
@@ -119,7 +119,7 @@ def difference_row(scene: str, difference: ModelDifference, independent: int, no
     ends = difference.place_of(-size), difference.place_of(size)
     readings = dict.fromkeys((pair.first.reading, pair.second.reading))
     return Difference(
-        **statistics(scene, difference),
+        **difference_statistics(scene, difference),
         pair=pair.key,
         effect=pair.effect,
         reading=" to ".join(readings),

@@ -51,10 +51,10 @@ class GridMaximum:
     phases: Annotated[Phases, "(alpha1, alpha2), rad; null under a record"]
 
 
-def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Distribution]:
+def compute_distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Distribution]:
     """One for each model and body with an answer, in this order."""
     listed = []
-    for model, body, mu, error in _each(study, surfaces, scene):
+    for model, body, mu, error in _usable_values(study, surfaces, scene):
         known = mu[np.isfinite(mu)]
         if known.size:
             taken = phase_distribution(mu, error)
@@ -68,7 +68,7 @@ def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Dist
 def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMaximum]:
     """One per model and body, in this order. Of phase pairs with the same value it is the first."""
     maxima, nan = [], float("nan")
-    for model, body, mu, error in _each(study, surfaces, scene):
+    for model, body, mu, error in _usable_values(study, surfaces, scene):
         if not np.isfinite(mu).any():
             maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
             continue
@@ -79,7 +79,7 @@ def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMa
     return maxima
 
 
-def _each(study: Study, surfaces: xr.Dataset, scene: Scene) -> Iterator[tuple[Model, int, Array, Array]]:
+def _usable_values(study: Study, surfaces: xr.Dataset, scene: Scene) -> Iterator[tuple[Model, int, Array, Array]]:
     """Every model and body with its usable values and their errors, on the phases that the model was asked for."""
     for model in models_of(scene, study.hierarchy):
         of_bodies = zip(usable_mu(surfaces, scene.name, model), values_of(surfaces, "error", scene.name, model))

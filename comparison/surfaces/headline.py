@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Annotated
 
 from comparison.result_types import Number, Phases, Text, result
-from comparison.study.models import Model, chain_of, models_of, partner_of, smooth
+from comparison.study.models import Model, chain_of, has_smooth_friction, models_of, partner_of
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.differences import Difference
 from comparison.surfaces.statements import name_engine, word_engine, word_engine_without_values, word_headline
@@ -117,7 +117,7 @@ class Headline:
         return next(effect for effect in self.effects if effect.effect == name)
 
 
-def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
+def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
     """Return the headline of one body; bars: its waterfall."""
     total, pair, largest = comparison.total, comparison.total_pair, bars.largest
     scene = comparison.scene
@@ -128,7 +128,7 @@ def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         scene=scene.name,
         body=comparison.body,
         name="platform" if comparison.body == 1 else f"body {comparison.body}",
-        reading=BOTH_READINGS if smooth(scene) else total.reading,
+        reading=BOTH_READINGS if has_smooth_friction(scene) else total.reading,
         first=pair.first.key,
         first_name=_name_in_words(pair.first, chain_of(scene, comparison.study.hierarchy)),
         second=pair.second.key,

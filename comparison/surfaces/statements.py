@@ -8,7 +8,7 @@ from itertools import groupby
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from comparison.wording import degrees, difference, more_or_less, percent, signed
+from comparison.wording import degrees, difference_with_error, more_or_less, percent, signed
 from reference.problem.readings import BOTH_READINGS
 
 if TYPE_CHECKING:
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from comparison.surfaces.headline import Effect, Headline
 
 
-SAME = 1e-6  # share of mu: the error asked of the equations
+# Relative difference below which two mu are called the same: the error asked of the equations
+SAME = 1e-6
 UNRESOLVED = "less than five times the numerical error"
 NAMED = 4  # scenes that a sentence names one by one
 
@@ -38,7 +39,7 @@ def word_total(numbers: Headline) -> str:
     if not numbers.points:
         where = "" if numbers.phases_per_axis == 1 else " at any phase pair"
         return f"the models from {first} to {second} have no value in common{where}."
-    size = difference(numbers.mean, numbers.error)
+    size = difference_with_error(numbers.mean, numbers.error)
     if numbers.phases_per_axis == 1:
         if numbers.resolved:
             return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
@@ -69,7 +70,9 @@ def word_range(numbers: Headline) -> str:
         (numbers.low, numbers.low_error, numbers.low_phases),
         (numbers.high, numbers.high_error, numbers.high_phases),
     )
-    (low, high) = (f"{difference(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends)
+    (low, high) = (
+        f"{difference_with_error(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends
+    )
     return low if numbers.low == numbers.high else f"from {low} to {high}"
 
 
@@ -92,7 +95,7 @@ def word_causes(numbers: Headline) -> str:
 def word_effect(effect: Effect) -> str:
     """Return one cause with its mean, its share of the total, and its mean in another order where that differs."""
     other = f", {signed(effect.elsewhere)} {effect.order}" if effect.depends_on_order else ""
-    return f"{effect.effect} {difference(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
+    return f"{effect.effect} {difference_with_error(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
 
 
 def word_agreement(numbers: Headline) -> str:
@@ -143,7 +146,7 @@ def word_engine(row: Difference, title: str, like: str) -> str:
     places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
     pairs = "1 phase pair lacks" if row.unanswered == 1 else f"{row.unanswered} phase pairs lack"
     lacking = f", as {pairs} a usable value" if row.unanswered else ""
-    mean = difference(row.mean, row.error)
+    mean = difference_with_error(row.mean, row.error)
     sizes = f"{mean} in the mean over {places}{lacking}, and by {signed(row.largest)} at most,{where}"
     return f"{name_engine(title)} differs from the {like} by {sizes}: {verdict}."
 
@@ -204,11 +207,11 @@ def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
     """Return which pairs of models of which scenes no limit holds; "" where all are checked."""
     lacking = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
     groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(lacking, lambda each: each[0])]
-    listed = "; ".join(f"{', '.join(pairs)} of {_some(scenes)}" for pairs, scenes in groups)
+    listed = "; ".join(f"{', '.join(pairs)} of {_name_some(scenes)}" for pairs, scenes in groups)
     return f"not checked, as no limit is stated: {listed}" if listed else ""
 
 
-def _some(names: Sequence[str]) -> str:
+def _name_some(names: Sequence[str]) -> str:
     """The first of many names, and how many more there are."""
     rest = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     return f"{', '.join(names[:NAMED])}{rest}"
@@ -232,7 +235,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
     """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
-    size = difference(abs(largest.mean), largest.error).removeprefix("+")
+    size = difference_with_error(abs(largest.mean), largest.error).removeprefix("+")
     over = " in the mean over the initial phases" if largest.phases_per_axis > 1 else " under the record"
     than = "lower" if largest.mean < 0.0 else "higher"
     rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
@@ -240,7 +243,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
     if phased:
         low = min((each.low, each.low_error) for each in phased)
         high = max((each.high, each.high_error) for each in phased)
-        single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs"
+        single = f", and by {difference_with_error(*low)} to {difference_with_error(*high)} at single phase pairs"
     first = " or ".join(sorted({each.first_name for each in known}))
     second = " or ".join(sorted({each.second_name for each in known}))
     # what is the same in both readings is also that of the others
@@ -290,7 +293,7 @@ def word_difference_cell(numbers: Headline) -> str:
         return "no value in common"
     if math.isnan(numbers.error) and numbers.phases_per_axis > 1:
         return f"{signed(numbers.mean)}, too few phases for an error"
-    return difference(numbers.mean, numbers.error)
+    return difference_with_error(numbers.mean, numbers.error)
 
 
 def word_range_cell(numbers: Headline) -> str:

@@ -86,7 +86,7 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for model in models_of(scene, study.hierarchy):
-            place, source = study.places(model, scene), study.sources(scene, model)
+            place, source = study.places(model, scene), study.symmetric_sources(scene, model)
             for array in values.values():
                 of_model = array[row, models.index(model.key)]
                 of_model[..., place] = of_model[..., source]
@@ -134,13 +134,15 @@ def largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> floa
 def stride_of(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
     """Every which of the study's phases all these models were asked for."""
     strides = surfaces.variables["stride"].values
-    return int(max(strides[_place(surfaces, scene, model)] for model in models))
+    return int(max(strides[_place_of_model(surfaces, scene, model)] for model in models))
 
 
 def values_of(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> NDArray[Any]:
     """A variable of the first model, by body where it has some, at the phases that all these models were asked for."""
     every = slice(None, None, stride_of(surfaces, scene, *models))
-    values: NDArray[Any] = surfaces.variables[name].values[(*_place(surfaces, scene, models[0]), ..., every, every)]
+    values: NDArray[Any] = surfaces.variables[name].values[
+        (*_place_of_model(surfaces, scene, models[0]), ..., every, every)
+    ]
     return values
 
 
@@ -149,6 +151,6 @@ def outcome_counts(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, 
     return dict(Counter(values_of(surfaces, "status", scene, model).ravel().tolist()).most_common())
 
 
-def _place(surfaces: xr.Dataset, scene: str, model: Model) -> tuple[Any, Any]:
+def _place_of_model(surfaces: xr.Dataset, scene: str, model: Model) -> tuple[Any, Any]:
     """Row and column of a model of a scene."""
     return surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc(model.key)

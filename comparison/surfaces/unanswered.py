@@ -87,7 +87,9 @@ def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     without_results = {}
     for scene in study.scenes:
         steps = chain_of(scene, study.hierarchy)
-        empty = {model.key for model in models_of(scene, study.hierarchy) if not _usable(surfaces, scene, model).any()}
+        empty = {
+            model.key for model in models_of(scene, study.hierarchy) if not _usable_points(surfaces, scene, model).any()
+        }
         of_users = empty - {model.key for model in steps}
         if len(empty - of_users) >= len(steps) - 1:
             empty = of_users
@@ -97,25 +99,25 @@ def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     return ComparedStudy(**asked, without_results=without_results)
 
 
-def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
+def list_unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     """Every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
     gaps = []
     for scene in study.scenes:
         left_out = study.left_out(scene)
         for model in models_of(scene, study.hierarchy):
-            answered, usable = _has_answer(surfaces, scene, model), _usable(surfaces, scene, model)
+            answered, usable = _has_answer(surfaces, scene, model), _usable_points(surfaces, scene, model)
             lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
             if lacking or unusable:
                 asked = study.points(model, scene)
                 used = model.key not in left_out and lacking < asked
                 counts = outcome_counts(surfaces, scene.name, model).items()
                 bad = [(outcome, count) for outcome, count in counts if outcome != Outcome.OK]
-                notes = tuple(OutcomeNote(*each, advice(study, scene, model, each[0])) for each in bad)
+                notes = tuple(OutcomeNote(*each, advise_on_outcome(study, scene, model, each[0])) for each in bad)
                 gaps.append(Unanswered(scene.name, model.key, model.title, lacking, unusable, asked, used, notes))
     return gaps
 
 
-def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
+def advise_on_outcome(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     """Return what an outcome of a model on a scene means, and what helps."""
     if model.side == "user" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
         return "see what the solvers reported"
@@ -130,6 +132,6 @@ def _has_answer(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.
     return np.asarray(np.isfinite(values_of(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
 
 
-def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+def _usable_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which of them every value is known to better than half of its size."""
     return np.asarray(np.isfinite(usable_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

@@ -53,7 +53,7 @@ class Waterfall:
     largest: Annotated[LargestDifference, "the same at the phase pair of the largest difference"]
 
 
-def waterfall(comparison: BodyComparison) -> Waterfall:
+def make_waterfall(comparison: BodyComparison) -> Waterfall:
     """Return the waterfall of one body."""
     total = comparison.total
     bars = [_mean_bar(row) for row in comparison.chain_rows]

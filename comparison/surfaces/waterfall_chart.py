@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from comparison.surfaces.waterfall import WaterfallBar
-from comparison.wording import difference
+from comparison.wording import difference_with_error
 
 MARGIN = 0.03  # share of the scale beyond the longest bar
 MAX_TICKS = 5
@@ -40,19 +40,19 @@ class Bar:
 
 def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> list[Bar]:
     """The bars of a waterfall."""
-    return [_bar(bar, model, start, scale) for bar, model, start in _starts(bars, total)]
+    return [_place_bar(bar, model, start, scale) for bar, model, start in _bars_with_starts(bars, total)]
 
 
 def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) -> Scale:
     """The one axis on which all these waterfalls have room, error bars included."""
-    drawn = [each for bars, total in waterfalls for each in _starts(bars, total) if isfinite(each[0].size)]
-    sizes = [0.0, *(start + bar.size + side * _error(bar) for bar, _, start in drawn for side in (-1.0, 1.0))]
+    drawn = [each for bars, total in waterfalls for each in _bars_with_starts(bars, total) if isfinite(each[0].size)]
+    sizes = [0.0, *(start + bar.size + side * _finite_error(bar) for bar, _, start in drawn for side in (-1.0, 1.0))]
     low, high = min(sizes), max(sizes)
     if low == high:
         low, high = -0.01, 0.01
     room = MARGIN * (high - low)
     low, high = low - room, high + room
-    return Scale(low, high, tuple(_ticks(low, high)))
+    return Scale(low, high, tuple(_tick_values(low, high)))
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def log_scale(sizes: Iterable[float]) -> LogScale:
     return LogScale(10.0**low, 10.0 ** max(high, low + 1))
 
 
-def _starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple[WaterfallBar, str, float]]:
+def _bars_with_starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple[WaterfallBar, str, float]]:
     """Every bar with its model and where it begins: where the one before it ends, and the total at zero."""
     start = 0.0
     for bar in bars:
@@ -91,21 +91,29 @@ def _starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple
     yield total, "total", 0.0
 
 
-def _error(bar: WaterfallBar) -> float:
+def _finite_error(bar: WaterfallBar) -> float:
     return bar.error if isfinite(bar.error) else 0.0
 
 
-def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
+def _place_bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
     begin = scale.at(start)
     if not isfinite(bar.size):
         return Bar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
     end = scale.at(start + bar.size)
-    ends = scale.at(start + bar.size - _error(bar)), scale.at(start + bar.size + _error(bar))
+    ends = scale.at(start + bar.size - _finite_error(bar)), scale.at(start + bar.size + _finite_error(bar))
     kind = "unresolved" if not bar.resolved else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
-    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, difference(bar.size, _error(bar)))
+    return Bar(
+        model,
+        kind,
+        min(begin, end),
+        round(abs(end - begin), 3),
+        ends,
+        end,
+        difference_with_error(bar.size, _finite_error(bar)),
+    )
 
 
-def _ticks(low: float, high: float) -> list[float]:
+def _tick_values(low: float, high: float) -> list[float]:
     rough = (high - low) / MAX_TICKS
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(digit * power for digit in (1.0, 2.0, 5.0, 10.0) if digit * power >= rough)

@@ -169,7 +169,7 @@ class LevelRuns:
             if run.outcome != Outcome.OK:
                 return None
             errors = widen_by_impacts(errors + change, [], run, self._count_levels_on_same_springs())
-        # forces behind impacts differ from level 1 on
+        # Behind impacts the forces of a level before level 0 differ: such a level confirms none
         confirmed = confirmed and not (run.impacts and before.precedes_level_0)
         coarser = [(self.runs[-2], error_share_of_change(before, model))]
         if self.on_real is not None:

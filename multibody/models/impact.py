@@ -35,7 +35,7 @@ PLATFORM = slice(BODY_COORDINATES)
 # at which they end.
 MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
 
-# Speed in units of velocity beyond which contacts that separate are open.
+# Speed of separation, in the model's unit of velocity, beyond which a contact counts as open.
 OPENING_SPEED = 1e-5
 
 

@@ -19,7 +19,7 @@ from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-# Distance from a knot, in shortest intervals, within which an instant is on it.
+# Distance in time from a knot, in shortest intervals, within which an instant counts as the knot itself.
 KNOT_TOLERANCE = 1e-6
 
 

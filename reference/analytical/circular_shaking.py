@@ -96,7 +96,12 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
 
 
 def _response(scene: Scene, acceleration: float, frequency: float, radius: float) -> tuple[complex, complex, float]:
-    """Return b, c and N for a platform on a circle of this radius; 0 gives the linearized equations."""
+    """
+    Return what the equations give for a platform on a circle of `radius`, m; 0 gives the linearized equations.
+
+    Amplitude b of the platform with friction left out (complex, m); what friction of unit direction takes off it, c
+    (complex, m); and the normal force N, N.
+    """
     normal = scene.total_mass * GRAVITY / np.sqrt(1.0 - (radius / scene.radius) ** 2)
     dynamic = _chain(scene, normal / scene.radius, frequency) - frequency**2 * np.diag(scene.masses)
     first = np.linalg.solve(dynamic, np.eye(len(scene.masses))[0])  # first row of G, which is symmetric

@@ -68,7 +68,7 @@ def no_stop_bound(ratio: float) -> float:
     v = 1.0 / (1.0 - ratio**2)
     u = np.tan(0.5 * np.pi / ratio) / ratio
 
-    def stop_ratio(turn: ArrayLike) -> Array:
+    def stop_ratio_at(turn: ArrayLike) -> Array:
         turn = np.asarray(turn, dtype=float)
         natural = turn / ratio
         top = np.sin(natural) + ratio * u * (np.cos(turn) - np.cos(natural))
@@ -77,11 +77,11 @@ def no_stop_bound(ratio: float) -> float:
 
     # The limits at both ends are 1/b^2 up to a sign, finite but of the form 0/0: keep a small distance.
     turns = np.linspace(1e-4, np.pi - 1e-4, 2001)
-    values = stop_ratio(turns)
+    values = stop_ratio_at(turns)
     k = int(values.argmax())
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, len(turns) - 1)]
     minimum = minimize_scalar(
-        lambda t: -float(stop_ratio(t)), bounds=(low, high), method="bounded", options={"xatol": 1e-12}
+        lambda t: -float(stop_ratio_at(t)), bounds=(low, high), method="bounded", options={"xatol": 1e-12}
     )
     largest = max(float(values[k]), -float(minimum.fun))
     return float(abs(v) / np.sqrt(u * u + largest * largest))

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.analytical.phase_peaks import PhaseSeries, largest_lengths, may_reach_bound
 from reference.natural_modes import Modes, modes
-from reference.problem import Scene, checked_phases, exponents, ground_peak, linear, loading_period
+from reference.problem import Scene, check_phases, exponents, ground_peak, linear, loading_period
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -39,14 +39,16 @@ def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tupl
     _check_closed_form(scene)
     turn = np.exp(1j * np.asarray(phase, dtype=float))
     natural, instants = modes(scene), np.asarray(time, dtype=float)
-    position, velocity = ((part @ turn).real for part in _responses(scene, natural, instants, 2, absolute=False))
-    acceleration = (_responses(scene, natural, instants, 1, absolute=True)[0] @ turn).real
+    position, velocity = (
+        (part @ turn).real for part in _harmonic_responses(scene, natural, instants, 2, absolute=False)
+    )
+    acceleration = (_harmonic_responses(scene, natural, instants, 1, absolute=True)[0] @ turn).real
     return position, velocity, acceleration
 
 
 def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
     """Return mu_i of (5.1) for phase pairs (M, 2), rad: (M, N), to about 1e-12. Raise as `frictionless_motion`."""
-    pairs = checked_phases(phases)
+    pairs = check_phases(phases)
     result: Array = frictionless_peaks(scene, pairs)[0] / ground_peak(scene, pairs)[:, None]
     return result
 
@@ -65,9 +67,11 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
     count = int(np.ceil(scene.duration / shortest * INTERVALS_PER_PERIOD))
     half = 0.5 * scene.duration / count
     centers: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
-    series = PhaseSeries.from_derivatives(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
+    series = PhaseSeries.from_derivatives(
+        _harmonic_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half
+    )
     path = PhaseSeries.from_derivatives(
-        _responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half
+        _harmonic_responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half
     )
     peaks, search_error = largest_lengths(series, phases)
     rounding = ROUNDING_ERROR * (10.0 + float(natural.frequency.max()) * scene.duration)
@@ -85,7 +89,7 @@ def _check_closed_form(scene: Scene) -> None:
         raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
 
 
-def _responses(
+def _harmonic_responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
     """Return the complex response per harmonic and its derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
@@ -104,13 +108,15 @@ def _responses(
             for order, part in enumerate(parts):
                 part[:, :, axis, k] = (weight * (rising - falling)) @ swinging.T * scene.amplitudes[axis, k]
                 if not absolute and not swings.all():
-                    part[:, :, axis, k] -= np.outer(_drift(s, time, order), drifting) * scene.amplitudes[axis, k]
+                    part[:, :, axis, k] -= (
+                        np.outer(_drift_derivative(s, time, order), drifting) * scene.amplitudes[axis, k]
+                    )
                 rising, falling = 1j * omega * rising + forced, -1j * omega * falling + forced
                 forced = s * forced
     return parts
 
 
-def _drift(s: complex, time: Array, order: int) -> Complex:
+def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
     """Return the derivative of this order of (exp(s t) - 1 - s t) / s^2 at the instants, (T,)."""
     angle = s * time
     if order > 1:

@@ -70,7 +70,7 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
     least, most = np.empty((2, series.terms.shape[-1]))
     may_reach = np.empty(len(phases), dtype=bool)
     for m, turn in enumerate(_phase_factors(phases)):
-        _bounds(series.terms, series.rest, turn, 0, least, most)
+        _set_bounds(series.terms, series.rest, turn, 0, least, most)
         may_reach[m] = most.max() >= bound * bound
     return may_reach
 
@@ -81,20 +81,23 @@ def _phase_factors(phases: Array) -> Array:
 
 
 @cache_on_disk(__file__)
-def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
+def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
     """Set |v|^2 in the middle of each interval, and an upper bound on it over the interval, (T,) each."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
         for n in range(len(least)):
-            value, slope = _coefficient(terms, turn, 0, body, axis, n), _coefficient(terms, turn, 1, body, axis, n)
+            value, slope = (
+                _power_coefficient(terms, turn, 0, body, axis, n),
+                _power_coefficient(terms, turn, 1, body, axis, n),
+            )
             size = abs(value) + abs(slope) + rest[body, axis, n]
             least[n] += value * value
             most[n] += size * size
 
 
 @njit(nogil=True)
-def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
+def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
     """Return the coefficient of x^order on interval n."""
     total = 0.0
     for part in range(4):
@@ -109,7 +112,7 @@ def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, e
     series = np.empty((axes, orders))
     for m in range(len(turns)):
         for body in range(bodies):
-            _bounds(terms, rest, turns[m], body, least, most)
+            _set_bounds(terms, rest, turns[m], body, least, most)
             best = 0.0
             for n in range(intervals):
                 best = max(best, least[n])
@@ -119,7 +122,7 @@ def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, e
                     continue
                 for axis in range(axes):
                     for order in range(orders):
-                        series[axis, order] = _coefficient(terms, turns[m], order, body, axis, n)
+                        series[axis, order] = _power_coefficient(terms, turns[m], order, body, axis, n)
                 value, error = _maximize_on_interval(series)
                 best = max(best, value)
                 possible = max(possible, value + error)

@@ -19,8 +19,8 @@ from reference.problem import GRAVITY
 
 def squared_rate(angle: float, start: float, start_rate: float, friction: float, radius: float) -> float:
     """Return theta'^2, 1/s^2, at `angle`, rad, of the slide that passes `start`, rad, at `start_rate` <= 0, rad/s."""
-    constant = (start_rate**2 - _particular(start, friction, radius)) * exp(-2.0 * friction * start)
-    return constant * exp(2.0 * friction * angle) + _particular(angle, friction, radius)
+    constant = (start_rate**2 - _particular_solution(start, friction, radius)) * exp(-2.0 * friction * start)
+    return constant * exp(2.0 * friction * angle) + _particular_solution(angle, friction, radius)
 
 
 def turning_angle(start: float, friction: float, radius: float) -> float:
@@ -45,6 +45,6 @@ def turning_time(start: float, friction: float, radius: float) -> float:
     return float(0.5 * np.pi * np.sum(weights * half * np.sin(psi) / np.array(rates)))
 
 
-def _particular(angle: float, friction: float, radius: float) -> float:
+def _particular_solution(angle: float, friction: float, radius: float) -> float:
     scale = 2.0 * GRAVITY / (radius * (1.0 + 4.0 * friction**2))
     return scale * ((1.0 - 2.0 * friction**2) * cos(angle) + 3.0 * friction * sin(angle))

@@ -54,9 +54,9 @@ class ComputedPhases:
     """Computed phase pairs; NaN without an answer."""
 
     phases: Array  # (M, 2), rad
-    numerator: Array  # (M,)
-    denominator: Array  # (M,)
-    error: Array  # (M,), error of the quotient
+    numerator: Array  # (M,), of (5.1), m/s^2, or the displacement, m
+    denominator: Array  # (M,), of (5.1), m/s^2, or 1
+    error: Array  # (M,), error of numerator / denominator
 
     @cached_property
     def value(self) -> Array:

@@ -118,12 +118,12 @@ def _of_supports(
     if force is None:
         return None
 
-    def of(number: int) -> Callable[[DemandSamples], float]:
+    def read_support(number: int) -> Callable[[DemandSamples], float]:
         return lambda samples: float(extreme(force(samples)[:, number]))
 
     places = read.motion.scene.support_places
     count = read.samples.support.shape[1] or (0 if places is None else len(places))
-    return tuple(read.extreme(of(number)) for number in range(count))
+    return tuple(read.extreme(read_support(number)) for number in range(count))
 
 
 def _shear_below(scene: Scene, body: int) -> Callable[[DemandSamples], float]:

@@ -8,12 +8,12 @@ builtin_scenes, example_scenes                                  names of the sce
 ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
-checked_phase, checked_phases, flat_phases, phase_axis,
+check_phase, check_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
 describe_record                                                 what was read of a recorded motion, with warnings
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
-verbatim                                                        a text of a scene for matplotlib
+escape_for_matplotlib                                           a text of a scene for matplotlib
 
 Classes
 -------
@@ -42,7 +42,7 @@ from reference.problem.excitation import (
 from reference.problem.families import Family, load_family
 from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
-from reference.problem.phases import checked_phase, checked_phases, flat_phases, phase_axis, phase_grid
+from reference.problem.phases import check_phase, check_phases, flat_phases, phase_axis, phase_grid
 from reference.problem.recorded import describe_record
 from reference.problem.reductions import (
     Reduction,
@@ -61,7 +61,7 @@ from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
 from reference.support.constants import GRAVITY
-from reference.support.drawing import verbatim
+from reference.support.drawing import escape_for_matplotlib
 from reference.support.scene_error import SceneError
 
 __all__ = [
@@ -78,9 +78,10 @@ __all__ = [
     "State",
     "Trajectory",
     "builtin_scenes",
-    "checked_phase",
-    "checked_phases",
+    "check_phase",
+    "check_phases",
     "describe_record",
+    "escape_for_matplotlib",
     "example_scenes",
     "exponents",
     "flat_phases",
@@ -104,5 +105,4 @@ __all__ = [
     "planar_chain",
     "untilted",
     "unused_harmonics",
-    "verbatim",
 ]

@@ -11,7 +11,7 @@ from reference.records.formats import OPTIONS
 from reference.records.loading import SET_BY_THE_READER, SUITE
 from reference.records.samples import AXES
 from reference.support.arguments import as_float, brief
-from reference.support.scene_error import SceneError, keys_of, unknown_key
+from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
 LONGEST_TEXT, LONGEST_LIST = 40, 80  # letters of one changed value in a name, and of all of them
 WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # tables that enter no result
@@ -100,7 +100,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     index = _index_of(scene, place, parts, len(parts) - 1, value, keys)
     if key == "excitation.record":
         place["record"] = value
-        for name in SET_BY_THE_READER:  # those of the record before
+        for name in SET_BY_THE_READER:  # what was read from the record before the change
             place.pop(name, None)
     elif value is not None:
         place[index] = value
@@ -132,14 +132,14 @@ def _index_of(
             return int(part)
         raise SceneError(scene, key, value, f"{'.'.join(parts[:depth])} has the indices 0 to {len(place) - 1}")
     table = ".".join(name for name in parts[:depth] if not name.isdecimal())
-    valid = keys_of(table, keys)
+    valid = keys_of_table(table, keys)
     if not valid:
         raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
     if part in valid and not isinstance(place, dict):
         rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
         raise SceneError(scene, key, value, rule)
     if isinstance(place, dict) and (part in valid or f"{table}.*" in keys):
-        if not last and keys_of(f"{table}.{part}".lstrip("."), keys):
+        if not last and keys_of_table(f"{table}.{part}".lstrip("."), keys):
             place.setdefault(part, {})  # an optional table that is not there yet
         if last or part in place:
             return part

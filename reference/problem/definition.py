@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
-from reference.problem.phases import checked_phases
+from reference.problem.phases import check_phases
 from reference.problem.scene import Scene, takes_scene
 from reference.support.build_cache import cache_on_disk
 
@@ -42,7 +42,7 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     Raises
     ------
     ValueError
-        As `checked_phases`.
+        As `check_phases`.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     >>> ground_peak(load_scene("fig3-I"), [(0.0, 0.0)]).round(3).tolist()  # both harmonics at their largest
     [1.414]
     """
-    pairs = checked_phases(phases)
+    pairs = check_phases(phases)
     if scene.recorded:
         return np.full(len(pairs), _record_peak(scene))
     s = exponents(scene)

@@ -16,7 +16,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.phases import checked_phase
+from reference.problem.phases import check_phase
 from reference.problem.scene import Scene, takes_scene
 from reference.problem.tables import Excitation
 from reference.support.arguments import check_array
@@ -184,7 +184,7 @@ def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]
 
 
 def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
-    turns: NDArray[np.complex128] = np.exp(1j * checked_phase(phase))
+    turns: NDArray[np.complex128] = np.exp(1j * check_phase(phase))
     return turns
 
 

@@ -54,7 +54,7 @@ MAX_KEYS = 20  # keys that run
 BOUNDS = "isolator.bounds"
 BOUND_NAMES = ("lower bound", "upper bound")
 BOUND_FACTOR = Range(0.01, 100.0)
-BOUND_DIGITS = 12  # of a coefficient of a bound: 0.075, not 0.07500000000000001
+BOUND_DIGITS = 12  # digits of a coefficient of a bound: 0.075, not 0.07500000000000001
 
 Value = float | int | str
 Files = dict[str, str]  # names of the files of a record by direction

@@ -21,7 +21,7 @@ from pydantic import (
 
 from reference.problem.validation import PlacedError
 from reference.support.arguments import Range
-from reference.support.plain_values import hashable, plain
+from reference.support.plain_values import as_hashable, as_plain_values
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 # Models, or others, that read a key
@@ -107,7 +107,7 @@ class Table(BaseModel):
         """Replace arrays, tuples and numbers of numpy by those of a file."""
         if not isinstance(table, dict):
             return table
-        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
+        return {key: value if key in cls.long_keys else as_plain_values(value) for key, value in table.items()}
 
     @field_validator("*")
     @classmethod
@@ -124,7 +124,7 @@ class Table(BaseModel):
         return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
 
     def __hash__(self) -> int:
-        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
+        short = [as_hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
         return hash((type(self).__name__, *short))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 POINTS = Range(1, 10_000)  # phases per axis
 
 
-def checked_phases(phases: ArrayLike) -> Array:
+def check_phases(phases: ArrayLike) -> Array:
     """
     Phase pairs as a contiguous array; phases beyond a full turn are reduced to (-pi, pi].
 
@@ -37,7 +37,7 @@ def checked_phases(phases: ArrayLike) -> Array:
 
     Examples
     --------
-    >>> checked_phases([(0.5, 1.0)]).tolist()
+    >>> check_phases([(0.5, 1.0)]).tolist()
     [[0.5, 1.0]]
     """
     array = check_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
@@ -49,7 +49,7 @@ def checked_phases(phases: ArrayLike) -> Array:
     return np.where(np.abs(array) <= 2.0 * np.pi, array, np.arctan2(np.sin(array), np.cos(array)))
 
 
-def checked_phase(phase: ArrayLike) -> Array:
+def check_phase(phase: ArrayLike) -> Array:
     """
     Return one phase pair as an array.
 
@@ -64,17 +64,17 @@ def checked_phase(phase: ArrayLike) -> Array:
     Raises
     ------
     ValueError
-        As `checked_phases`.
+        As `check_phases`.
 
     Examples
     --------
-    >>> checked_phase((0.5, 1.0)).tolist()
+    >>> check_phase((0.5, 1.0)).tolist()
     [0.5, 1.0]
     """
     pair = check_array("phases", phase, f"must be (2,), {PHASE.rule}")
     if pair.size != 2:
         raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
-    return checked_phases(pair.reshape(1, 2))[0]
+    return check_phases(pair.reshape(1, 2))[0]
 
 
 def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
@@ -88,14 +88,14 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
     Returns
     -------
     ndarray, (M, 2), rad
-        The pairs, checked as by `checked_phases`.
+        The pairs, checked as by `check_phases`.
     tuple of int
         Shape of `phases` before its last axis.
 
     Raises
     ------
     ValueError
-        As `checked_phases`.
+        As `check_phases`.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
     array = check_array("phases", phases, rule)
     if array.shape[-1:] != (2,):
         raise ValueError(f"phases: shape {array.shape}: must be (..., 2), rad")
-    return checked_phases(array.reshape(-1, 2)), array.shape[:-1]
+    return check_phases(array.reshape(-1, 2)), array.shape[:-1]
 
 
 def grid_axes(phases: Array) -> tuple[Array, Array] | None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.scene import Scene
 from reference.support.arguments import brief, check_choice, takes
-from reference.support.drawing import draw_motion, draw_surface, verbatim
+from reference.support.drawing import draw_motion, draw_surface, escape_for_matplotlib
 from reference.support.html_table import html_table, text_of_number
 
 if TYPE_CHECKING:
@@ -215,7 +215,7 @@ class Amplification:
             rule = "must be a grid of at least 2 x 2 phases, as phase_grid(8) is"
             raise ValueError(f"phases: shape {self.phases.shape}: {rule}, to be drawn as a surface")
         height = self.mu[..., body - 1].reshape(len(grid[0]), len(grid[1]))
-        drawn = ", ".join(filter(None, (verbatim(self.scene_name), f"body {body}")))
+        drawn = ", ".join(filter(None, (escape_for_matplotlib(self.scene_name), f"body {body}")))
         title = "\n".join(filter(None, (drawn, ", ".join(filter(None, (self.model, self.reading))))))
         return draw_surface(grid, height, rf"$\mu_{{{body}}}$", title, axes)
 

@@ -21,7 +21,7 @@ from reference.support.scene_error import SceneError
 RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table whose value runs
 LARGEST = 2**22  # bytes of a scene file
 MAX_NESTING = 10  # tables and lists within one another in a scene file
-OF_RECORDS = (*OF_TWO_FREQUENCIES, *SET_BY_THE_READER)  # keys whose places the reader of records checks
+OF_RECORDS = (*OF_TWO_FREQUENCIES, *SET_BY_THE_READER)  # keys of [excitation] that the reader of records checks
 AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # in place of one that was not read
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 # A key of that many parts is nested too deep, and the parser's work grows as the square of their number.

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from reference.support.scene_error import ONE_SURFACE, MisfitError, SceneError, keys_of, unknown_key
+from reference.support.scene_error import ONE_SURFACE, MisfitError, SceneError, keys_of_table, unknown_key
 
 # Forms of a table or key with several: pydantic puts the one that was meant into the place of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
@@ -86,7 +86,7 @@ def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) 
     key = ".".join(map(str, place)) or "scene"
     if error["type"] == "extra_forbidden":
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
-        return unknown_key(file, key, error["input"], keys_of(table, keys))
+        return unknown_key(file, key, error["input"], keys_of_table(table, keys))
     if error["type"] == "missing":
         return SceneError(file, key, None, MISSING.get(key, "this key is required"))
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")

@@ -57,14 +57,14 @@ def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
         if key in table:
             raise SceneError(label, f"excitation.{key}", table[key], "unknown key; remove it")
     record = table["record"]
-    samples, origin = _samples(record, label)
+    samples, origin = _load_samples(record, label)
     if isinstance(record, dict) and record.keys() == ARRAYS:
         record = FROM_ARRAYS
     excitation = {**table, "record": record, "samples": samples, "origin": origin}
     return {"duration": float(samples[-1, 0]), **data, "excitation": excitation}
 
 
-def _samples(record: Any, label: str) -> tuple[Array, list[str]]:
+def _load_samples(record: Any, label: str) -> tuple[Array, list[str]]:
     """Samples (K, 4) of the files that `record` names, or of its arrays, and where they are from."""
     if isinstance(record, dict) and record.keys() == ARRAYS:
         try:
@@ -75,13 +75,14 @@ def _samples(record: Any, label: str) -> tuple[Array, list[str]]:
         return _of_suite(record, label)
     if isinstance(record, str) and _is_example(record) and not (Path(label).parent / record).exists():
         text = (EXAMPLES / f"{record}.toml").read_text("utf-8")
-        return _samples(tomllib.loads(text)["excitation"]["record"], record)
+        return _load_samples(tomllib.loads(text)["excitation"]["record"], record)
     by_axis = isinstance(record, dict) and "file" not in record
     files = record if by_axis else {"": record}
     if not files or (by_axis and not set(files) <= set(AXES)):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)
     readings = {
-        axis: _read(label, f"excitation.record{'.' if axis else ''}{axis}", file) for axis, file in files.items()
+        axis: _read_named_file(label, f"excitation.record{'.' if axis else ''}{axis}", file)
+        for axis, file in files.items()
     }
     try:
         samples = join_directions({axis: reading for axis, (_, reading) in readings.items()})
@@ -94,7 +95,7 @@ def _is_example(name: str) -> bool:
     return any(entry.name == f"{name}.toml" for entry in EXAMPLES.iterdir())
 
 
-def _read(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
+def _read_named_file(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
     """The name of a file, given as a text or as a table with what the file does not state, and what it holds."""
     options: Mapping[str, Any] = file if isinstance(file, dict) else {"file": file}
     for option, value in options.items():
@@ -105,7 +106,7 @@ def _read(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
         raise SceneError(label, key, file, RECORD_RULE)
     stated = {option: value for option, value in options.items() if option != "file"}
     try:
-        return Path(name).name, read_record(_content(label, key, name), name, stated)
+        return Path(name).name, read_record(_read_content(label, key, name), name, stated)
     except RecordError as error:
         raise SceneError(label, key, name, str(error)) from None
 
@@ -123,7 +124,7 @@ def _of_suite(record: dict[str, Any], label: str) -> tuple[Array, list[str]]:
         raise SceneError(label, f"excitation.record.{error.key}", record.get(error.key), error.rule) from None
 
 
-def _content(label: str, key: str, name: str) -> bytes:
+def _read_content(label: str, key: str, name: str) -> bytes:
     """The content of a file in the folder of the scene, or of one that is shipped. Raises SceneError."""
     path, shipped = Path(label).parent / name, EXAMPLES / name
     try:

@@ -20,7 +20,7 @@ class SuiteError(ValueError):
         self.key, self.rule = key, rule
 
 
-def _groups(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
+def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
     """Files by what each name may have in common with others; the longest spelling of a direction counts."""
     groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
     for file in files:
@@ -31,7 +31,7 @@ def _groups(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]
 
 def pair_files(files: Sequence[Path]) -> list[Motion]:
     """The components of motions, by what their names have in common. Raises SuiteError for all that are left alone."""
-    groups, left, motions = _groups(files), set(files), []
+    groups, left, motions = _group_files(files), set(files), []
     for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
         members = [file for file in groups[base] if file in left]
         axes = assign_axes([groups[base][file][1] for file in members])
@@ -83,5 +83,5 @@ def _list_names(names: Sequence[str]) -> str:
 
 def find_vertical_components(files: Sequence[Path]) -> set[Path]:
     """The files that are the vertical component of a motion of which others are there."""
-    groups = _groups(files).values()
+    groups = _group_files(files).values()
     return {file for members in groups if len(members) > 1 for file, (_, one) in members.items() if one.axis == "z"}

@@ -99,8 +99,8 @@ def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
 
 def samples_of_arrays(time: Any, acceleration: Any) -> Array:
     """Samples (K, 4) of times (K,), s, and accelerations along x, x and y, or x, y and z, m/s^2. Raises RecordError."""
-    instants = _numbers("time", time, "(K,), s")
-    values = _numbers("acceleration", acceleration, ACCELERATIONS)
+    instants = _check_numbers("time", time, "(K,), s")
+    values = _check_numbers("acceleration", acceleration, ACCELERATIONS)
     columns = values[:, None] if values.ndim == 1 else values
     if instants.ndim != 1:
         raise RecordError(f"time: shape {instants.shape}: must be (K,), s")
@@ -113,13 +113,13 @@ def samples_of_arrays(time: Any, acceleration: Any) -> Array:
 
 def check_samples(samples: Any) -> Array:
     """Samples (K, 4) that cannot be changed, from what `samples` holds; time counts from the first. RecordError."""
-    array = np.array(_numbers("samples", samples, "(K, 4)"))
+    array = np.array(_check_numbers("samples", samples, "(K, 4)"))
     if array.ndim != 2 or array.shape[1] != 4:
         raise RecordError(f"samples: shape {array.shape}: must be (K, 4): s and m/s^2 along x, y, z")
     return finish_samples(array)
 
 
-def _numbers(name: str, values: Any, shape: str) -> Array:
+def _check_numbers(name: str, values: Any, shape: str) -> Array:
     try:
         array = check_array(name, values, f"must be {shape}")
     except ValueError as error:

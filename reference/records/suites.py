@@ -134,7 +134,7 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     found = _read_directory(folder / suite)
     if isinstance(found, MotionList):
         return found
-    kinds = {file: _kind(file) for file in found}
+    kinds = {file: _kind_of_other_file(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
     ignored = Counter(kind for kind in kinds.values() if kind)
     if not records:
@@ -170,7 +170,7 @@ def _read_directory(place: Path) -> MotionList | list[Path]:
     return files
 
 
-def _kind(file: Path) -> str:
+def _kind_of_other_file(file: Path) -> str:
     """Return the kind of a file that is no record, "" for a record."""
     suffix = file.suffix.lower()
     if file.name.startswith("."):
@@ -196,7 +196,8 @@ def _is_recognized(file: Path) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _is_record(file: Path, changed: int, size: int) -> bool:
+def _is_record(file: Path, modified_ns: int, size: int) -> bool:
+    """Tell whether the content is that of a record; `modified_ns` and `size`, bytes, only key the cache."""
     try:
         return recognize_format(decode_text(read_file(file, LARGEST)), file.suffix) is not None
     except (OSError, RecordError):

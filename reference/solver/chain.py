@@ -21,8 +21,8 @@ from reference.solver.collocation import (
     STAGES,
     TO_CHANNELS,
     A,
-    columns,
-    product,
+    columns_as_rows,
+    exact_product,
 )
 from reference.solver.compiled import compiled
 from reference.solver.polynomial import NODES_ROW
@@ -31,17 +31,19 @@ from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Workspace
 
 # A number in every channel as a row: the real parts of all channels, the imaginary parts behind them
-TO_CHANNELS_COLUMNS = columns(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
-FROM_CHANNELS_COLUMNS = columns(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
-ONES_IN_CHANNELS, NODES_IN_CHANNELS = product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
+TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
+FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
+ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
 # Response at all stages to a number at stage m through channel j, by the channel's real and imaginary part
-_THROUGH = [product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
+_THROUGH = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
 THROUGH_REAL, THROUGH_IMAGINARY = (
-    np.array([columns(part) for part in parts])
+    np.array([columns_as_rows(part) for part in parts])
     for parts in zip(*((through.real, through.imag) for through in _THROUGH))
 )
 # Rounding of an acceleration on the way through the channels, as a share of the loads, at the worst stage (3e-13)
-CHANNEL_ROUNDING = float(np.finfo(float).eps * product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max())
+CHANNEL_ROUNDING = float(
+    np.finfo(float).eps * exact_product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max()
+)
 
 
 @compiled

@@ -25,7 +25,7 @@ GUESSED_DIGITS = 3  # decimals of LAPACK's results that serve as first guesses
 ITERATIONS = 12  # iterations from such a guess to rounding
 
 
-def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Return X of matrix X = right, by elimination with row pivoting."""
     rows = [[*left, *rest] for left, rest in zip(matrix.tolist(), right.tolist())]
     size = len(rows)
@@ -39,14 +39,14 @@ def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     return np.array([[value / row[i] for value in row[size:]] for i, row in enumerate(rows)])
 
 
-def product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+def exact_product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Return left @ right with exact sums."""
     columns = right.T.tolist()
-    entries = np.array([[_dot(row, column) for column in columns] for row in left.tolist()])
+    entries = np.array([[_exact_dot(row, column) for column in columns] for row in left.tolist()])
     return entries if np.iscomplexobj(left) or np.iscomplexobj(right) else entries.real.copy()
 
 
-def _dot(row: list[complex], column: list[complex]) -> complex:
+def _exact_dot(row: list[complex], column: list[complex]) -> complex:
     """Return the sum of the products of two vectors' entries, rounded once."""
     pairs = list(zip(row, column))
     real = math.fsum([*(a.real * b.real for a, b in pairs), *(-a.imag * b.imag for a, b in pairs)])
@@ -57,7 +57,7 @@ def _legendre_basis(order: int) -> legendre.Legendre:
     return legendre.Legendre.basis(order, domain=[0.0, 1.0])
 
 
-def _nodes(stages: int) -> np.ndarray:
+def _radau_nodes(stages: int) -> np.ndarray:
     """Return the right Radau points on (0, 1]: the roots of P_s - P_{s-1} (Hairer and Wanner, IV.5)."""
     polynomial = _legendre_basis(stages) - _legendre_basis(stages - 1)
     roots = np.round(np.sort(polynomial.roots().real), GUESSED_DIGITS)
@@ -67,21 +67,21 @@ def _nodes(stages: int) -> np.ndarray:
     return roots
 
 
-def _weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
+def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
     """Return weights of the interpolating polynomial at theta, or of its integral from 0: (len(theta), STAGES)."""
     basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
-    return np.ascontiguousarray(_solve(values.T, raised.T).T)
+    return np.ascontiguousarray(_solve_linear(values.T, raised.T).T)
 
 
-NODES = _nodes(STAGES)
-A = _weights(NODES, True)
-A2 = product(A, A)
+NODES = _radau_nodes(STAGES)
+A = _interpolation_weights(NODES, True)
+A2 = exact_product(A, A)
 # Weights of the interpolating polynomial at theta = 0: its defect there against the known acceleration is the error
-AT_START = _weights(np.zeros(1), False)[0]
+AT_START = _interpolation_weights(np.zeros(1), False)[0]
 # Coefficients of theta^k of the interpolating polynomial
-MONOMIALS = _solve(np.vander(NODES, increasing=True), np.eye(STAGES))
+MONOMIALS = _solve_linear(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
 def _defect_polynomial() -> np.ndarray:
@@ -95,11 +95,11 @@ def _defect_polynomial() -> np.ndarray:
 # Interpolation error of the polynomial through the stages over that at theta = 0
 DEFECT_POLYNOMIAL = _defect_polynomial()
 # Weights of the accelerations in the defect at theta = 0 of the polynomial through the velocities, over h
-VELOCITY_AT_START = product(AT_START[None, :], A)[0]
+VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 
-def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the eigenvalues of A, one of each conjugate pair, and the matrices to their eigenbasis and back."""
     # A has one real eigenvalue and three conjugate pairs. The numbers in the channels of a pair are conjugate, so one
     # channel is kept and counted twice. LAPACK's eigenvalues are rounded to GUESSED_DIGITS and refined by inverse
@@ -107,37 +107,37 @@ def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     # exact to rounding. All sums have a fixed order, so the constants are the same on every processor.
     guesses = np.round(np.linalg.eigvals(A), GUESSED_DIGITS)
     kept = sorted((complex(guess) for guess in guesses if guess.imag >= 0.0), key=lambda guess: guess.imag)
-    values, vectors = zip(*(_eigenpair(guess) for guess in kept))
+    values, vectors = zip(*(_eigenpair_near(guess) for guess in kept))
     doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]  # a kept channel stands for its conjugate, too
     others = [vector.conj() for vector, factor in zip(vectors, doubled) if factor == 2.0]
     every = np.stack([*vectors, *others], axis=1)
-    inverse = _solve(every, np.eye(STAGES))
-    inverse = 2.0 * inverse - product(inverse, product(every, inverse))
+    inverse = _solve_linear(every, np.eye(STAGES))
+    inverse = 2.0 * inverse - exact_product(inverse, exact_product(every, inverse))
     return np.array(values), inverse[:CHANNELS], np.stack(vectors, axis=1) * doubled
 
 
-def _eigenpair(guess: complex) -> tuple[complex, np.ndarray]:
+def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     """Return the eigenvalue of A next to a guess and its eigenvector with one entry 1, by inverse iteration."""
     shifted = A - guess * np.eye(STAGES)
-    vector = _solve(shifted, np.ones((STAGES, 1), complex))
+    vector = _solve_linear(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())
     value = guess
     for _ in range(ITERATIONS):
         vector = np.array([[entry / vector[unit, 0].item()] for entry in vector[:, 0].tolist()])
-        image = product(A, vector)
+        image = exact_product(A, vector)
         value = image[unit, 0].item()
         missed = [[a - value * b] for a, b in zip(image[:, 0].tolist(), vector[:, 0].tolist())]
-        vector = vector - _solve(shifted, np.array(missed))
+        vector = vector - _solve_linear(shifted, np.array(missed))
     return value, vector[:, 0]
 
 
-EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _channels())
+EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _compute_channels())
 
 # Places in a step, theta, at which the search for peaks and events begins
 SEARCH_POINTS = np.linspace(0.0, 1.0, 15)
 
 
-def columns(matrix: np.ndarray) -> np.ndarray:
+def columns_as_rows(matrix: np.ndarray) -> np.ndarray:
     """Return the columns of a matrix with at most ROW_LENGTH rows, as rows (rows.py) with zeros behind."""
     filled = np.zeros((matrix.shape[1], ROW_LENGTH))
     filled[:, : len(matrix)] = matrix.T

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from reference.solver.heating import mean_factor, set_factor_by_heat, set_uniform_factor
+from reference.solver.heating import mean_factor, set_factor_by_heat, set_initial_friction_factor
 from reference.solver.run import integrate_runs
 from reference.solver.run_yielding import integrate_yielding_runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
@@ -121,7 +121,7 @@ def record_run(
     capacity = FIRST_STEP_CAPACITY + STEPS_PER_KNOT * len(system.record)
     known, before, made = np.array(np.inf), np.inf, 0
     if len(system.heat) and not len(system.k_t):
-        system = set_uniform_factor(system)
+        system = set_initial_friction_factor(system)
     while True:
         record = allocate_record(capacity, len(x))
         peaks = peaks_from(x, v, system, phase[None], settings, record)

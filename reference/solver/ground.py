@@ -11,7 +11,7 @@ from reference.solver.system import Array, Ground, System
 from reference.solver.work import SERIES_TERMS, Workspace
 
 MAX_SERIES_ANGLE = 2.0  # turn and decay of a harmonic in a step beyond which its Taylor series would lose digits
-SERIES_ROUNDING = 1e-17  # term over harmonic that ends its series
+SERIES_ROUNDING = 1e-17  # size of a term of the Taylor series, over the harmonic, at which the series ends
 
 
 @compiled

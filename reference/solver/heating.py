@@ -21,7 +21,7 @@ from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System, law_of
 from reference.support.build_cache import cache_on_disk
 
-NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
+NEWTON_STEPS = 8  # iterations to the instant at which the slider begins or ceases to cover the cap's center
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
 MIN_PIECE = 1e-10  # length of the shortest piece, as a share of the duration
@@ -34,7 +34,7 @@ MAX_ITERATIONS = 50  # iterations within a piece at most
 WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
 
 
-def set_uniform_factor(system: System) -> System:
+def set_initial_friction_factor(system: System) -> System:
     """Return the system with k_T at the initial temperature throughout."""
     k_t = np.zeros((1, 3 + STAGES))
     k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])

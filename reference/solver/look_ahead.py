@@ -41,7 +41,7 @@ from reference.solver.work import Workspace
 STEPS_PER_PERIOD = 25.0  # steps of a rough run per RunSettings.period
 MAX_STEPS_PER_STEP = 50.0  # steps of a rough run per accurate step so far, each of which costs about as much as 50
 MAX_CHAIN_ANGLE = 0.5  # rad, largest turn of the chain's fastest vibration in one step
-# Share of the largest value so far that a rough run does not exceed where an accurate one stays below the largest
+# If a rough run stays below this share of the largest value so far, the accurate run stays below the largest
 LARGE_FRACTION = 0.85
 # Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox within which a rough run is not
 # trusted: the accurate run goes on
@@ -139,10 +139,10 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
     displacement, the rim, the end of the travel, liftoff or Painleve's paradox.
     """
     # Four cases. (1) At rest under the set-valued law and held: the acceleration is the ground's; where the drive comes
-    # near the limit, the accurate run may have slipped, so that of a stop counts. (2) Moving, friction removes less
-    # than the velocity: `share` of the velocity without friction remains, implicitly for the linear laws. (3) Friction
-    # would stop the platform within MAX_SLOW_STEPS: on the way its direction turns, which steps this long do not
-    # resolve, so the largest acceleration of any direction counts. (4) Near a limit: infinity, the run goes on.
+    # near the limit, the accurate run may have slipped, so the acceleration of a stop counts. (2) Moving, friction
+    # removes less than the velocity: `share` of the velocity without friction remains, implicitly for the linear laws.
+    # (3) Friction would stop the platform within MAX_SLOW_STEPS: on the way its direction turns, which steps this long
+    # do not resolve, so the largest acceleration of any direction counts. (4) Near a limit: infinity, the run goes on.
     vx, vy = work.v[0, 0], work.v[0, 1]
     place2 = load.px * load.px + load.py * load.py
     bound = (1.0 - MIN_MARGIN) * min(system.radius, system.travel)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from reference.solver.collocation import A2, MONOMIALS, NODES, STAGES, A, columns
+from reference.solver.collocation import A2, MONOMIALS, NODES, STAGES, A, columns_as_rows
 from reference.solver.compiled import compiled
 from reference.solver.rows import Row, combine_columns, put
 from reference.solver.system import Array
 
-A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns(A), columns(A2), columns(MONOMIALS)
-NODES_ROW = columns(NODES[:, None])[0]
+A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns_as_rows(A), columns_as_rows(A2), columns_as_rows(MONOMIALS)
+NODES_ROW = columns_as_rows(NODES[:, None])[0]
 POWERS = STAGES + 2  # number of coefficients: a position is the second integral of a polynomial through the stages
 
 

@@ -84,26 +84,26 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
 
         return kind
 
-    def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         return instruction(builder, *_broadcast_to_rows(builder, numbers, signature.args))
 
     type_callable(operation)(typer)
     for kinds in ((_ROW, _ROW), (_ROW, types.float64), (types.float64, _ROW)):
-        lower_builtin(operation, *kinds)(lower)
+        lower_builtin(operation, *kinds)(lower_call)
 
 
-def _define_single(operation: Any, lower: Lower) -> None:
+def _define_single(operation: Any, lower_call: Lower) -> None:
     """Define a function of one row whose result is a row."""
     type_callable(operation)(lambda context: lambda number: _ROW if number == _ROW else None)
-    lower_builtin(operation, _ROW)(lower)
+    lower_builtin(operation, _ROW)(lower_call)
 
 
 def _lower_by_instruction(name: str) -> Lower:
-    def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
 
-    return lower
+    return lower_call
 
 
 def _lower_one_by_one(operation: Any) -> Lower:
@@ -111,7 +111,7 @@ def _lower_one_by_one(operation: Any) -> Lower:
     # exp, expm1 and log are functions of the C library for one float: called for each number, they give the same bits
     # as at an instant.
 
-    def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         function = context.get_function(operation, types.float64(types.float64))
         results = ir.Constant(_VECTOR, [0.0] * ROW_LENGTH)
         for place in map(_index, range(STAGES)):
@@ -119,14 +119,14 @@ def _lower_one_by_one(operation: Any) -> Lower:
             results = builder.insert_element(results, result, place)
         return results
 
-    return lower
+    return lower_call
 
 
 def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
-    def lower(builder: Any, left: Any, right: Any) -> Any:
+    def lower_call(builder: Any, left: Any, right: Any) -> Any:
         return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
 
-    return lower
+    return lower_call
 
 
 for _operations, _instruction in (
@@ -173,43 +173,43 @@ def _address(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
 def row(context: Any, array: Any, place: Any) -> Any:
     """Return the row at a place of an array: an index, or a tuple of them, for all axes but the last."""
 
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.load(_address(context, builder, signature.args, arguments), align=_ALIGNMENT)
 
-    return _ROW(array, place), lower
+    return _ROW(array, place), lower_call
 
 
 @intrinsic
 def put(context: Any, array: Any, place: Any, values: Any) -> Any:
     """Write a row, or a float in all places of it, to a place of an array."""
 
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         (written,) = _broadcast_to_rows(builder, arguments[2:], signature.args[2:])
         builder.store(written, _address(context, builder, signature.args, arguments), align=_ALIGNMENT)
         return context.get_dummy_value()
 
-    return types.void(array, place, values), lower
+    return types.void(array, place, values), lower_call
 
 
 @intrinsic
 def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
     """Return a float, or a row with it in all places if `pattern` is a row."""
 
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return _broadcast(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
 
-    return pattern(types.float64, pattern), lower
+    return pattern(types.float64, pattern), lower_call
 
 
 @intrinsic
 def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> Any:
     """Return one value where the number is above zero, the other elsewhere; all three rows, or all floats."""
 
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         zero = ir.Constant(arguments[0].type, [0.0] * ROW_LENGTH if signature.return_type == _ROW else 0.0)
         return builder.select(builder.fcmp_ordered(">", arguments[0], zero), *arguments[1:])
 
-    return number(number, number, number), lower
+    return number(number, number, number), lower_call
 
 
 def _reduce_by(relation: str) -> Callable[..., Any]:
@@ -219,7 +219,7 @@ def _reduce_by(relation: str) -> Callable[..., Any]:
     # may be returned: an ordered comparison with NaN is false.
 
     def reduce(context: Any, values: Any) -> Any:
-        def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             if signature.args[0] != _ROW:
                 return arguments[0]
             best, width = arguments[0], ROW_LENGTH
@@ -230,7 +230,7 @@ def _reduce_by(relation: str) -> Callable[..., Any]:
                 best = builder.select(builder.fcmp_ordered(relation, other, best), other, best)
             return builder.extract_element(best, _index(0))
 
-        return types.float64(values), lower
+        return types.float64(values), lower_call
 
     return reduce
 
@@ -243,13 +243,13 @@ highest = intrinsic(_reduce_by(">"))
 def is_finite(context: Any, values: Any) -> Any:
     """Return True if the numbers at the stages are finite."""
 
-    def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         bits = ir.IntType(ROW_LENGTH)
         known = builder.fcmp_ordered("ord", *[builder.fsub(arguments[0], arguments[0])] * 2)
         never_looked_at = bits(1 << ROW_LENGTH - 1)
         return builder.icmp_signed("==", builder.or_(builder.bitcast(known, bits), never_looked_at), bits(-1))
 
-    return types.boolean(values), lower
+    return types.boolean(values), lower_call
 
 
 @compiled

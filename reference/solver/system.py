@@ -49,7 +49,7 @@ class System(NamedTuple):
     damping_below: Array  # (N, 2), c_{i,i-1} / m_i, 1/s
     damping_above: Array  # (N, 2), c_{i+1,i} / m_i, 1/s
     amplitudes: Array  # (3, 2), m/s^2
-    exponents: Complex  # (2,), 1/s
+    exponents: Complex  # (2,), 1/s, s_i = -lambda_i + i nu_i of the harmonics
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
     heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) without
     k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without heating

@@ -56,7 +56,7 @@ class Workspace:
 
     phase: Array  # (2,) rad, initial phases of the loading
     # State at the start of the step
-    time: float  # s
+    time: float  # s, instant of x, v and a0
     x: Array  # (N, 2) m, positions
     v: Array  # (N, 2) m/s, velocities
     a0: Array  # (N, 2) m/s^2, accelerations
@@ -98,7 +98,7 @@ class Workspace:
     levels: Array  # (L,) logarithm of the sliding speed at the stages near a stop
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
     powers: Array  # (5, POWERS) coefficients of polynomials in theta, the elapsed share of the step
-    dense: Array  # (2, L) values at collocation.SEARCH_POINTS
+    dense: Array  # (2, L) two functions of theta at collocation.SEARCH_POINTS
     scale: Array  # (N,) m/s^2, accelerations that errors are relative to
     defect: Array  # (N,) m/s^2, interpolation error at the start of the step
     force: Array  # (2,) m/s^2, friction that yields, over m1, at the start of the step
@@ -111,7 +111,7 @@ class Workspace:
     last_length: float  # s; 0 where its polynomial is no guess for the next step
     guess: Array  # (2, POWERS) coefficients of the platform's acceleration in the last step
     waves: Complex  # (2,) harmonics of the ground at the start of the step
-    turns: Complex  # (2,) factors by which they change in a step of a rough run
+    turns: Complex  # (2,) factors by which `waves` change in a step of a rough run
     elapsed: Array  # (L,) s, time from the start of the step to its stages
     series: Array  # (SERIES_TERMS, 2) Taylor series of the harmonics in the step
     # Run as a whole

@@ -90,10 +90,10 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
 @cache
 def user_cache() -> Path | None:
     """Return the user's cache of this project, else a private temporary directory; None without both."""
-    return _writable(platformdirs.user_cache_path(NAME, appauthor=False)) or _private_temporary()
+    return _find_writable(platformdirs.user_cache_path(NAME, appauthor=False)) or _private_temporary()
 
 
-def _writable(folder: Path) -> Path | None:
+def _find_writable(folder: Path) -> Path | None:
     try:
         if folder.is_absolute():  # not where the home directory is unknown
             folder.mkdir(parents=True, exist_ok=True)
@@ -113,4 +113,4 @@ def _private_temporary() -> Path | None:
     except OSError:
         return None
     private = user is None or (status.st_uid == user and not status.st_mode & 0o077)
-    return _writable(folder) if stat.S_ISDIR(status.st_mode) and private else None
+    return _find_writable(folder) if stat.S_ISDIR(status.st_mode) and private else None

@@ -136,7 +136,7 @@ def _exit_code_of(main: Callable[[], int]) -> int:
     try:
         for word in sys.argv[1:]:
             if any("\ud800" <= letter <= "\udfff" for letter in word):
-                _say(f"command line: {word!r}: is not text in UTF-8: rename the file, or give another")
+                _print_line(f"command line: {word!r}: is not text in UTF-8: rename the file, or give another")
                 return 2
         try:
             code = main()
@@ -145,17 +145,17 @@ def _exit_code_of(main: Callable[[], int]) -> int:
         sys.stdout.flush()
         return code
     except SceneError as error:
-        _say(str(error))
+        _print_line(str(error))
         return 2
     except KeyboardInterrupt as stop:
-        _say("interrupted")
+        _print_line("interrupted")
         return 128 + int(getattr(stop, "number", signal.SIGINT))
     except OutputError as error:
-        _say(f"standard output cannot be written: {error}: the command ended early")
+        _print_line(f"standard output cannot be written: {error}: the command ended early")
         return CLOSED if error.closed else UNEXPECTED
     except Exception as error:
         what = " ".join(f"{type(error).__name__}: {error}".split())
-        _say(f"unexpected error: {what[:500]}; {_write_details()}")
+        _print_line(f"unexpected error: {what[:500]}; {_write_details()}")
         return UNEXPECTED
 
 
@@ -171,7 +171,7 @@ def _write_details() -> str:
     return f"details: {name}"
 
 
-def _say(line: str) -> None:
+def _print_line(line: str) -> None:
     with suppress(Exception):  # nobody listens
         print(line, file=sys.stderr, flush=True)
 

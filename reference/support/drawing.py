@@ -18,7 +18,7 @@ COLORS = "cividis"  # read alike with and without color vision deficiency, and i
 MAX_TIME_POINTS = 20_000  # points of a drawn line
 
 
-def verbatim(text: str) -> str:
+def escape_for_matplotlib(text: str) -> str:
     r"""
     Escape a text of a scene for matplotlib, which would read dollar signs as the marks of a formula.
 
@@ -32,7 +32,7 @@ def verbatim(text: str) -> str:
 
     Examples
     --------
-    >>> print(verbatim("price in $"))
+    >>> print(escape_for_matplotlib("price in $"))
     price in \$
     """
     return text.replace("$", r"\$")
@@ -99,7 +99,7 @@ def draw_motion(
         axes.axvspan(start, end, color="0.5", alpha=0.15, lw=0.0)
     axes.set_xlabel("time, s")
     axes.set_ylabel(label)
-    axes.set_title(verbatim(title), fontsize="medium")
+    axes.set_title(escape_for_matplotlib(title), fontsize="medium")
     axes.legend(fontsize="small")
     return axes
 

@@ -26,7 +26,8 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-TEMPORARY = ".phase-resonance-"  # begins names of temporary files and staging directories, and proves nothing
+# Prefix of temporary files and staging directories; a file of the user may have it, too: MARK decides
+TEMPORARY = ".phase-resonance-"
 MARK = "staging.json"  # file in a staging directory that says what it is and for which place
 CHUNK = 2**20  # bytes read at once
 NEW = "new"  # directory in a staging directory, for the files that are being written
@@ -60,7 +61,7 @@ def write_atomically(file: Path, content: bytes) -> None:
     try:
         os.replace(part, file)
     except BaseException:
-        _discard(part)
+        _remove_file(part)
         raise
 
 
@@ -74,7 +75,7 @@ def write_new(file: Path, content: bytes) -> Path:
                 return place
         raise AssertionError("the names do not end")
     finally:
-        _discard(part)
+        _remove_file(part)
 
 
 def iterate_names(place: Path) -> Iterator[Path]:
@@ -111,7 +112,7 @@ def staging_directory(place: Path) -> Iterator[Path]:
     folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY))
     with hold_lock(folder, wait=False):
         try:
-            write_atomically(folder / MARK, _mark(folder, place))
+            write_atomically(folder / MARK, _content_of_mark(folder, place))
             (folder / NEW).mkdir()
             yield folder
         finally:
@@ -131,18 +132,18 @@ def find_abandoned_staging(place: Path) -> Iterator[Path]:
 def clear_staging(folder: Path) -> None:
     """Remove a staging directory of our own, but nothing that somebody else has put there."""
     shutil.rmtree(folder / NEW, ignore_errors=True)
-    _discard(folder / MARK)
+    _remove_file(folder / MARK)
     with suppress(OSError):
         folder.rmdir()
 
 
-def _mark(folder: Path, place: Path) -> bytes:
+def _content_of_mark(folder: Path, place: Path) -> bytes:
     return json.dumps({"what": "staging directory of phase-resonance", "name": folder.name, "for": place.name}).encode()
 
 
 def _is_marked(folder: Path, place: Path) -> bool:
     try:
-        return read_file(folder / MARK, CHUNK) == _mark(folder, place)
+        return read_file(folder / MARK, CHUNK) == _content_of_mark(folder, place)
     except OSError:
         return False
 
@@ -155,7 +156,7 @@ def _write_part(file: Path, content: bytes) -> Path:
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)
     except BaseException:
-        _discard(part)
+        _remove_file(part)
         raise
     return part
 
@@ -171,6 +172,6 @@ def _move_to_free(part: Path, place: Path) -> None:
         os.replace(part, place)
 
 
-def _discard(file: Path) -> None:
+def _remove_file(file: Path) -> None:
     with suppress(OSError):
         file.unlink()

@@ -8,25 +8,25 @@ from typing import Any
 import numpy as np
 
 
-def plain(value: Any) -> Any:
+def as_plain_values(value: Any) -> Any:
     """
     Return lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
 
-    >>> plain((np.float64(0.5), np.arange(2)))
+    >>> as_plain_values((np.float64(0.5), np.arange(2)))
     [0.5, [0, 1]]
     """
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    return [plain(part) for part in value] if isinstance(value, list | tuple) else value
+    return [as_plain_values(part) for part in value] if isinstance(value, list | tuple) else value
 
 
-def hashable(value: Any) -> Hashable:
+def as_hashable(value: Any) -> Hashable:
     """
     Return tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
 
-    >>> hash(hashable({"a": [1.0]})) == hash(hashable({"a": [1]}))
+    >>> hash(as_hashable({"a": [1.0]})) == hash(as_hashable({"a": [1]}))
     True
     """
     if isinstance(value, dict):
-        return frozenset((key, hashable(part)) for key, part in value.items())
-    return tuple(map(hashable, value)) if isinstance(value, list) else value
+        return frozenset((key, as_hashable(part)) for key, part in value.items())
+    return tuple(map(as_hashable, value)) if isinstance(value, list) else value

@@ -99,7 +99,7 @@ def printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
 
 
-def keys_of(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
+def keys_of_table(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
     """Return the keys of a table: under its name, or under "*" where its name is free; none of what is no table."""
     return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())
 

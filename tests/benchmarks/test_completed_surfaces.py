@@ -16,7 +16,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch, import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
-from comparison.surfaces.completion import CompletedSurfaces, choose_held_out, completions
+from comparison.surfaces.completion import CompletedSurfaces, choose_held_out, complete_surfaces
 from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import load_scene, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
@@ -39,7 +39,7 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
     surfaces = label_surfaces(study, batches, [execute_batch(batch) for batch in batches])
     for task in analysis.tasks(study):
         results.put(task, execute(task))
-    listed = completions(study, surfaces, scene, analysis.collect(study, surfaces, results))
+    listed = complete_surfaces(study, surfaces, scene, analysis.collect(study, surfaces, results))
     seconds = time.process_time() - begin
     held_out = choose_held_out(study, scene, model)
     runs = len(study.solved(scene, model)) + len(held_out)

@@ -11,7 +11,7 @@ from known_conditioning import known_curves
 import comparison.registry
 from comparison.evidence.claims.checks import StatementVerdict
 from comparison.evidence.claims.table import ClaimTable, table_of
-from comparison.evidence.trends import trend
+from comparison.evidence.trends import fit_trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
@@ -65,9 +65,9 @@ def known_others() -> dict[str, Any]:
     sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
     return {
         "claims": known_claims(),
-        "scaling": [trend("fig3-I", 1, "exact minus small, supremum", SCALES, sizes, 1e-3 * sizes, 2.0)],
+        "scaling": [fit_trend("fig3-I", 1, "exact minus small, supremum", SCALES, sizes, 1e-3 * sizes, 2.0)],
         "conditioning": known_curves(),
-        "convergence": [trend("fig3-I", 2, "engine against resolved", SCALES, sizes, 2.0 * sizes, 1.0)],
+        "convergence": [fit_trend("fig3-I", 2, "engine against resolved", SCALES, sizes, 2.0 * sizes, 1.0)],
     }
 
 

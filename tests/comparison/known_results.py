@@ -14,7 +14,7 @@ from comparison.analyses.assumptions.validity import (
     PHASES,
     AssumptionCell,
     Validity,
-    ranges,
+    find_validity_ranges,
 )
 from comparison.analyses.assumptions.variations import TURNED_LINK, Variation
 from comparison.analyses.ensemble import result as ensemble
@@ -31,7 +31,7 @@ from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
 from comparison.evidence.tradeoff.trade import MeasuredSetting as Setting
 from comparison.evidence.validation import table as validation
-from comparison.runner.output import publish
+from comparison.runner.output import publish_files
 from reference.problem import load_scene
 from reference.problem.readings import AS_INTEGRATED
 
@@ -81,7 +81,7 @@ def known_assumptions() -> Validity:
                        variation is uneven[0])
         for n, (key, variation, blind) in enumerate(tried, start=1)
     ]  # fmt: skip
-    of_scene = tuple(ranges(scene, cells, directions))
+    of_scene = tuple(find_validity_ranges(scene, cells, directions))
     return Validity(ASSUMPTIONS, AS_INTEGRATED, PHASES, DURATION, tuple(cells), tuple(directions), of_scene)
 
 
@@ -116,9 +116,9 @@ def known_benchmarks() -> benchmarks.Benchmarks:
 def known_growth() -> growth.MeasuredGrowth:
     """One series without a value."""
     series = [
-        growth.with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
-        growth.with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
-        growth.with_slope("workers", "", "equations", (1.0, 2.0), (2.0, 1.5)),
+        growth.series_with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
+        growth.series_with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
+        growth.series_with_slope("workers", "", "equations", (1.0, 2.0), (2.0, 1.5)),
     ]
     return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
 
@@ -165,7 +165,7 @@ FILES: Mapping[str, bytes] = {
 
 def leave_beside(place: Path, files: Mapping[str, bytes], *scenes: str) -> None:
     """What other commands leave beside a report: these files, and a known trade-off of every scene."""
-    publish(place, files, "a test")
+    publish_files(place, files, "a test")
     for name in scenes:
         trade = MeasuredTrade(known_trade(name), xr.Dataset({"mu": ("point", [1.0])}))
         with pytest.MonkeyPatch.context() as patch:

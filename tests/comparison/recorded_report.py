@@ -183,7 +183,7 @@ def recorded_lines(folder: Path) -> list[str]:
         analyses_are(patch, motions=distinct_motions)
         patch.setattr(user_models, "Workers", Here)
         patch.setattr(called, "_processor_time", lambda: 0.0)
-        patch.setattr(comparison.run, "levels", lambda study: [Early(levels_of(study, {})[-1].study, 2, 3)])
+        patch.setattr(comparison.run, "study_levels", lambda study: [Early(levels_of(study, {})[-1].study, 2, 3)])
         lacking = folder / "lacking" / "report"
         lacking.parent.mkdir()
         for name, text in {"limited": scene_text().split("[acceptance]")[0] + LIMITS, "flat": FLAT}.items():

@@ -4,7 +4,14 @@ import math
 
 import pytest
 
-from comparison.verdicts import count_verdicts, judge, word_counts, word_counts_and_largest, word_error, word_verdict
+from comparison.verdicts import (
+    count_verdicts,
+    judge_error,
+    word_counts,
+    word_counts_and_largest,
+    word_error,
+    word_verdict,
+)
 
 
 @pytest.mark.parametrize(
@@ -22,7 +29,7 @@ from comparison.verdicts import count_verdicts, judge, word_counts, word_counts_
     ],
 )
 def test_a_value_is_met_within_its_uncertainties(error: float | None, allowed: float | None, verdict: str) -> None:
-    assert judge(error, allowed) == verdict
+    assert judge_error(error, allowed) == verdict
 
 
 def test_an_error_has_its_sign_and_its_base() -> None:

@@ -18,7 +18,7 @@ from pages import PAGES, ROOT
 from PIL import Image
 from stated_numbers import STATED, Stated, numbers_of
 
-from comparison.evidence.benchmarks.table import page as benchmarks_page
+from comparison.evidence.benchmarks.table import word_page as benchmarks_page
 from comparison.evidence.validation import statements
 from comparison.evidence.validation.table import load_record
 from comparison.report.results import VALIDATED, VALIDATED_BRIEFLY
@@ -88,8 +88,8 @@ def test_the_readme_has_the_measurements_of_their_record() -> None:
 
 
 def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
-    assert statements.word_validated(load_record()) == VALIDATED
-    assert statements.word_validated_briefly(load_record()) == VALIDATED_BRIEFLY
+    assert statements.word_what_is_validated(load_record()) == VALIDATED
+    assert statements.word_what_is_validated_briefly(load_record()) == VALIDATED_BRIEFLY
     for page in (README, *(page.read_text(encoding="utf-8") for page in evidence_table.BLOCKS)):
         for line in re.findall(r".*\bvalidated\b.*", page, flags=re.IGNORECASE):
             allowed = ("Validated is one quantity", "what is validated, and what is not", "isolated")

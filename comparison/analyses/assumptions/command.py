@@ -45,7 +45,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     options = parser.parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
     names = options.scenes or builtin_scenes()
-    scenes = [_spatial(name) for name in names]
+    scenes = [_load_spatial_scene(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
     console = wide_console()
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
@@ -57,12 +57,12 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     found = assumptions.collect(study, None, results)
     assert found is not None, "every scene has both models of the engine"
     for scene in scenes:
-        _print(console, scene, found)
+        _print_assumptions(console, scene, found)
     console.print(describe_verdict(found))
     return 0
 
 
-def _spatial(name: str) -> Scene:
+def _load_spatial_scene(name: str) -> Scene:
     scene = load_scene(name)
     if scene.recorded:
         rule = "rings and heights are varied at phases, which a record has not: give a scene of two frequencies"
@@ -73,7 +73,7 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _print(console: Console, scene: Scene, found: Validity) -> None:
+def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
     cells = [cell for cell in found.cells if cell.scene == scene.name]
     about = f"largest change of mu_i, {found.reading}, against the translational model, per body"
     console.print(f"{scene.title} ({scene.name}): {about}")
@@ -86,7 +86,7 @@ def _print(console: Console, scene: Scene, found: Validity) -> None:
             f"{each.ring * radius:g}",
             f"{each.height:g}",
             str(each.supports or scene.isolator.support_count),
-            _uneven(each, radius),
+            _word_uneven_variation(each, radius),
             "  ".join(f"{100.0 * change.size:+.3f}" for change in changes),
             "  ".join(f"{100.0 * change.error:.3f}" for change in changes),
             NO_EFFECT if cell.no_effect else ", ".join(sorted(set(cell.status))),
@@ -99,7 +99,7 @@ def _print(console: Console, scene: Scene, found: Validity) -> None:
         console.print(line)
 
 
-def _uneven(variation: Variation, radius: float) -> str:
+def _word_uneven_variation(variation: Variation, radius: float) -> str:
     towards = f"at {math.degrees(variation.direction):.0f}°"
     parts = [f"oval {variation.oval:.2g} {towards}"] if variation.oval else []
     parts += [f"{variation.offset * radius:.2g} m {towards}"] if variation.offset else []

@@ -14,8 +14,8 @@ from comparison.analyses.assumptions.trials import WITHIN
 from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
 from comparison.analyses.assumptions.variations import Axis
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import panel
-from comparison.report.plots import Panel, plain
+from comparison.report.panels import make_panel
+from comparison.report.plots import Panel, json_numbers
 from comparison.report.results import Results
 from comparison.report.section import Report, Section
 from reference.problem import Scene
@@ -41,13 +41,14 @@ def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
         for body in range(1, len(scene.bodies) + 1):
             changes = [largest_change(found, cell, body) for _, cell in line]
             low, middle, high = (
-                plain([100.0 * (change.size + side * change.error) for change in changes]) for side in (-1.0, 0.0, 1.0)
+                json_numbers([100.0 * (change.size + side * change.error) for change in changes])
+                for side in (-1.0, 0.0, 1.0)
             )
             bars = {"x": places, "y": middle, "low": low, "high": high, "color": body - 1, "marks": True}
             series.append({"name": f"μ_{body}", **bars})
         axes = {"title": AXES[key], "log": key == "ring"}, {"title": "largest change of μ_i, %"}
         label = f"{scene.name}: largest change of every mu, {found.reading}, over {AXES[key]}"
-        panels.append(panel(AXES[key].split(",")[0], label, *axes, series, bands=BANDS))
+        panels.append(make_panel(AXES[key].split(",")[0], label, *axes, series, bands=BANDS))
     return panels
 
 

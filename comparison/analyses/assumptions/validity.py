@@ -85,7 +85,7 @@ class ValidityRange:
     no_effect: Annotated[Text, "why symmetry leaves every trial without effect: nothing is shown; else empty"] = ""
 
 
-def ranges(
+def find_validity_ranges(
     scene: Scene, cells: Sequence[AssumptionCell], directions: Sequence[DirectionTrial] = ()
 ) -> list[ValidityRange]:
     """
@@ -107,7 +107,7 @@ def ranges(
         telling = [(value * unit, cell) for value, cell in line if key in DIRECTED or not cell.no_effect]
         direction = direction_of(tried[0].variation, key) if tried and not reason else None
         for body, share in itertools.product(bodies, WITHIN):
-            holds, fails = (None, None) if reason else _bracket(telling, body, share)
+            holds, fails = (None, None) if reason else _bracket_share(telling, body, share)
             found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason))
     return found
 
@@ -127,7 +127,7 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
     return float(np.sign(variation.yaw)) if key == "yaw" else variation.direction
 
 
-def _bracket(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
+def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
     """The last value up to which all hold, and the first that does not; None without."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     return next(reversed(held), None), next((value for value, _ in line[len(held) :]), None)
@@ -227,7 +227,7 @@ class Assumptions(MappedAnalysis[Validity]):
     sizes: int = SIZES
     directed: Sequence[tuple[Axis, ...]] = (DIRECTED,)
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
         Yield what is tried in every scene with phases that has both models of the engine.
 
@@ -251,19 +251,21 @@ class Assumptions(MappedAnalysis[Validity]):
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)
-        for (scene, _, what, *_), answer in zip(self.arguments(study), answers):
+        for (scene, _, what, *_), answer in zip(self.task_arguments(study), answers):
             if what is None:  # before the variations of its scene
                 (plain,) = answer.trials
                 continue
-            cells += [_cell(scene, trial, plain) for trial in answer.trials]
+            cells += [_make_cell(scene, trial, plain) for trial in answer.trials]
             directions += answer.directions
         if not cells:
             return None
-        within = tuple(validity for scene in study.scenes for validity in ranges(scene, cells, directions))
+        within = tuple(
+            validity for scene in study.scenes for validity in find_validity_ranges(scene, cells, directions)
+        )
         return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, DURATION, tuple(cells), tuple(directions), within)
 
 
-def _cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
+def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = change_of(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""

@@ -70,9 +70,11 @@ FIRST_SIZE = {
     "offset": 0.1,  # share of the radius of the ring, a twentieth of the width: what codes take for accidental
     "yaw": 0.2,  # rad
 }
-SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}  # where none holds yet, no smaller one is tried
-LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}  # larger: other buildings, or they lift off
-DIRECTIONS = 4  # that no symmetry of the scene makes equivalent, in half a turn
+# Smallest size that is tried of each variation, even where no assumption holds there
+SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}
+# Largest size of each: beyond it the building is another one, or supports lift off
+LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}
+DIRECTIONS = 4  # directions in half a turn, no two of which a symmetry of the scene makes equivalent
 
 
 def with_size(variation: Variation, key: Axis, size: float) -> Variation:

@@ -11,7 +11,7 @@ The small equations are cheap and answer on a whole grid. The engine answers at 
 beside it stand the exact equations, with the same geometry, at the same pairs over the same periods.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -22,9 +22,9 @@ import reference
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.models import any_scene, dry, has_spatial_data
-from comparison.study.shorten import shorten
-from comparison.study.study import Study, nested_grids
+from comparison.study.models import REFERENCE_TOLERANCE, any_scene, has_dry_friction, has_spatial_data
+from comparison.study.shorten import shorten_scene
+from comparison.study.study import STUDY_TOLERANCE, Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
@@ -35,9 +35,6 @@ SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # v_reg, m/s
 FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no two related by a symmetry
 FEW_PERIODS = 3.0  # periods of the slower harmonic: the loading is strongest in them
-REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-6, 1e-3
-
-NOTHING = (*[np.nan] * 4, (np.nan, np.nan), np.nan, np.nan)  # statistics at a speed without an answer
 
 
 @result
@@ -84,8 +81,8 @@ class Question(NamedTuple):
 
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
 EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
-IN_TRANSLATION = {"model": "translational", "tolerance": ENGINE_TOLERANCE}
-IN_SPACE = {"model": "spatial", "tolerance": ENGINE_TOLERANCE}
+IN_TRANSLATION = {"model": "translational", "tolerance": STUDY_TOLERANCE}
+IN_SPACE = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
 QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, True),
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, True),
@@ -114,19 +111,31 @@ class _Answers(NamedTuple):
     lost: str
 
 
+class _SpeedStatistics(NamedTuple):
+    """Statistics of one body at one speed, as `ConditioningCurve` lists them; NaN without an answer."""
+
+    mean: float = np.nan
+    mean_error: float = np.nan
+    largest: float = np.nan
+    largest_error: float = np.nan
+    largest_phases: Phases = (np.nan, np.nan)
+    relative_mean: float = np.nan
+    relative_error: float = np.nan
+
+
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
     """Return the curves of every body for one question; with set-valued friction the literal supremum, too."""
     scene, number, grid = task
     question = QUESTIONS[number]
-    answers = _answers(scene if grid else shorten(scene, FEW_PERIODS), question, grid)
-    curves = [_curve(task, body, question.speeds, answers) for body in range(1, len(scene.bodies) + 1)]
+    answers = _ask_at_speeds(scene if grid else shorten_scene(scene, FEW_PERIODS), question, grid)
+    curves = [_make_curve(task, body, question.speeds, answers) for body in range(1, len(scene.bodies) + 1)]
     if question.argument == "cutoff":
         limit = answers._replace(mu=answers.supremum[None], error=answers.supremum_error[None])
-        curves += [_curve(task, body, (0.0,), limit) for body in range(1, len(scene.bodies) + 1)]
+        curves += [_make_curve(task, body, (0.0,), limit) for body in range(1, len(scene.bodies) + 1)]
     return curves
 
 
-def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
+def _ask_at_speeds(moving: Scene, question: Question, grid: int) -> _Answers:
     """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
     phases, taken = distinct_pairs(moving, grid) if grid else (FEW, np.arange(len(FEW)))
     supremum = reference.amplification(moving, phases, **question.base)
@@ -147,43 +156,52 @@ def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
     )  # fmt: skip
 
 
-def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
+def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
-    relative = mu / supremum - 1.0
-    relative_error = np.hypot(error, mu / supremum * supremum_error) / supremum
-    rows = [_statistics(*each, answers, task[2]) for each in zip(mu, error, relative, relative_error)]
+    over_supremum = mu / supremum - 1.0
+    over_supremum_error = np.hypot(error, mu / supremum * supremum_error) / supremum
+    rows = [
+        _statistics_at_speed(*each, answers, task[2]) for each in zip(mu, error, over_supremum, over_supremum_error)
+    ]
     pairs = int(np.isfinite(mu).any(axis=0).sum())
-    return _describe(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
+    return _fill_curve(task, body, speeds, rows, pairs, "" if pairs else answers.lost)
 
 
-def _statistics(mu: Array, error: Array, relative: Array, relative_error: Array, answers: _Answers, grid: int) -> Any:
-    """Return mean and largest mu of P phase pairs and the mean of its relative distance, each with its error."""
+def _statistics_at_speed(
+    mu: Array, error: Array, over_supremum: Array, over_supremum_error: Array, answers: _Answers, grid: int
+) -> _SpeedStatistics:
+    """Return the statistics of mu and of mu over supremum - 1, (P,) each with its error, of P phase pairs."""
     known = np.isfinite(mu)
     if not known.any():
-        return NOTHING
+        return _SpeedStatistics()
     place = int(np.nanargmax(mu))
-    sampling = sampling_error(relative.reshape(grid, grid), answers.independent) if grid else 0.0
-    statistics = (
-        mu[known].mean(), error[known].mean(), mu[place], error[place], answers.phases[place],
-        relative[known].mean(), np.hypot(relative_error[known].mean(), sampling),
-    )  # fmt: skip
-    return tuple(tuple(each.tolist()) if np.ndim(each) else float(each) for each in statistics)
+    sampling = sampling_error(over_supremum.reshape(grid, grid), answers.independent) if grid else 0.0
+    alpha1, alpha2 = answers.phases[place].tolist()
+    return _SpeedStatistics(
+        mean=float(mu[known].mean()),
+        mean_error=float(error[known].mean()),
+        largest=float(mu[place]),
+        largest_error=float(error[place]),
+        largest_phases=(alpha1, alpha2),
+        relative_mean=float(over_supremum[known].mean()),
+        relative_error=float(np.hypot(over_supremum_error[known].mean(), sampling)),
+    )
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds
-    columns = list(zip(*[NOTHING] * len(speeds)))
-    return [_describe(task, body, speeds, columns, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
+    rows = [_SpeedStatistics()] * len(speeds)
+    return [_fill_curve(task, body, speeds, rows, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
 
 
-def _describe(
-    task: Arguments, body: int, speeds: tuple[float, ...], columns: Any, pairs: int, reason: str
+def _fill_curve(
+    task: Arguments, body: int, speeds: tuple[float, ...], rows: Sequence[_SpeedStatistics], pairs: int, reason: str
 ) -> ConditioningCurve:
     scene, number, grid = task
     question = QUESTIONS[number]
-    mean, mean_error, largest, largest_error, largest_phases, relative_mean, relative_error = columns
+    columns: dict[str, Any] = {name: tuple(getattr(row, name) for row in rows) for name in _SpeedStatistics._fields}
     return ConditioningCurve(
         scene=scene.name,
         body=body,
@@ -192,17 +210,11 @@ def _describe(
         speed=SYMBOLS[question.argument],
         grid=grid,
         pairs=pairs,
-        duration=(scene if grid else shorten(scene, FEW_PERIODS)).duration,
+        duration=(scene if grid else shorten_scene(scene, FEW_PERIODS)).duration,
         v=speeds,
-        mean=mean,
-        mean_error=mean_error,
-        largest=largest,
-        largest_error=largest_error,
-        largest_phases=largest_phases,
-        relative_mean=relative_mean,
-        relative_error=relative_error,
         base=question.base["equations"],
         reason=reason,
+        **columns,
     )
 
 
@@ -213,13 +225,13 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
         """Return the scenes with the numbers of their questions; the grid is the largest nested one up to MAX_GRID."""
         grid = max((each for each in nested_grids(study.grid) if each <= MAX_GRID), default=MAX_GRID)
         return [
             (scene, number, grid if question.on_grid else 0)
             for scene in study.phased
-            if dry(scene)
+            if has_dry_friction(scene)
             for number, question in enumerate(QUESTIONS)
             if question.applies(scene)
         ]

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
-from comparison.wording import difference
+from comparison.wording import difference_with_error
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
@@ -19,13 +19,13 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
     """
-    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _question(curve)]
+    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _reaches_deepest_speed(curve)]
     if not found:
         return ""
-    curve = max(found, key=lambda each: abs(_at(each, DEEP)[0]))
-    size, error = _at(curve, DEEP)
+    curve = max(found, key=lambda each: abs(_relative_mean_at(each, DEEP)[0]))
+    size, error = _relative_mean_at(curve, DEEP)
     pairs = f"{curve.grid} × {curve.grid} phases"
-    integrated, deep, deepest = (_write(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+    integrated, deep, deepest = (_write_size(*_relative_mean_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
         f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds "
         f"above {speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
@@ -48,11 +48,13 @@ def speed_text(speed: float) -> str:
     return f"{speed:.0e}".replace("e-0", "e-")
 
 
-def _question(curve: ConditioningCurve) -> bool:
-    return curve.reading == AS_INTEGRATED and all(math.isfinite(_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
+    return curve.reading == AS_INTEGRATED and all(
+        math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST)
+    )
 
 
-def _at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
+def _relative_mean_at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
     """Return relative mean and its error at a speed."""
     place = curve.v.index(speed)
     return curve.relative_mean[place], curve.relative_error[place]
@@ -68,7 +70,7 @@ def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) ->
         and all(map(math.isfinite, each.mean[-2:]))
     ]
     pairs = max((each.pairs for each in engines), default=0)
-    changes = [f"{_write(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
+    changes = [f"{_write_size(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
     if not changes:
         return ""
     before, after = engines[0].v[-2:]
@@ -82,5 +84,9 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
     return after / before - 1.0, sum(errors) / before
 
 
-def _write(size: float, error: float) -> str:
-    return difference(size, error) if math.isfinite(error) else f"{difference(size, error)} (error unknown)"
+def _write_size(size: float, error: float) -> str:
+    return (
+        difference_with_error(size, error)
+        if math.isfinite(error)
+        else f"{difference_with_error(size, error)} (error unknown)"
+    )

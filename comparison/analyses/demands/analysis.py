@@ -83,13 +83,13 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
         return sum(
             seconds_per_motion(scene, model) * len(study.solved(scene, model))
             for scene in study.scenes
-            for model in _moving(study, scene)
+            for model in _models_with_own_motions(study, scene)
         )
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """Motions of about two seconds each."""
         phases = phase_grid(study.grid)
-        for scene, model, places in _batches(study):
+        for scene, model, places in _list_batches(study):
             yield scene, model, model.tolerance(study.tolerance), phases[places]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
@@ -104,7 +104,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
         status = np.full((len(names), len(models), grid**2), NOT_ASKED, dtype=object)
         numbers: dict[str, Array] = {}
         answers = self.values(study, surfaces, results)
-        for (scene, model, places), (estimated, outcomes) in zip(_batches(study), answers, strict=True):
+        for (scene, model, places), (estimated, outcomes) in zip(_list_batches(study), answers, strict=True):
             where = names.index(scene.name), models.index(model.key)
             status[where][places] = outcomes
             for name, estimates in estimated.items():
@@ -113,8 +113,8 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
                     rows, first = values.reshape(len(places), -1).T, PER_BODY.get(name, 0)
                     numbers.setdefault(key, np.full(shape, np.nan))[where][first : first + len(rows), places] = rows
         for row, scene in enumerate(study.scenes):
-            for model in _moving(study, scene):
-                place, source = study.places(model, scene), study.sources(scene, model)
+            for model in _models_with_own_motions(study, scene):
+                place, source = study.places(model, scene), study.symmetric_sources(scene, model)
                 for array in (status, *numbers.values()):
                     of_model = array[row, models.index(model.key)]
                     of_model[..., place] = of_model[..., source]
@@ -135,16 +135,16 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
         return xr.Dataset(variables, {"scene": names, "model": models, "alpha1": axis, "alpha2": axis, "body": body})
 
 
-def _moving(study: Study, scene: Scene) -> list[Model]:
+def _models_with_own_motions(study: Study, scene: Scene) -> list[Model]:
     """Return the models whose motions differ: as integrated is another reading of the same motion."""
     models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
     return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 
 
-def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
+def _list_batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
     """Scene, model, places on the whole grid."""
     for scene in study.scenes:
-        for model in _moving(study, scene):
+        for model in _models_with_own_motions(study, scene):
             places, size = study.solved(scene, model), BATCH[model.side]
             for first in range(0, len(places), size):
                 yield scene, model, places[first : first + size]
@@ -170,16 +170,16 @@ def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) ->
         for name in QUANTITIES
         if name in demands
         for body in (range(1, len(scene.bodies) + 1) if name in PER_BODY else [0])
-        for model in _moving(study, scene)
-        for statistics in _statistics(study, demands, scene, model, name, body)
+        for model in _models_with_own_motions(study, scene)
+        for statistics in _statistics_of_demand(study, demands, scene, model, name, body)
     ]
 
 
-def _statistics(
+def _statistics_of_demand(
     study: Study, demands: xr.Dataset, scene: Scene, model: Model, name: str, body: int
 ) -> Iterator[DemandStatistics]:
     place = {"scene": scene.name, "model": model.key} | ({"body": body} if body else {})
-    axis = study.axis(model, scene)
+    axis = study.phase_indices(model, scene)
     value, error = (np.asarray(demands[key].sel(place), float)[np.ix_(axis, axis)] for key in (name, f"{name}_error"))
     known = np.isfinite(value)
     if not known.any():

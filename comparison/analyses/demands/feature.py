@@ -46,7 +46,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
     return lines
 
 
-def _context(report: Report) -> Mapping[str, Any]:
+def _section_context(report: Report) -> Mapping[str, Any]:
     results = report.results
     return {
         "demand_panels": [panel for scene in results.scenes for panel in demand_panels(scene, results)],
@@ -60,5 +60,5 @@ FEATURE = Feature(
     analysis=DemandSurfaces(),
     on_request=True,
     dataset=with_demands,
-    section=Section("Demands over all phases", context=_context),
+    section=Section("Demands over all phases", context=_section_context),
 )

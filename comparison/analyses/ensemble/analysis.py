@@ -52,7 +52,7 @@ class Points:
     compared: Mapping[str, Sequence[Point]] = field(default_factory=dict)
 
     @property
-    def every(self) -> list[Point]:
+    def all_points(self) -> list[Point]:
         """All points, those of the equations first."""
         return [*self.equations, *(point for points in self.compared.values() for point in points)]
 
@@ -88,11 +88,11 @@ class Ensemble:
 
     def equation_tasks(self) -> list[Task]:
         """One for each scene."""
-        return _once(self._task(member, EXACT) for member in self.members)
+        return _drop_repeated_tasks(self._task(member, EXACT) for member in self.members)
 
     def engine_tasks(self, chosen: Sequence[Choice]) -> list[Task]:
         """Return those of all other models at the chosen motions."""
-        return _once(self._task(each.member, model) for each in chosen for model in self._models(each))
+        return _drop_repeated_tasks(self._task(each.member, model) for each in chosen for model in self._models(each))
 
     def points(self, results: TaskResults, chosen: Sequence[Choice] = ()) -> Points:
         """Every motion by every model that was asked for it."""
@@ -120,7 +120,7 @@ class Ensemble:
         return Task(compute_demands, arguments, STAGE, seconds, scene, model.side == "reference", timeout=LIMIT)
 
 
-def _once(tasks: Iterable[Task]) -> list[Task]:
+def _drop_repeated_tasks(tasks: Iterable[Task]) -> list[Task]:
     """Each task once."""
     return list({task.key: task for task in tasks}.values())
 

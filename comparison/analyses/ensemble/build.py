@@ -59,7 +59,7 @@ def build_result(
 def engine_motions(points: Points) -> list[result.ChosenMotion]:
     """The motions of the engine, why they were chosen, and how they ended by every model."""
     statuses: dict[tuple[str, str, float], dict[str, str]] = {}
-    for point in points.every:
+    for point in points.all_points:
         member = point.member
         statuses.setdefault((member.structure, member.motion, member.scale), {})[point.model] = point.status
     places = [(each.member.structure, each.member.motion, each.member.scale) for each in points.chosen]
@@ -78,11 +78,11 @@ def read_suite(members: Sequence[Member], listed: Mapping[str, Motion]) -> list[
     return found
 
 
-def structures_of(members: Sequence[Member], moved: Mapping[str, result.Stripe]) -> list[result.Structure]:
-    """The structures in their order. moved: their isolator displacements at the largest scale."""
+def structures_of(members: Sequence[Member], displacements: Mapping[str, result.Stripe]) -> list[result.Structure]:
+    """The structures in their order. displacements: their isolator displacements at the largest scale."""
     found = []
     for name, own in group_by(members, "structure").items():
-        scene, isolator, stripe = own[0].scene, None, moved.get(name)
+        scene, isolator, stripe = own[0].scene, None, displacements.get(name)
         at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[MEDIAN].value}
         statistic, displacement = next(((key, value) for key, value in at.items() if value), ("", 0.0))
         friction = 0.0 if scene.lubricated else scene.dry_friction.fast

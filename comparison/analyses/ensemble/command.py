@@ -17,7 +17,15 @@ from rich.console import Console
 
 from comparison.analyses.ensemble.analysis import STAGE, Ensemble, Points
 from comparison.analyses.ensemble.build import build_result
-from comparison.analyses.ensemble.governing import ALL, MOST, Asked, Choice, choose_motions, expected_count, read_engine
+from comparison.analyses.ensemble.governing import (
+    ALL,
+    MOST,
+    Asked,
+    Choice,
+    choose_motions,
+    expected_count,
+    parse_engine_option,
+)
 from comparison.analyses.ensemble.limits import (
     NO_LIMITS,
     WITHIN,
@@ -46,11 +54,11 @@ from comparison.cli.arguments import (
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.start import start_time
+from comparison.cli.start import command_start
 from comparison.cli.terminal import print_buildings, print_records
 from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
 from comparison.runner.attempts import attempt
-from comparison.runner.output import destination, publish, refuse_foreign_files, refuse_other_page
+from comparison.runner.output import publish_files, refuse_foreign_files, refuse_other_page, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
 from comparison.runner.task import Task
@@ -82,7 +90,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     options = _parser().parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
     members = members_of([family_of_options(options, scene) for scene in options.scenes])
-    asked = read_engine(options.engine, members)
+    asked = parse_engine_option(options.engine, members)
     target = None
     if options.target is not None:
         members, target = match_spectrum(members, options.target, options.periods)
@@ -91,7 +99,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if options.model is not None and asked != 0:
         refuse_unfit(members, ENGINES[options.model])
     check = demand_check(options, members)
-    out = destination(options.out)
+    out = resolve_destination(options.out)
     refuse_other_page(out, COMMAND)
     refuse_foreign_files(out, FILES)
     console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
@@ -114,7 +122,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin = start_time().wall
+    begin = command_start().wall
     write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options), check)
 
     def then(results: TaskResults, display: Display) -> Sequence[Task]:
@@ -196,11 +204,13 @@ def write_ensemble(
     if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
         files[TABLE] = table
     written = write_and_show(
-        options.out, partial(publish, destination(options.out), files, COMMAND), partial(show, console, result)
+        options.out,
+        partial(publish_files, resolve_destination(options.out), files, COMMAND),
+        partial(show, console, result),
     )
     page = attempt(PAGE, lambda: page_of(result).encode())
     with report_write_errors(options.out):
-        written += publish(destination(options.out), {} if page is None else {PAGE: page}, COMMAND)
+        written += publish_files(resolve_destination(options.out), {} if page is None else {PAGE: page}, COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
     return result
 

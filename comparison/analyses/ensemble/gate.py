@@ -49,12 +49,12 @@ def check_demands(
 def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
     """Return the ensemble computed in this process, by the engine at the motions that govern where it is asked for."""
     results = TaskResults()
-    _compute(results, ensemble.equation_tasks())
+    _compute_tasks(results, ensemble.equation_tasks())
     chosen = choose_motions(ensemble.points(results).equations, None) if engine else []
-    _compute(results, ensemble.engine_tasks(chosen))
+    _compute_tasks(results, ensemble.engine_tasks(chosen))
     return build_result(ensemble.points(results, chosen), {}, ensemble.tolerance)
 
 
-def _compute(results: TaskResults, tasks: Sequence[Task]) -> None:
+def _compute_tasks(results: TaskResults, tasks: Sequence[Task]) -> None:
     for task in results.missing(tasks):
         results.put(task, execute(task))

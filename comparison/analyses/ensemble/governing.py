@@ -39,7 +39,7 @@ class Choice:
     reasons: tuple[str, ...]
 
 
-def read_engine(words: Sequence[str] | None, members: Sequence[Member]) -> Asked:
+def parse_engine_option(words: Sequence[str] | None, members: Sequence[Member]) -> Asked:
     """Which motions `--engine all | N | NAME ...` asks for; those that govern without it. Raises SceneError."""
     if words is None:
         return None
@@ -72,29 +72,29 @@ def choose_motions(points: Sequence[Point], asked: Asked) -> list[Choice]:
             chosen += [Choice(point.member, (ASKED,)) for point in own if point.member.motion in asked]
             continue
         reasons: dict[int, list[str]] = {}
-        for place, reason in _governing(own):
+        for place, reason in _find_governing(own):
             reasons.setdefault(place, []).append(reason)
         if asked is not None:
-            for place in sorted(range(len(own)), key=lambda place: -_largest(own[place], "displacement")):
+            for place in sorted(range(len(own)), key=lambda place: -_largest_demand(own[place], "displacement")):
                 reasons.setdefault(place, [NEXT])
             reasons = dict(list(reasons.items())[:asked])
         chosen += [Choice(own[place].member, tuple(why)) for place, why in reasons.items()]
     return chosen
 
 
-def _governing(points: Sequence[Point]) -> Iterator[tuple[int, str]]:
+def _find_governing(points: Sequence[Point]) -> Iterator[tuple[int, str]]:
     """Places of the motions that govern, and why."""
     for quantity, reason in GOVERNING.items():
-        values = [_largest(point, quantity) for point in points]
+        values = [_largest_demand(point, quantity) for point in points]
         if max(values, default=-math.inf) > -math.inf:
             yield int(np.argmax(values)), reason
-    moved = np.array([_largest(point, "displacement") for point in points])
+    moved = np.array([_largest_demand(point, "displacement") for point in points])
     known = moved[moved > -math.inf]
     if len(known):
         yield int(np.argmin(np.abs(moved - np.median(known)))), MEDIAN
 
 
-def _largest(point: Point, quantity: str) -> float:
+def _largest_demand(point: Point, quantity: str) -> float:
     """The demand of a motion, of a demand of bodies the largest; minus infinity without an answer."""
     values = [number.value for (name, _), number in point.values.items() if name == quantity]
     return max((value for value in values if math.isfinite(value)), default=-math.inf)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
 from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.rows import labels, place_of
-from comparison.analyses.ensemble.sentences import count_motions
+from comparison.analyses.ensemble.sentences import motions_in_words
 from comparison.study.models import EXACT
 from comparison.verdicts import (
     MET,
@@ -20,7 +20,7 @@ from comparison.verdicts import (
     NOT_MET,
     Verdict,
     count_verdicts,
-    judge,
+    judge_error,
     word_counts,
     word_verdict,
 )
@@ -64,7 +64,7 @@ class DemandCheck:
     @property
     def verdict(self) -> Verdict:
         """Met, not met or not compared."""
-        return NOT_COMPARED if self.reason else judge(self.excess, self.allowed)
+        return NOT_COMPARED if self.reason else judge_error(self.excess, self.allowed)
 
 
 def word_check(check: DemandCheck) -> str:
@@ -84,7 +84,7 @@ def _stated_in_words(check: DemandCheck) -> str:
 
 def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
     """Return how many demands are met, then a line for every one that is not, the worst last."""
-    lines = [word_check(check) for check in sorted(checks, key=_order, reverse=True) if check.verdict != MET]
+    lines = [word_check(check) for check in sorted(checks, key=_order_of_check, reverse=True) if check.verdict != MET]
     return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
 
 
@@ -93,7 +93,7 @@ def verdicts_of(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
     return [LimitVerdict(check.key, check.bound, check.verdict, word_check(check)) for check in checks]
 
 
-def _order(check: DemandCheck) -> tuple[int, float, float]:
+def _order_of_check(check: DemandCheck) -> tuple[int, float, float]:
     """Return the order of checks, the worst first: by the share of the stated number by which a demand is off."""
     share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
     return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
@@ -102,7 +102,7 @@ def _order(check: DemandCheck) -> tuple[int, float, float]:
 def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -> list[DemandCheck]:
     """Return the verdict on every limit of every structure, at the largest scale. limits: by name of the structure."""
     return [
-        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order)
+        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order_of_check)
         for structure in ensemble.structures
         if (stated := limits.get(structure.name)) is not None
         for key, limit in stated.limits_by_key().items()
@@ -137,7 +137,7 @@ def _check_body(
     count = f"{len(known)} of " if len(known) < ensemble.motions else ""
     what = "base shear over the weight" if key == "base_shear" else title_of(key)
     what += f" {place}" if (place := place_of(structure, key, body)) else ""
-    what += f", {statistic} of {count}{count_motions(ensemble.motions)}{by}"
+    what += f", {statistic} of {count}{motions_in_words(ensemble.motions)}{by}"
     what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
     lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)

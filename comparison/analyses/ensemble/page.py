@@ -11,9 +11,9 @@ from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import HEIGHTS, demand_rows, floor_of, labels, profile_rows
 from comparison.analyses.ensemble.trust import COLUMNS, STATISTICS, extended_rows, trust_rows, trust_sentence
-from comparison.report.building import note_lost
+from comparison.report.building import note_missing_part
 from comparison.report.page import lost_line, render_page, render_template
-from comparison.report.page_data import pack
+from comparison.report.page_data import compress_to_text
 from comparison.report.plots import Panel
 from comparison.report.section import Section
 from comparison.runner.attempts import attempt
@@ -25,7 +25,7 @@ Say = Callable[[str], None]
 Context = Mapping[str, Any]
 
 
-def _building(ensemble: EnsembleResult, say: Say) -> Context:
+def _building_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {
         "labels": labels(ensemble),
         "floor_of": floor_of,
@@ -34,45 +34,45 @@ def _building(ensemble: EnsembleResult, say: Say) -> Context:
     }
 
 
-def _suite(ensemble: EnsembleResult, say: Say) -> Context:
+def _suite_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {
         "ground_sentence": sentences.ground_sentence(ensemble),
         "target_sentence": sentences.target_sentence,
         "has_magnitudes": any(each.magnitude is not None for each in ensemble.suite),
         "gravity": GRAVITY,
-        "panels": made(panels.ground_panels(ensemble), say),
+        "panels": draw_panels(panels.ground_panels(ensemble), say),
     }
 
 
-def _demands(ensemble: EnsembleResult, say: Say) -> Context:
+def _demands_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {
-        **shares(),
+        **heads_of_fractiles(),
         "rows": demand_rows(ensemble, ensemble.top),
         "definitions": sentences.DEFINITIONS,
         "outcomes_sentence": sentences.outcomes_sentence(ensemble),
         "missing": sentences.all_missing_sentences(ensemble),
-        "panels": made(panels.isolator_panels(ensemble), say),
+        "panels": draw_panels(panels.isolator_panels(ensemble), say),
     }
 
 
-def _limits(ensemble: EnsembleResult, say: Say) -> Context:
+def _limits_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {"counts": word_counts(count_verdicts(each.verdict for each in ensemble.limits), "demand")}
 
 
-def _height(ensemble: EnsembleResult, say: Say) -> Context:
+def _height_context(ensemble: EnsembleResult, say: Say) -> Context:
     weight = ensemble.structures[0].weight
     tables = [
         (f"{title_of(name)}, {unit_for_reading(name, weight)[0]}", profile_rows(ensemble, name, ensemble.top))
         for name in HEIGHTS
     ]
     return {
-        **shares(),
+        **heads_of_fractiles(),
         "tables": [(title, rows) for title, rows in tables if rows],
-        "panels": made([*panels.height_panels(ensemble), *panels.floor_spectra_panels(ensemble)], say),
+        "panels": draw_panels([*panels.height_panels(ensemble), *panels.floor_spectra_panels(ensemble)], say),
     }
 
 
-def _supports(ensemble: EnsembleResult, say: Say) -> Context:
+def _supports_context(ensemble: EnsembleResult, say: Say) -> Context:
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
@@ -87,7 +87,7 @@ def _supports(ensemble: EnsembleResult, say: Say) -> Context:
     }
 
 
-def _engine(ensemble: EnsembleResult, say: Say) -> Context:
+def _engine_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {
         "labels": labels(ensemble),
         "engine_sentences": sentences.engine_sentences(ensemble),
@@ -97,51 +97,55 @@ def _engine(ensemble: EnsembleResult, say: Say) -> Context:
     }
 
 
-def _extended(ensemble: EnsembleResult, say: Say) -> Context:
+def _extended_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {"rows": list(extended_rows(ensemble)), "statistics": [name for name, _ in STATISTICS]}
 
 
-def _scales(ensemble: EnsembleResult, say: Say) -> Context:
+def _scales_context(ensemble: EnsembleResult, say: Say) -> Context:
     others = sorted((scale for scale in ensemble.scales if scale != ensemble.top), reverse=True)
-    return {**shares(), "tables": [(f"scale {scale:g}", demand_rows(ensemble, scale)) for scale in others]}
+    return {**heads_of_fractiles(), "tables": [(f"scale {scale:g}", demand_rows(ensemble, scale)) for scale in others]}
 
 
-def _run(ensemble: EnsembleResult, say: Say) -> Context:
+def _run_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {"run": ensemble.run}
 
 
 SECTIONS: tuple[tuple[Section, Callable[[EnsembleResult, Say], Context], Callable[[EnsembleResult], bool]], ...] = (
-    (Section("The building as read", folded=False, name="building"), _building, lambda ensemble: True),
-    (Section("The motions", folded=False, name="suite"), _suite, lambda ensemble: bool(ensemble.suite)),
-    (Section("Demands", folded=False, name="demands"), _demands, lambda ensemble: True),
-    (Section("Limits", folded=False, name="limits"), _limits, lambda ensemble: bool(ensemble.limits)),
-    (Section("Over the height", folded=False, name="height"), _height, lambda ensemble: True),
-    (Section("Support forces", folded=False, name="supports"), _supports, lambda ensemble: bool(ensemble.supports)),
+    (Section("The building as read", folded=False, name="building"), _building_context, lambda ensemble: True),
+    (Section("The motions", folded=False, name="suite"), _suite_context, lambda ensemble: bool(ensemble.suite)),
+    (Section("Demands", folded=False, name="demands"), _demands_context, lambda ensemble: True),
+    (Section("Limits", folded=False, name="limits"), _limits_context, lambda ensemble: bool(ensemble.limits)),
+    (Section("Over the height", folded=False, name="height"), _height_context, lambda ensemble: True),
+    (
+        Section("Support forces", folded=False, name="supports"),
+        _supports_context,
+        lambda ensemble: bool(ensemble.supports),
+    ),
     (
         Section("How far the simple models can be trusted", folded=False, name="trust"),
-        _engine,
+        _engine_context,
         lambda ensemble: bool(ensemble.engine.motions),
     ),
     (
         Section("The engine’s ratios, extended to the suite", folded=False, name="extended"),
-        _extended,
+        _extended_context,
         lambda ensemble: 0 < len(ensemble.engine.motions) < ensemble.motions * len(ensemble.structures),
     ),
     (
         Section("Demands at the other scales", folded=False, name="scales"),
-        _scales,
+        _scales_context,
         lambda ensemble: len(ensemble.scales) > 1,
     ),
-    (Section("How it was made", folded=False, name="run"), _run, lambda ensemble: True),
+    (Section("How it was made", folded=False, name="run"), _run_context, lambda ensemble: True),
 )
 
 
-def shares() -> Context:
+def heads_of_fractiles() -> Context:
     """Heads of the columns of fractiles."""
     return {"shares": [f"{100.0 * share:.0f} %" for share in FRACTILES]}
 
 
-def made(makers: Sequence[Callable[[], Panel]], say: Say) -> list[Panel]:
+def draw_panels(makers: Sequence[Callable[[], Panel]], say: Say) -> list[Panel]:
     """The plots that can be drawn; each other one is a line."""
     found = (attempt(f"plot {number}", make, say) for number, make in enumerate(makers, start=1))
     return [each for each in found if each is not None]
@@ -150,22 +154,24 @@ def made(makers: Sequence[Callable[[], Panel]], say: Say) -> list[Panel]:
 def page_of(ensemble: EnsembleResult) -> str:
     """Return index.html; a section or plot that raises is one line at its top and in its place."""
     lost: list[str] = []
-    say = partial(note_lost, lost)
+    say = partial(note_missing_part, lost)
     parts = []
     for section, read, shown in SECTIONS:
         if not attempt(f"section {section.name}", partial(shown, ensemble), say):
             continue
-        make = partial(_render, section.name, read, ensemble, say)
+        make = partial(_render_section, section.name, read, ensemble, say)
         body = attempt(f"section {section.name}", make, say)
         parts.append((section, lost_line(lost[-1]) if body is None else body, ""))
     context = {
         "heading": attempt("heading", partial(sentences.heading, ensemble), say) or "Demands under many motions",
         "answer": attempt("answer", partial(sentences.answer_sentence, ensemble), say) or "",
-        "data": pack(b"null"),
+        "data": compress_to_text(b"null"),
         "packed": {},
     }
     return render_page("ensemble/sections/page.html.j2", context, parts, lost)
 
 
-def _render(name: str, read: Callable[[EnsembleResult, Say], Context], ensemble: EnsembleResult, say: Say) -> Markup:
+def _render_section(
+    name: str, read: Callable[[EnsembleResult, Say], Context], ensemble: EnsembleResult, say: Say
+) -> Markup:
     return render_template(f"ensemble/sections/{name}.html.j2", {"ensemble": ensemble, **read(ensemble, say)})

@@ -9,8 +9,8 @@ import numpy as np
 from comparison.analyses.ensemble.quantities import title_of, unit_for_reading
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import HEIGHTS, floor_of, labels
-from comparison.analyses.ensemble.sentences import count_motions
-from comparison.report.panels import panel
+from comparison.analyses.ensemble.sentences import motions_in_words
+from comparison.report.panels import make_panel
 from comparison.report.plots import Panel
 from reference.problem import GRAVITY
 
@@ -25,13 +25,15 @@ def isolator_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Demands of the isolator over the scale or as strips, a dot or a line for every motion."""
     moved = {curve.quantity for curve in ensemble.curves if any(curve.values)}  # nothing is drawn of zeros alone
     shown = [quantity for quantity in SHOWN if quantity in moved]
-    return [partial(_panel, ensemble, quantity) for quantity in shown]
+    return [partial(_demand_panel, ensemble, quantity) for quantity in shown]
 
 
 def height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Fractiles of accelerations, drifts, shears and moments over the height."""
     shown = [name for name in HEIGHTS if any(ensemble.profile(each.name, name) for each in ensemble.structures)]
-    return [partial(_profile, ensemble, name) for name in shown if not (name == "drift" and "drift_ratio" in shown)]
+    return [
+        partial(_profile_panel, ensemble, name) for name in shown if not (name == "drift" and "drift_ratio" in shown)
+    ]
 
 
 def floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
@@ -45,7 +47,7 @@ def ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     return [partial(_ground_spectra, ensemble)] if ensemble.target else []
 
 
-def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
+def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     one = len(ensemble.scales) == 1
     series: list[dict[str, Any]] = []
     by_engine: list[dict[str, Any]] = []
@@ -54,30 +56,32 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         motions, engine = (ensemble.curves_of(name, quantity, model) for model in ("exact", ensemble.engine.model))
         look: dict[str, Any] = {"name": f"{labels(ensemble)[name]}: one motion", "color": place, "legend": False}
         look |= {"marks": True, "line": False} if one else {"width": 0.7}
-        series += _values(motions, factor, place if one else None, **look)
+        series += _motion_series(motions, factor, place if one else None, **look)
         if stripes := ensemble.stripes_of(name, quantity):
             x = [place + WIDTH if one else stripe.scale for stripe in stripes]
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
-            series.append(_median(ensemble, place, x, fractiles, factor, band=not one, line=not one))
+            series.append(_median_line(ensemble, place, x, fractiles, factor, band=not one, line=not one))
         look = {"name": f"{ensemble.engine.model} engine", "color": "ink", "marks": True, "line": False}
         look |= {"legend": False} if by_engine else {}
-        by_engine += _values(engine, factor, place - WIDTH if one else None, **look)
+        by_engine += _motion_series(engine, factor, place - WIDTH if one else None, **look)
     title = title_of(quantity)
     places = range(len(ensemble.structures))
     bounds = list(labels(ensemble).values())
     strips = {"title": "", "ticks": [[place, bounds[place]] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * ensemble.top]}
-    label = f"{title} {'by bound' if one else 'over the scale factor'}, {count_motions(ensemble.motions)}"
+    label = f"{title} {'by bound' if one else 'over the scale factor'}, {motions_in_words(ensemble.motions)}"
     series += by_engine
-    return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
+    return make_panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
 
-def _values(curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
+def _motion_series(
+    curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any
+) -> list[dict[str, Any]]:
     """The motions, each over its scales, or all side by side about a place; dots have their errors."""
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [place + WIDTH * ((number + 0.5) / len(curves) - 0.5)]
-        line = {"x": x, "y": [_scale(value, factor) for value in curve.values], "legend": number == 0} | look
+        line = {"x": x, "y": [_scale_value(value, factor) for value in curve.values], "legend": number == 0} | look
         for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
             both = zip(curve.values, curve.errors)
             line[key] = [None if None in pair else factor * (pair[0] + side * pair[1]) for pair in both]  # type: ignore[operator]
@@ -85,7 +89,7 @@ def _values(curves: Sequence[DemandCurve], factor: float, place: float | None, *
     return series
 
 
-def _median(
+def _median_line(
     ensemble: EnsembleResult,
     place: int,
     x: list[Any],
@@ -95,18 +99,18 @@ def _median(
 ) -> dict[str, Any]:
     """Median of a structure with its band, from low, median and high at every x."""
     columns = zip(("low", "y", "high"), fractiles)
-    numbers = {key: [_scale(each.value, factor) for each in column] for key, column in columns}
+    numbers = {key: [_scale_value(each.value, factor) for each in column] for key, column in columns}
     name = labels(ensemble)[ensemble.structures[place].name]
     return {"name": name, "color": place, "x": x, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
 
-def _profile(ensemble: EnsembleResult, quantity: str) -> Panel:
+def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     """Fractiles of a demand along x, and the height along y."""
     series, unit, heights = [], "", True
     for place, structure in enumerate(ensemble.structures):
         unit, factor = unit_for_reading(quantity, structure.weight)
         rows = ensemble.profile(structure.name, quantity)
-        places, stated = _heights(structure)
+        places, stated = _body_heights(structure)
         heights = heights and stated
         for share, number, dash in FRACTILE_LINES:
             values = [row.fractiles[number].value for row in rows]
@@ -126,11 +130,11 @@ def _profile(ensemble: EnsembleResult, quantity: str) -> Panel:
     y: dict[str, Any] = {"title": HEIGHT_AXIS} if heights else {"title": "body, from the platform up"}
     if not heights:
         y["ticks"] = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
-    label = f"{title_of(quantity)} over the height: 16, 50 and 84 %, {count_motions(ensemble.motions)}"
-    return panel(f"{title_of(quantity)} over the height", label, x, y, series)
+    label = f"{title_of(quantity)} over the height: 16, 50 and 84 %, {motions_in_words(ensemble.motions)}"
+    return make_panel(f"{title_of(quantity)} over the height", label, x, y, series)
 
 
-def _heights(structure: Structure) -> tuple[list[float], bool]:
+def _body_heights(structure: Structure) -> tuple[list[float], bool]:
     """Heights of the bodies, m, and True; or their numbers, and False."""
     heights = structure.building.heights if structure.building else None
     return (list(heights), True) if heights else ([float(n) for n in range(1, structure.bodies + 1)], False)
@@ -138,14 +142,14 @@ def _heights(structure: Structure) -> tuple[list[float], bool]:
 
 def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:
     series = [
-        _median(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
+        _median_line(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
         for place, structure in enumerate(ensemble.structures)
         for spectrum in ensemble.spectra
         if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
     ]
     quantity = f"pseudo-acceleration, {100.0 * ensemble.spectra[0].damping:g} % damping, g"
-    label = f"floor spectrum of the {title}, {count_motions(ensemble.motions)}"
-    return panel(f"floor spectrum: {title}", label, PERIOD, _from_zero(quantity, series), series)
+    label = f"floor spectrum of the {title}, {motions_in_words(ensemble.motions)}"
+    return make_panel(f"floor spectrum: {title}", label, PERIOD, _from_zero(quantity, series), series)
 
 
 def _ground_spectra(ensemble: EnsembleResult) -> Panel:
@@ -162,8 +166,8 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
     wanted = [value / GRAVITY for value in target.acceleration]
     series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
     y = _from_zero("pseudo-acceleration, 5 % damping, g", series)
-    label = f"response spectra of the ground and their target, {count_motions(ensemble.motions)} at scale 1"
-    return panel("response spectra of the ground", label, PERIOD, y, series)
+    label = f"response spectra of the ground and their target, {motions_in_words(ensemble.motions)} at scale 1"
+    return make_panel("response spectra of the ground", label, PERIOD, y, series)
 
 
 def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -171,5 +175,5 @@ def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 
 
-def _scale(value: float | None, factor: float) -> float | None:
+def _scale_value(value: float | None, factor: float) -> float | None:
     return None if value is None else factor * value

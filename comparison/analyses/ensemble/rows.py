@@ -108,13 +108,13 @@ def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[
     rows: list[DemandRow] = []
     for body in range(max(each.bodies for each in ensemble.structures), 0, -1):
 
-        def stripe(structure: Structure, body: int = body) -> Stripe | None:
+        def read_body(structure: Structure, body: int = body) -> Stripe | None:
             own = ensemble.profile(structure.name, quantity, scale)
             return next((each for each in own if each.body == body), None)
 
         found = next((each for each in ensemble.structures if each.bodies >= body), None)
         name = "" if found is None else place_of(found, quantity, body)
-        rows += _rows_of(ensemble, Shown(name, quantity), stripe, scale)
+        rows += _rows_of(ensemble, Shown(name, quantity), read_body, scale)
     return rows
 
 
@@ -127,11 +127,11 @@ def _rows_of(
         stripe = read(structure)
         if stripe is not None:
             found.append((structure, stripe))
-            yield _row(shown, structure, named[structure.name], stripe, is_first=len(found) == 1)
+            yield _demand_row(shown, structure, named[structure.name], stripe, is_first=len(found) == 1)
     if not found and scale == ensemble.top:
         yield from _engine_rows(ensemble, shown)
     if len(found) > 1:
-        yield _envelope(shown, found, named)
+        yield _envelope_row(shown, found, named)
 
 
 def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
@@ -160,7 +160,7 @@ def worst_of(stripe: Stripe) -> tuple[Statistic, str]:
     return stripe.largest, stripe.largest_motion
 
 
-def _row(shown: Shown, structure: Structure, bound: str, stripe: Stripe, is_first: bool) -> DemandRow:
+def _demand_row(shown: Shown, structure: Structure, bound: str, stripe: Stripe, is_first: bool) -> DemandRow:
     unit, factor = unit_of_row(shown, structure)
     worst, motion = worst_of(stripe)
     numbers = stripe.mean, *stripe.fractiles, worst
@@ -187,7 +187,7 @@ def cell_of(number: Statistic, factor: float, column: int, motions: int, quantit
     return text_of(number.value, None, factor)
 
 
-def _envelope(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named: dict[str, str]) -> DemandRow:
+def _envelope_row(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named: dict[str, str]) -> DemandRow:
     """The worst of all bounds in every statistic."""
     sign = -1.0 if shown.quantity in SMALLEST else 1.0
     rows = [(structure, stripe, (stripe.mean, *stripe.fractiles, worst_of(stripe)[0])) for structure, stripe in found]

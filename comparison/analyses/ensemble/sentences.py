@@ -36,11 +36,11 @@ def heading(ensemble: EnsembleResult) -> str:
     """Building and number of motions, and the scale where there are several."""
     titles = ", ".join(dict.fromkeys(each.title for each in ensemble.structures))
     at = f", scale {ensemble.top:g}" if len(ensemble.scales) > 1 or ensemble.top != 1.0 else ""
-    return f"{titles}: {count_motions(ensemble.motions)}{at}"
+    return f"{titles}: {motions_in_words(ensemble.motions)}{at}"
 
 
-def count_motions(count: int) -> str:
-    """A number of motions in words."""
+def motions_in_words(count: int) -> str:
+    """Return the number of motions with its noun: "1 motion", "7 motions"."""
     return f"{count} motion{'' if count == 1 else 's'}"
 
 
@@ -66,7 +66,7 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
         said.append(f"{words}: mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
     lost = {each.name: missing_motions(ensemble, each) for each in ensemble.structures}
     bounds = [
-        f"{', '.join(motions) if len(motions) <= FEW else count_motions(len(motions))} ({labels(ensemble)[name]})"
+        f"{', '.join(motions) if len(motions) <= FEW else motions_in_words(len(motions))} ({labels(ensemble)[name]})"
         for name, motions in lost.items()
         if motions
     ]
@@ -124,7 +124,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
         if not own:
             continue
         each_motion = [
-            f"{each.motion} ({', '.join(each.reasons)}{_status(each.statuses.get(engine.model, ''))})"
+            f"{each.motion} ({', '.join(each.reasons)}{_word_status(each.statuses.get(engine.model, ''))})"
             for each in own[:NAMED]
         ]
         more = f" and {len(own) - NAMED} more" if len(own) > NAMED else ""
@@ -135,7 +135,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
     return said
 
 
-def _status(status: str) -> str:
+def _word_status(status: str) -> str:
     return "" if status in ("ok", "") else f"; {status}"
 
 
@@ -150,7 +150,7 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
             continue  # no motion has a value
         counts = {labels(ensemble)[each.structure]: each.motions for each in rows}
         of = f"{', '.join(f'{count} motions of {bound}' for bound, count in counts.items())}"
-        of = f"{count_motions(rows[0].motions)} of each bound" if len({*counts.values()}) == 1 else of
+        of = f"{motions_in_words(rows[0].motions)} of each bound" if len({*counts.values()}) == 1 else of
         said.append(f"{by}, {of}: {'; '.join(parts)}.")
     return said
 
@@ -196,7 +196,7 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
         every = len(names) == len(stripes)
         which = f" ({', '.join(ended[:NAMED])}{' and more' * (len(ended) > NAMED)})" if every else ""
         what = "every demand" if every else ", ".join(names)
-        lines.append(f"Without a value for {count_motions(count)}{which}: {what} ({why}).")
+        lines.append(f"Without a value for {motions_in_words(count)}{which}: {what} ({why}).")
     return lines
 
 

@@ -26,11 +26,11 @@ def quantities(points: Sequence[Point]) -> list[Quantity]:
 
 def stripes(points: Points) -> Iterator[result.Stripe]:
     """Statistics of every demand at every scale: by the equations, and by a model that computed every motion."""
-    yield from _stripes(points.equations)
+    yield from _stripes_of_points(points.equations)
     motions = {(name, scale): len(own) for (name, scale), own in _by_scale(points.equations).items()}
     for own in points.compared.values():
         whole = [each for key, each in _by_scale(own).items() if len(each) == motions[key] > 1]
-        yield from _stripes([point for each in whole for point in each])
+        yield from _stripes_of_points([point for each in whole for point in each])
 
 
 def _by_scale(points: Sequence[Point]) -> dict[tuple[str, float], list[Point]]:
@@ -40,7 +40,7 @@ def _by_scale(points: Sequence[Point]) -> dict[tuple[str, float], list[Point]]:
     return groups
 
 
-def _stripes(points: Sequence[Point]) -> Iterator[result.Stripe]:
+def _stripes_of_points(points: Sequence[Point]) -> Iterator[result.Stripe]:
     """A motion without an answer counts as worse than all others."""
     for name, own in group_by(points, "member.structure").items():
         for quantity in quantities(own):
@@ -114,7 +114,7 @@ def spectrum_bands(points: Sequence[Point]) -> Iterator[result.Spectrum]:
 def curves(points: Points) -> Iterator[result.DemandCurve]:
     """Every demand of every motion over its scales, by structure, demand, model and motion."""
     every = [list(points.equations), *map(list, points.compared.values())]
-    asked = quantities(points.every)
+    asked = quantities(points.all_points)
     for name in group_by(points.equations, "member.structure"):
         by_model = [[point for point in own if point.member.structure == name] for own in every]
         for quantity in asked:

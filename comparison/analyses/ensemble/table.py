@@ -18,11 +18,11 @@ CONTROLS = ("\t", "\r", "\n")  # begin no plain cell
 def as_rows(points: Points, ensemble: EnsembleResult) -> list[dict[str, object]]:
     """A row for every motion, bound, scale and model, with all demands and their errors; None without an answer."""
     named = labels(ensemble)
-    listed = quantities(points.every)
+    listed = quantities(points.all_points)
     units = {quantity: f" [{unit_of_demand(quantity[0]) or '-'}]" for quantity in listed}
     names = {quantity: "_".join(map(str, filter(None, quantity))) for quantity in units}  # drift_2 of body 2
     rows = []
-    for point in points.every:
+    for point in points.all_points:
         member, numbers = point.member, {quantity: point.estimate(quantity) for quantity in names}
         missing = [f"{names[quantity]}: {number.reason}" for quantity, number in numbers.items() if number.reason]
         row: dict[str, object] = {

@@ -12,12 +12,12 @@ from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, demand_rows, 
 from comparison.analyses.ensemble.sentences import (
     answer_sentence,
     below_contact_sentence,
-    count_motions,
     drift_warning,
     engine_sentences,
     heading,
     isolator_sentence,
     missing_sentences,
+    motions_in_words,
     support_sentences,
     target_sentence,
 )
@@ -72,11 +72,11 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
         say(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
         table = new_table("quantity", "unit", "mean", *shares, "largest", "motion")
         for row in rows:
-            table.add_row(*_cells(row))
+            table.add_row(*_cells_of_row(row))
         console.print(table)
 
 
-def _cells(row: DemandRow) -> list[str]:
+def _cells_of_row(row: DemandRow) -> list[str]:
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
     name = f"{row.name}, {row.where}" if row.where else row.name
@@ -100,7 +100,9 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
 def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
     models = {key: title for key, title in COLUMNS.items() if key != EXACT.key}
     for bound, rows in group_by(trust_rows(ensemble), "bound").items():
-        say(console, [f"{bound}, mean difference from the exact equations on {count_motions(len(rows[0].motions))}:"])
+        say(
+            console, [f"{bound}, mean difference from the exact equations on {motions_in_words(len(rows[0].motions))}:"]
+        )
         table = new_table("quantity", "exact", *(title.partition(" ")[0] for title in models.values()))
         for row in rows:
             table.add_row(row.name, row.text, *(row.ratios[key].brief if key in row.ratios else "" for key in models))

@@ -129,7 +129,7 @@ def _trust_row(
     )  # fmt: skip
 
 
-def _largest(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | None:
+def _largest_ratio(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | None:
     """The largest size of a difference over the demands that every model has, and its row."""
     found = []
     for row in rows:
@@ -155,7 +155,7 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     }
     said = []
     for pick, words in parts.items():
-        if (found := _largest(rows, pick)) is not None:
+        if (found := _largest_ratio(rows, pick)) is not None:
             size, row = found
             bound = f", {row.bound}" if len(ensemble.structures) > 1 else ""
             said.append(words.format(_at_most(abs(size)), f"{row.name}{bound}"))

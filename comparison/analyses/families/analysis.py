@@ -54,7 +54,7 @@ def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[Fa
     curves = []
     for model in keys.values():
         for body in range(1, family.bodies + 1):
-            columns = zip(*(_numbers(surfaces, scene, model, body) for scene in family.scenes))
+            columns = zip(*(_numbers_of_body(surfaces, scene, model, body) for scene in family.scenes))
             curves.append(FamilyCurve(model.key, body, *map(tuple, columns)))
     return curves
 
@@ -63,7 +63,7 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
     """One per bar and body, then the total of the body."""
     steps = []
     for body in range(1, family.bodies + 1):
-        bars = [_bars(waterfalls[scene.name][body - 1]) for scene in family.scenes]
+        bars = [_bars_by_effect(waterfalls[scene.name][body - 1]) for scene in family.scenes]
         keys = list(dict.fromkeys(key for scene in bars for key in scene if key != TOTAL))
         for key in (*keys, TOTAL):
             column = [scene.get(key, WaterfallBar(key, NAN, NAN, resolved=False)) for scene in bars]
@@ -95,7 +95,7 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
                     column = numbers.setdefault((motion.model, quantity, body), {})
                     column.setdefault(motion.place.scene, []).append(estimate.value)
     return [
-        _demand(
+        _family_demand(
             family, key, {name: (float(np.median(row)), min(row), max(row), len(row)) for name, row in rows.items()}
         )
         for key, rows in numbers.items()
@@ -112,10 +112,10 @@ def family_demands_over_phases(
             known = round(row.points * (1.0 - row.unknown))
             numbers = row.fractile(0.5), row.lowest.value, row.highest.value, known
             found.setdefault((row.model, row.quantity, row.body), {})[scene.name] = numbers
-    return [_demand(family, key, rows) for key, rows in found.items()]
+    return [_family_demand(family, key, rows) for key, rows in found.items()]
 
 
-def _demand(
+def _family_demand(
     family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
 ) -> FamilyDemand:
     """rows: median, lowest, highest and number of motions, by scene."""
@@ -123,11 +123,11 @@ def _demand(
     return FamilyDemand(*key, *map(tuple, zip(*numbers)))
 
 
-def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:
+def _bars_by_effect(waterfall: Waterfall) -> dict[str, WaterfallBar]:
     return {**{bar.model: bar for bar in waterfall.bars}, TOTAL: waterfall.total}
 
 
-def _numbers(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
+def _numbers_of_body(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
     mu = usable_mu(surfaces, scene.name, model)[body - 1]
     known = np.isfinite(mu)
     if not known.any():

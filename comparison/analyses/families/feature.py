@@ -13,8 +13,8 @@ from comparison.analyses.families.analysis import (
     family_steps,
 )
 from comparison.report.feature import Feature, Findings, ResultField
-from comparison.report.panels import panel
-from comparison.report.plots import DEMANDS, Panel, plain
+from comparison.report.panels import make_panel
+from comparison.report.plots import DEMANDS, Panel, json_numbers
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Section
@@ -24,7 +24,7 @@ from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
 MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
-DECADES = 30.0  # ratio of its largest to its smallest value: beyond it the axis is logarithmic
+DECADES = 30.0  # ratio of the largest to the smallest value that a key takes: beyond it the axis is logarithmic
 
 
 class FamilyResult(Part):
@@ -84,12 +84,12 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
-        panels += filter(None, (_family_demand(results, family, *shown) for shown in DEMANDS))
+        panels += filter(None, (_family_demand_panel(results, family, *shown) for shown in DEMANDS))
         listed.append({"title": first.title, "family": family, "panels": panels})
     return listed
 
 
-def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
+def _value_axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     """Places of the values on the axis, and the axis: by name where they are no numbers."""
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
@@ -102,26 +102,28 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     return values, {"title": family.key}
 
 
-def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]) -> Panel:
+def _panel_over_values(
+    family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]
+) -> Panel:
     """
     Return a panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any: a
     band of the first and of the last model, since those of all hide each other.
     """
-    places, axis = _axis(family)
+    places, axis = _value_axis(family)
     series = []
     for number, (name, color, middle, *band) in enumerate(lines):
-        line = {"name": name, "x": places, "y": plain(middle), "color": color, "marks": True}
+        line = {"name": name, "x": places, "y": json_numbers(middle), "color": color, "marks": True}
         if number in (0, len(lines) - 1) and any(low < high for low, high in zip(*band)):
-            line |= {**dict(zip(("low", "high"), map(plain, band))), "band": True}
+            line |= {**dict(zip(("low", "high"), map(json_numbers, band))), "band": True}
         series.append(line)
-    return panel(title, f"{label} over {family.key}", axis, {"title": unit}, series)
+    return make_panel(title, f"{label} over {family.key}", axis, {"title": unit}, series)
 
 
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
     titles = {model.key: model.title for model in results.models}
     curves = [curve for curve in family.curves if curve.body == body]
     lines = [(titles[each.model], n, each.mean, each.lowest, each.highest) for n, each in enumerate(curves)]
-    return _over(family, f"mu_{body}", f"mu_{body} of every model", f"μ_{body}", lines)
+    return _panel_over_values(family, f"mu_{body}", f"mu_{body} of every model", f"μ_{body}", lines)
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
@@ -132,10 +134,10 @@ def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
         for number, step in enumerate((step for step in family.steps if step.body == body), start=1)
     ]
     title = f"what each effect adds to mu_{body}"
-    return _over(family, title, title, "% of the first model", lines)
+    return _panel_over_values(family, title, title, "% of the first model", lines)
 
 
-def _family_demand(
+def _family_demand_panel(
     results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
 ) -> Panel | None:
     """One demand of every model over the value that runs: median of the motions, from smallest to largest."""
@@ -147,7 +149,7 @@ def _family_demand(
             median, *band = ([scale * value for value in column] for column in numbers)
             lines.append((*looks[demand.model], median, *band))
     of_which = "over all phases" if family.demands_over_phases else "of the stored motions"
-    return _over(family, f"{title} {of_which}", title, f"{title}, {unit}", lines) if lines else None
+    return _panel_over_values(family, f"{title} {of_which}", title, f"{title}, {unit}", lines) if lines else None
 
 
 FEATURE = Feature(

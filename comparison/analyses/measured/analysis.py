@@ -24,7 +24,7 @@ from comparison.verdicts import (
     NOT_MET,
     Verdict,
     count_verdicts,
-    judge,
+    judge_error,
     word_counts,
     word_counts_and_largest,
     word_error,
@@ -102,7 +102,7 @@ def phases_of(peak: Measured) -> tuple[float, float]:
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
 
 
-def _questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
+def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
     """Return what the test measured; of a model that reads the same motion otherwise mu alone."""
     return [
         (peak.quantity, peak.body or 0)
@@ -146,20 +146,20 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
     function = staticmethod(peaks_at)
     without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """One for each scene, phase pair of a test, and model."""
         for scene in study.scenes:
             for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
                 for model in models_of(scene, study.hierarchy):
                     if model.side == "user":
                         continue
-                    yield scene, model, model.tolerance(study.tolerance), phases, _questions(scene, phases, model)
+                    yield scene, model, model.tolerance(study.tolerance), phases, _list_questions(scene, phases, model)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
         """In the order of the scene files; None where no scene has measured peaks."""
         known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
         values = self.values(study, surfaces, results)
-        for (scene, model, _, phases, asked), peaks in zip(self.arguments(study), values, strict=True):
+        for (scene, model, _, phases, asked), peaks in zip(self.task_arguments(study), values, strict=True):
             known.setdefault((scene.name, phases), []).append((model.key, dict(zip(asked, peaks, strict=True))))
         scenes = [(scene, peak) for scene in study.scenes for peak in scene.measured or ()]
         return [_compare_peak(scene, peak, known[scene.name, phases_of(peak)]) for scene, peak in scenes] or None
@@ -171,7 +171,7 @@ def _compare_peak(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapp
         if asked in known:
             value, error, status = known[asked]
             difference = value - peak.value
-            verdict = judge(difference, peak.uncertainty + error)
+            verdict = judge_error(difference, peak.uncertainty + error)
             exceeds = None if verdict == NOT_COMPARED else verdict == NOT_MET
             computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
     phases = (math.nan, math.nan) if peak.phases is None else phases_of(peak)

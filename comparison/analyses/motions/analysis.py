@@ -24,7 +24,7 @@ MIN_SWING = 0.01  # share of its largest value: a component that changes less is
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 
 
-def swing(values: Array) -> Array:
+def half_swing(values: Array) -> Array:
     """Half of what each component of `values` (T, C) goes through, (C,), in whose shares thinning is measured."""
     largest = np.abs(values).max(axis=0, initial=0.0)
     half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
@@ -35,13 +35,13 @@ def swing(values: Array) -> Array:
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
-    lines between them to miss no value by more than SHARE of its component's `swing`.
+    lines between them to miss no value by more than SHARE of its component's `half_swing`.
     """
     if len(time) < 3:
         return np.arange(len(time))
     kept = np.zeros(len(time), bool)
     kept[[0, len(time) - 1]] = kept[peaks] = True
-    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / swing(values)), SHARE, kept)
+    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / half_swing(values)), SHARE, kept)
     return np.flatnonzero(kept)
 
 
@@ -77,7 +77,7 @@ class Place:
     why: str
 
 
-def _none() -> Array:
+def _empty_series() -> Array:
     return np.zeros(0)
 
 
@@ -103,10 +103,10 @@ class StoredMotion:
     stick: tuple[tuple[float, float], ...] = ()
     status: str = Outcome.OK.value
     error_message: str = ""
-    contact_force: Array = field(default_factory=_none)
-    isolator_force: Array = field(default_factory=_none)
-    support_force: Array = field(default_factory=_none)
-    yaw: Array = field(default_factory=_none)
+    contact_force: Array = field(default_factory=_empty_series)
+    isolator_force: Array = field(default_factory=_empty_series)
+    support_force: Array = field(default_factory=_empty_series)
+    yaw: Array = field(default_factory=_empty_series)
     demands: Demands | None = None
     spectra: FloorSpectra | None = None
 
@@ -162,10 +162,12 @@ def compute_motion(task: Arguments) -> StoredMotion:
             scene, phase, tolerance=tolerance, **model.motion_settings
         )
         if len(motion.time) == 0:  # refused before its first step
-            return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
+            return replace(
+                _motion_without_values(place, model.key, Outcome(motion.status), ""), demands=demands(motion)
+            )
         return _store_motion(place, model, motion)
     except Exception as error:
-        return _nothing(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
+        return _motion_without_values(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
 
 
 def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
@@ -174,7 +176,7 @@ def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotio
         place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
         tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),
         contact_force=motion.contact_force, isolator_force=motion.isolator_force,
-        support_force=motion.support_force, yaw=motion.extra.get("yaw", _none()),
+        support_force=motion.support_force, yaw=motion.extra.get("yaw", _empty_series()),
         demands=demands(motion), spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
     )  # fmt: skip
     values = np.hstack([block for name, block in whole.blocks().items() if name != "time"])
@@ -188,7 +190,7 @@ def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotio
     return replace(whole, **arrays)
 
 
-def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
+def _motion_without_values(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
     empty = np.zeros((0, 0, 2))
     return StoredMotion(
         place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message
@@ -196,7 +198,7 @@ def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> 
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
-    return _nothing(task[3], task[1].key, failed.outcome, failed.error_message)
+    return _motion_without_values(task[3], task[1].key, failed.outcome, failed.error_message)
 
 
 class Motions(MappedAnalysis[list[StoredMotion]]):
@@ -206,7 +208,7 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
     seconds = 4.0
     function, without_value, collect = staticmethod(compute_motion), staticmethod(_without_value), MappedAnalysis.values
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
         """Every place with every model that moves there, in the order scene, place, model."""
         assert surfaces is not None, "the places are chosen by the surfaces"
         axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])

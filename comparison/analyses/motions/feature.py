@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import Field, create_model
 
 from comparison.analyses.motions.analysis import Motions, StoredMotion
-from comparison.analyses.motions.page_data import motion_data, motion_numbers, significant_digits
+from comparison.analyses.motions.page_data import encode_motions, motion_data, significant_digits
 from comparison.report.feature import Feature, Findings, SceneField
 from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
 from reference.measures import Demands, FloorSpectra
@@ -49,20 +49,23 @@ class _MotionOfScene(Part):
     """how the motion ended"""
 
 
-def _kind(annotation: str) -> Any:
+def _type_of_demand(annotation: str) -> Any:
     """Return the type of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
     kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
     return kind | None if annotation.endswith("None") else kind
 
 
-def _describe(name: str) -> Any:
+def _meaning_of_demand(name: str) -> Any:
     of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
     meaning, unit = QUANTITIES[name]
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
 
 
 _DEMANDS: dict[str, Any] = {
-    each.name: (ResidualDisplacement if each.name == "residual" else _kind(str(each.type)), _describe(each.name))
+    each.name: (
+        ResidualDisplacement if each.name == "residual" else _type_of_demand(str(each.type)),
+        _meaning_of_demand(each.name),
+    )
     for each in fields(Demands)
     if each.name in QUANTITIES
 }
@@ -70,7 +73,7 @@ _DEMANDS["spectra"] = MotionSpectra | None, Field(description="null where the mo
 MotionDemands: Any = create_model("MotionDemands", __base__=_MotionOfScene, __doc__=_MotionOfScene.__doc__, **_DEMANDS)
 
 
-def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
+def _demands_of_motions(findings: Findings, scene: Scene) -> list[MotionDemands]:
     """Return the demands of every stored motion that was computed."""
     alpha1, alpha2 = (findings.surfaces[name].values for name in ("alpha1", "alpha2"))
     motions: Sequence[StoredMotion] = findings.found.get(Motions.key) or []
@@ -79,12 +82,17 @@ def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
         place = motion.place
         if place.scene == scene.name and motion.demands is not None:
             phases = (math.nan, math.nan) if scene.recorded else (alpha1[place.row], alpha2[place.column])
-            about = {"model": motion.model, "phases": phases, "why": place.why, "spectra": _spectra(motion.spectra)}
+            about = {
+                "model": motion.model,
+                "phases": phases,
+                "why": place.why,
+                "spectra": _round_spectra(motion.spectra),
+            }
             listed.append(MotionDemands.model_validate(about | vars(motion.demands)))
     return listed
 
 
-def _spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
+def _round_spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
     """Six digits of the values, two of their errors."""
     if spectra is None:
         return None
@@ -97,7 +105,10 @@ def _spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
 
 
 DEMANDS = SceneField(
-    "demands", list[MotionDemands], "one per stored phase pair and model; empty without stored motions", _demands
+    "demands",
+    list[MotionDemands],
+    "one per stored phase pair and model; empty without stored motions",
+    _demands_of_motions,
 )
 FEATURE = Feature(
     Motions.key,
@@ -105,5 +116,5 @@ FEATURE = Feature(
     analysis=Motions(),
     needs="surfaces",  # the motions are shown below them
     page_data=motion_data,
-    packed_data=motion_numbers,
+    packed_data=encode_motions,
 )

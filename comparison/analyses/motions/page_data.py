@@ -41,7 +41,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analyses.motions.analysis import Place, StoredMotion, swing
+from comparison.analyses.motions.analysis import Place, StoredMotion, half_swing
 from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
@@ -53,21 +53,21 @@ DIGITS = 4  # digits of a spectrum: a line on a screen shows no more
 TIME_ROUNDING = 1e-6  # share of the duration
 
 
-def motion_numbers(report: Report) -> bytes:
+def encode_motions(report: Report) -> bytes:
     """Return the numbers of every motion, one after the other."""
-    return b"".join(_numbers(motion) for motion in report.found.get("motions") or [])
+    return b"".join(_encode_motion(motion) for motion in report.found.get("motions") or [])
 
 
 def motion_data(report: Report, scene: Scene) -> dict[str, Any]:
     """Return what the page's script reads of the motions of a scene."""
     return {
         "contact": contact_geometry(scene),
-        "places": list(places(report, scene)),
+        "places": list(places_with_motions(report, scene)),
         "spectra": spectrum_axis(report, scene),
     }
 
 
-def places(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
+def places_with_motions(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
     """The phase pairs of a scene that have motions, each with its motions by every model."""
     starts = starts_of(report.found.get("motions") or [])
     of_scene = [motion for motion in report.found.get("motions") or [] if motion.place.scene == scene.name]
@@ -86,8 +86,8 @@ def places(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
                     "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
                     "start": starts[place, motion.model],
                     "count": len(motion.time),
-                    "blocks": _blocks(motion),
-                    "exponents": _exponents(motion).tolist(),
+                    "blocks": _columns_of_blocks(motion),
+                    "exponents": _rounding_exponents(motion).tolist(),
                     "demands": None if motion.demands is None else _list_demands(motion.demands),
                     "spectra": None
                     if motion.spectra is None
@@ -120,22 +120,22 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _exponents(motion: StoredMotion) -> NDArray[np.int_]:
+def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
     """Return the exponents of the units that columns are rounded to."""
-    values = _columns(motion)
-    steps = ROUNDING * swing(values)
+    values = _motion_columns(motion)
+    steps = ROUNDING * half_swing(values)
     steps[:1] = TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
     return np.floor(np.log2(steps)).astype(int)
 
 
-def _columns(motion: StoredMotion) -> NDArray[np.float64]:
+def _motion_columns(motion: StoredMotion) -> NDArray[np.float64]:
     blocks = list(motion.blocks().values())
     return np.hstack(blocks) if blocks else np.zeros((0, 0))
 
 
-def _numbers(motion: StoredMotion) -> bytes:
+def _encode_motion(motion: StoredMotion) -> bytes:
     """The columns of a motion in their units: the first value, then the changes."""
-    values = np.round(_columns(motion) / 2.0 ** _exponents(motion))
+    values = np.round(_motion_columns(motion) / 2.0 ** _rounding_exponents(motion))
     return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
 
 
@@ -145,7 +145,7 @@ def starts_of(motions: Sequence[StoredMotion]) -> Starts:
     return {(motion.place, motion.model): last for motion, last in zip(motions, accumulate(sizes, initial=0))}
 
 
-def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
+def _columns_of_blocks(motion: StoredMotion) -> dict[str, list[int]]:
     """By name, the first column and the number of columns of what the motion has."""
     widths = {name: block.shape[1] for name, block in motion.blocks().items()}
     return {name: [last - width, width] for (name, width), last in zip(widths.items(), accumulate(widths.values()))}

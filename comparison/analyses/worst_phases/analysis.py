@@ -82,7 +82,7 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
     return next((searched[key] for key in order if key in searched), None)
 
 
-def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
+def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
     """Return model, engine of the same equations, quantity and body of every search."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
@@ -94,11 +94,11 @@ def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Qua
     ]
 
 
-def _starts(
+def _starting_phases(
     study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
 ) -> Array | None:
     """The local maxima of the surface, if it is as fine as the grid of the search."""
-    if surfaces is None or len(study.axis(model, scene)) < GRID:
+    if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
     values = values_of(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
@@ -134,24 +134,26 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
     seconds = 2.0
     function, without_value = staticmethod(search_worst), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """One for each search, of the engine with that of its counterpart."""
         for scene in study.phased:
-            for model, engine, quantity, body in _searches(study, scene):
-                starts = _starts(study, surfaces, scene, model, quantity, body)
-                on_grid = _on_grid(study, surfaces, scene, body) if engine is not None else None
+            for model, engine, quantity, body in _list_searches(study, scene):
+                starts = _starting_phases(study, surfaces, scene, model, quantity, body)
+                on_grid = _largest_on_grid(study, surfaces, scene, body) if engine is not None else None
                 yield scene, model, engine, on_grid, quantity, body, study.tolerance, starts
 
 
 def _compute_engine_nearby(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
     """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
-    engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
+    engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))
     search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
     (corners, _), (square, _) = square_nodes(2), square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
-    equations = _surface(scene, like, TOLERANCE, worst.body).compute(search.phases + ENGINE_HALF_WIDTH * square)
-    highest, _ = predict_best(engine, search, _estimate(start, computed, equations))
+    equations = _surface_of_model(scene, like, TOLERANCE, worst.body).compute(
+        search.phases + ENGINE_HALF_WIDTH * square
+    )
+    highest, _ = predict_best(engine, search, _estimate_engine_by_ratio(start, computed, equations))
     search.move_to_best(computed)
     search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
@@ -165,7 +167,7 @@ def _compute_engine_nearby(worst: Worst, scene: Scene, like: Model, model: Model
     )  # fmt: skip
 
 
-def _on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> OnGrid | None:
+def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> OnGrid | None:
     """The spatial engine model with its largest value on its grid; None without one."""
     model = study.compared(scene)[-1]
     if surfaces is None or not model.is_spatial:
@@ -182,7 +184,7 @@ def _on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int)
 def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, tolerance: float) -> Worst:
     """The larger of an engine's values at the worst phases of the equations and on its own grid."""
     model, value, error, phases = on_grid
-    engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
+    engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
     start, start_error = float(there.value[0]), float(there.error[0])
     about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
@@ -192,15 +194,17 @@ def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, toler
     return Worst(*name, value, error, phases, "grid", **about)  # type: ignore[arg-type]
 
 
-def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
+def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
     return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
-def _estimate(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
-    """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
+def _estimate_engine_by_ratio(
+    center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
+) -> ComputedPhases:
+    """Return the engine at the 3 x 3 places of a square by its ratio to the equations, known at five of these."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]
     ratio[1, ::2], ratio[::2, 1] = ratio[::2, ::2].mean(axis=0), ratio[::2, ::2].mean(axis=1)
-    ratio[1, 1] = middle.numerator[0] / like[1, 1]
+    ratio[1, 1] = center.numerator[0] / like[1, 1]
     return replace(equations, numerator=(ratio * like).ravel())

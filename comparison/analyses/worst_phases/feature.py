@@ -11,12 +11,12 @@ from comparison.report.panels import distribution_panels
 from comparison.report.plots import fractile_heads
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
-from comparison.study.models import SMALL, SMALL_RESOLVED, models_of, smooth
+from comparison.study.models import SMALL, SMALL_RESOLVED, has_smooth_friction, models_of
 from reference.problem import Scene
 from reference.problem.readings import BOTH_READINGS
 
 
-def _kind(worst: Worst) -> str:
+def _word_kind(worst: Worst) -> str:
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
@@ -32,20 +32,20 @@ def _kind(worst: Worst) -> str:
     return "on an edge of the surface" if worst.kind == "kink" else "on a smooth maximum"
 
 
-def _curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
+def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
     """The distributions that answer the question: the small equations in both readings, and the last model."""
     (last,) = (line.second for line in scene.headlines if line.body == body)
     kept = (SMALL.key, SMALL_RESOLVED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 
-def _reading(report: Report, worst: Worst) -> str:
+def _name_reading(report: Report, worst: Worst) -> str:
     """The reading of (5.1) that a largest value has; "" of a displacement."""
     if worst.quantity == "displacement":
         return ""
     (scene,) = (scene for scene in report.study.scenes if scene.name == worst.scene)
     (model,) = (model for model in report.study.hierarchy if model.key == worst.model)
-    return BOTH_READINGS.removeprefix("in ") if smooth(scene) else model.reading
+    return BOTH_READINGS.removeprefix("in ") if has_smooth_friction(scene) else model.reading
 
 
 FOUND = ResultField(WorstPhases.key, list[Worst], "the largest values over all phases; null if not computed")
@@ -61,14 +61,16 @@ def _worst_of_models(report: Report, scene: Scene) -> Mapping[str, Any]:
     keys = [each.key for each in models_of(scene, report.study.hierarchy)]
     searched, bodies = report.found.get(WorstPhases.key) or (), range(1, len(scene.bodies) + 1)
     nearest = {key: [nearest_search(searched, keys, scene.name, key, body) for body in bodies] for key in keys}
-    return {"worst": {key: [worst and _mark(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}}
+    return {
+        "worst": {key: [worst and _mark_of_worst(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}
+    }
 
 
-def _mark(worst: Worst) -> list[float | str]:
+def _mark_of_worst(worst: Worst) -> list[float | str]:
     return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
 
 
-def _context(report: Report) -> Mapping[str, Any]:
+def _section_context(report: Report) -> Mapping[str, Any]:
     results = report.results
     titles = {model.key: model.title for model in results.models}
     return {
@@ -76,11 +78,16 @@ def _context(report: Report) -> Mapping[str, Any]:
             panel
             for scene in results.scenes_with("worst_phases")
             for body in range(1, scene.bodies + 1)
-            for curves in [_curves(scene, body)]
+            for curves in [_distribution_curves(scene, body)]
             for panel in distribution_panels(results, scene.name, f"μ_{body}", "", curves)
         ],
         "worst_lines": [
-            {"worst": worst, "title": titles[worst.model], "kind": _kind(worst), "reading": _reading(report, worst)}
+            {
+                "worst": worst,
+                "title": titles[worst.model],
+                "kind": _word_kind(worst),
+                "reading": _name_reading(report, worst),
+            }
             for worst in FOUND.of(results)
         ],
         "fractiles": fractile_heads(),
@@ -95,7 +102,7 @@ FEATURE = Feature(
     section=Section(
         "Largest values over all phases",
         "phase-resonance run makes it, of scenes with phases",
-        _context,
+        _section_context,
         folded=False,
     ),
 )

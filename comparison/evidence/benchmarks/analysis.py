@@ -55,14 +55,14 @@ class BenchmarkTable(Analysis[Benchmarks]):
         answers = [
             {side: results.value(self._task(case, side), _answer_of_failure) for side in MODELS} for case in self.cases
         ]
-        return Benchmarks([_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
+        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: Case, side: str) -> Task:
         seconds = SECONDS[side] * max(1.0, case.scene.duration / 12.0)
-        return Task(solve, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
+        return Task(solve_side, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
 
 
-def solve(question: tuple[Case, str]) -> SideNumbers:
+def solve_side(question: tuple[Case, str]) -> SideNumbers:
     """The numbers of one side. Runs inside a worker process."""
     case, side = question
     settings = dict(MODELS[side].settings)
@@ -76,29 +76,29 @@ def solve(question: tuple[Case, str]) -> SideNumbers:
     clock = time.process_time()
     trajectory = import_function(MODELS[side].trajectory)
     motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCES[side], **settings)
-    return SideNumbers(*_read(case.reading, motion), str(motion.status), time.process_time() - clock)
+    return SideNumbers(*_read_numbers(case.reading, motion), str(motion.status), time.process_time() - clock)
 
 
-def _read(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
+def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
     """The numbers and their estimated absolute errors; none of a motion that ended early."""
     if motion.status not in ANSWERED or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.of(motion), motion.accuracy
-    others = [] if accuracy is None else [reading.of(each) for each in (decimate(motion), *accuracy.coarser)]
+    others = [] if accuracy is None else [reading.of(each) for each in (halve_samples(motion), *accuracy.coarser)]
     if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
         return values, [math.nan] * len(values)
     rows = zip(values, *others)
     return values, [accuracy.error_of(value, rest) + abs(value - halved) / 3.0 for value, halved, *rest in rows]
 
 
-def decimate(motion: Trajectory) -> Trajectory:
+def halve_samples(motion: Trajectory) -> Trajectory:
     """Every second sample of a motion: what is read of it is four times as wrong, at kinks, and more elsewhere."""
     kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
     arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}
     return replace(motion, **arrays)
 
 
-def _benchmark(case: Case, answers: Mapping[str, SideNumbers]) -> Benchmark:
+def _make_benchmark(case: Case, answers: Mapping[str, SideNumbers]) -> Benchmark:
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -106,13 +106,13 @@ def _benchmark(case: Case, answers: Mapping[str, SideNumbers]) -> Benchmark:
         evidence=case.evidence,
         regularization=case.regularization,
         difference=case.difference,
-        rows=[_row(case, place, answers) for place in range(len(case.published))],
+        rows=[_make_row(case, place, answers) for place in range(len(case.published))],
         endings={side: answer.ending for side, answer in answers.items()},
         seconds={side: round(answer.seconds, 3) for side, answer in answers.items()},
     )
 
 
-def _row(case: Case, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
+def _make_row(case: Case, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
     """A published number with that of every side, NaN where a side has not as many values as are published."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))

@@ -43,7 +43,7 @@ class MotionReading:
         return [self.factor * float(value) for value in values]
 
 
-def published(quantity: str, value: float, uncertainty: float, unit: str = "") -> PublishedNumber:
+def published_number(quantity: str, value: float, uncertainty: float, unit: str = "") -> PublishedNumber:
     """A published number; uncertainty: absolute, as published or half of the last digit."""
     return PublishedNumber(quantity, unit, value, uncertainty)
 
@@ -71,14 +71,22 @@ class Case:
     difference: str = ""
 
 
-def shipped(name: str, values: Mapping[str, Any] | None = None) -> Scene:
+def load_shipped_scene(name: str, values: Mapping[str, Any] | None = None) -> Scene:
     """A scene of this package, with other values."""
     return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values({"name": name, **(values or {})})
 
 
-def cases() -> list[Case]:
+def list_cases() -> list[Case]:
     """The benchmarks whose inputs are shipped."""
-    return [*_wear_power(), _release(), _coulomb_damping(), _den_hartog(), _harmonic_block(), _pulse(), *_linear()]
+    return [
+        *_wear_power(),
+        _release_case(),
+        _coulomb_damping(),
+        _den_hartog(),
+        _harmonic_block(),
+        _pulse_case(),
+        *_linear_cases(),
+    ]
 
 
 def _wear_power() -> list[Case]:
@@ -89,26 +97,26 @@ def _wear_power() -> list[Case]:
             title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
-            published=[published("power of friction", power, digits, "W")],
+            published=[published_number("power of friction", power, digits, "W")],
             reading=MotionReading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
-            scene=shipped("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
+            scene=load_shipped_scene("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
             phases=(-0.5 * math.pi, 0.0),
         )
         for (amplitude, power, digits), kind in zip(numbers, kinds)
     ]
 
 
-def _release() -> Case:
+def _release_case() -> Case:
     return Case(
         title="code_aster SDND100: release with friction",
         source="code_aster, test SDND100 (V5.01.100): closed form",
         evidence="turning points, and rest at the end",
         published=[
-            published(f"turning point {number}", place, 0.0, "mm")
+            published_number(f"turning point {number}", place, 0.0, "mm")
             for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
         ],
         reading=MotionReading(readings.turning_points, factor=1e3),
-        scene=shipped("sdnd100"),
+        scene=load_shipped_scene("sdnd100"),
         start=((0.85e-3, 0.0),),
         regularization=1e-7,
     )
@@ -122,24 +130,24 @@ def _coulomb_damping() -> Case:
         source="ANSYS Verification Manual, VM73, after Tse, Morse and Hinkle, Mechanical Vibrations: closed form",
         evidence="the motion between stops, at given instants",
         published=[
-            published(f"place at {time:g} s", value, 5e-6, "in")
+            published_number(f"place at {time:g} s", value, 5e-6, "in")
             for time, value in zip(times, (0.87208, 0.83132, -0.74874))
         ],
         reading=MotionReading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
-        scene=shipped("vm73"),
+        scene=load_shipped_scene("vm73"),
         start=((-INCH, 0.0),),
         regularization=1e-7,
     )
 
 
 def _den_hartog() -> Case:
-    scene = shipped("den-hartog")
+    scene = load_shipped_scene("den-hartog")
     unit = 1e-3 * scene.radius / GRAVITY  # m: static displacement under the force
     return Case(
         title="Den Hartog: forced oscillation with friction",
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
-        published=[published("amplitude over static one", 1.535602, 5e-7)],
+        published=[published_number("amplitude over static one", 1.535602, 5e-7)],
         reading=MotionReading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
         scene=scene,
         phases=(0.18581959993316782, 0.0),
@@ -155,25 +163,25 @@ def _harmonic_block() -> Case:
         title="Rigid block on a harmonically shaken plane",
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
-        published=[published("amplitude over ground's", round(amplitude, 6), 5e-7)],
+        published=[published_number("amplitude over ground's", round(amplitude, 6), 5e-7)],
         reading=MotionReading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
-        scene=shipped("harmonic"),
+        scene=load_shipped_scene("harmonic"),
         phases=(-0.5 * math.pi, 0.0),
     )
 
 
-def _pulse() -> Case:
+def _pulse_case() -> Case:
     return Case(
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
-        published=[published("displacement", 0.75, RAMP, "m")],
+        published=[published_number("displacement", 0.75, RAMP, "m")],
         reading=MotionReading(readings.positions_at, {"times": [3.0]}),
-        scene=shipped("newmark"),
+        scene=load_shipped_scene("newmark"),
     )
 
 
-def _linear() -> list[Case]:
+def _linear_cases() -> list[Case]:
     stories = (2.0, 0.6852, 0.4346, 0.3383, 0.2966)
     return [
         Case(
@@ -181,11 +189,11 @@ def _linear() -> list[Case]:
             source="A. K. Chopra, Dynamics of Structures, base-isolated one-story building: natural periods",
             evidence="stiffness of the isolator, mass and link",
             published=[
-                published("isolation period", 2.0242, 5e-5, "s"),
-                published("structural period", 0.2500, 5e-5, "s"),
+                published_number("isolation period", 2.0242, 5e-5, "s"),
+                published_number("structural period", 0.2500, 5e-5, "s"),
             ],
             reading=MotionReading(readings.natural_periods),
-            scene=shipped("frame"),
+            scene=load_shipped_scene("frame"),
             start=((1e-4, 0.0), (0.0, 0.0)),
         ),
         Case(
@@ -193,11 +201,11 @@ def _linear() -> list[Case]:
             source="A. K. Chopra, Dynamics of Structures, uniform five-story shear building: natural periods",
             evidence="chain of links above a platform that friction holds",
             published=[
-                published(f"natural period {number}", period, 5e-5, "s")
+                published_number(f"natural period {number}", period, 5e-5, "s")
                 for number, period in enumerate(stories, start=1)
             ],
             reading=MotionReading(readings.natural_periods),
-            scene=shipped("stories"),
+            scene=load_shipped_scene("stories"),
             start=(*((0.0, 0.0),) * 5, (1e-4, 0.0)),
             regularization=DEFAULT_V_REG,
         ),
@@ -205,9 +213,9 @@ def _linear() -> list[Case]:
             title="Pendulum released at 60°",
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
-            published=[published("period over small one's", 1.073182, 5e-7)],
-            reading=MotionReading(readings.period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
-            scene=shipped("pendulum"),
+            published=[published_number("period over small one's", 1.073182, 5e-7)],
+            reading=MotionReading(readings.mean_period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
+            scene=load_shipped_scene("pendulum"),
             start=((math.sin(math.pi / 3.0), 0.0),),
         ),
     ]
@@ -218,12 +226,12 @@ READ_TO = 3.0  # mm, from the published loops
 RADIUS = 2.2352  # m
 HEAVY = 6285710.0  # N, of the pendulum
 LASTING = 8.0  # s of 50: later displacements are smaller
-SAMPLES, STEP = 5002, 0.01  # samples of their input; the step in s, of all samples but the first
+SAMPLES, STEP = 5002, 0.01  # samples of the MASTODON input motion; their step, s, from the second sample on
 PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
-ROUNDED = 1e-3  # relative, by how much a copy of their input in other units or digits may be off
+ROUNDED = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
 LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
 FRICTION = {
-    "slow": 0.03 * 0.789 / 0.79,  # theirs has k_T = 0.789 (0.7^(0.02 T) + 0.4)
+    "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)
     "fast": 0.06 * 0.789 / 0.79,
     "rate": 100.0,
     "load_exponent": -0.357,  # slope of 0.7^(0.02 (p - 50)) at p = 50 MPa, that of the weight
@@ -257,8 +265,8 @@ def mastodon(path: Path) -> Case:
         source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
         "loops of both programs",
         evidence="a recorded motion in three directions with friction that depends on velocity, pressure and heat",
-        published=[published(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
-        reading=MotionReading(readings.ranges, factor=1e3),
+        published=[published_number(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
+        reading=MotionReading(readings.position_ranges, factor=1e3),
         scene=scene,
         regularization=DEFAULT_V_REG,
         difference="their bearing is elastic up to 1 mm, and its restoring force N y / sqrt(R² - y²) lies between "

@@ -17,11 +17,11 @@ from comparison.cli.arguments import CommandParser, command, number_of_jobs, wri
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
-from comparison.evidence.benchmarks.cases import Case, cases, mastodon
-from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, page, with_error, word_explanations
+from comparison.evidence.benchmarks.cases import Case, list_cases, mastodon
+from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, with_error, word_explanations, word_page
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.runner.attempts import attempt
-from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.verdicts import NOT_COMPARED
@@ -48,7 +48,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     options = parser.parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
     analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
-    out = destination(options.out)
+    out = resolve_destination(options.out)
     refuse_foreign_files(out, [STORED.name, PAGE])
     console = wide_console()
     results = compute_tasks("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
@@ -56,9 +56,9 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
-        files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
-        text = attempt(PAGE, partial(page, table))
-        return files + publish(out, {} if text is None else {PAGE: text.encode()}, "comparison.benchmarks")
+        files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
+        text = attempt(PAGE, partial(word_page, table))
+        return files + publish_files(out, {} if text is None else {PAGE: text.encode()}, "comparison.benchmarks")
 
     files = write_and_show(out, write, partial(print_benchmarks, console, table))
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
@@ -85,7 +85,7 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
 
 def _choose_cases(only: str, mastodon_input: Path | None) -> list[Case]:
     """The benchmarks that the options leave. Raises SceneError."""
-    known = cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
+    known = list_cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]
     if not chosen:
         names = ", ".join(case.scene.name for case in known)

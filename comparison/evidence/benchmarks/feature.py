@@ -1,6 +1,13 @@
 """External benchmarks: in the report."""
 
-from comparison.evidence.benchmarks.table import STORED, Benchmarks, stated, verdict_line, with_error, word_explanations
+from comparison.evidence.benchmarks.table import (
+    STORED,
+    Benchmarks,
+    verdict_line,
+    with_error,
+    word_explanations,
+    word_published_number,
+)
 from comparison.report.feature import Feature, ResultField
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES
@@ -16,11 +23,11 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "External benchmarks",
-        STORED.word_origin(),
+        STORED.word_how_to_make(),
         lambda report: {
             "benchmark_sentences": word_explanations,
             "benchmark_colors": CLASSES,
-            "stated": stated,
+            "stated": word_published_number,
             "with_error": with_error,
         },
         verdict=lambda results: verdict_line(FOUND.of(results)),

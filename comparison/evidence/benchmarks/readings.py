@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from comparison.result_types import Array
 from reference.problem import Trajectory
 
-PARTS = 16  # between two instants, for extremes and lengths
+PARTS = 16  # parts into which the time between two instants is cut, to read extremes and lengths of the path
 ROUNDING = 1e-12  # relative, of the last instant
 STILL = 1e-3  # share of the largest speed: slower turns are creep, not swings
 
@@ -20,7 +20,7 @@ STILL = 1e-3  # share of the largest speed: slower turns are creep, not swings
 def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
     """Position of the platform along x at some instants, s; NaN behind the end of the motion."""
     instants = np.asarray(times, dtype=float)
-    values: Array = _along(motion, 0)(instants)
+    values: Array = _spline_along(motion, 0)(instants)
     return np.where(instants <= motion.time[-1] * (1.0 + ROUNDING), values, np.nan)
 
 
@@ -30,40 +30,40 @@ def turning_points(motion: Trajectory) -> Array:
     moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
     sign = np.sign(speed[moving])
     last = np.flatnonzero(np.diff(sign))  # last sample of every swing but the last one, among the moving samples
-    place = _along(motion, 0)
+    place = _spline_along(motion, 0)
     turns = []
     for end, begin in [*zip(moving[last], moving[last + 1]), (moving[-1], len(speed) - 1)]:
-        dense = place(_dense(motion, float(motion.time[end]), float(motion.time[begin])))
+        dense = place(_dense_instants(motion, float(motion.time[end]), float(motion.time[begin])))
         turns.append(dense[np.argmax(np.sign(speed[end]) * dense)])
     return np.array(turns)
 
 
 def path_length(motion: Trajectory, begin: float, end: float) -> float:
     """Way that the platform slides between two instants."""
-    dense = np.stack([_along(motion, axis)(_dense(motion, begin, end)) for axis in (0, 1)])
+    dense = np.stack([_spline_along(motion, axis)(_dense_instants(motion, begin, end)) for axis in (0, 1)])
     return float(np.hypot(*np.diff(dense)).sum())
 
 
-def extremes(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
+def extreme_positions(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
     """Smallest and largest position of the platform along x (0) or y (1) from an instant on."""
-    dense = _along(motion, axis)(_dense(motion, begin, float(motion.time[-1])))
+    dense = _spline_along(motion, axis)(_dense_instants(motion, begin, float(motion.time[-1])))
     return float(dense.min()), float(dense.max())
 
 
-def ranges(motion: Trajectory) -> list[float]:
+def position_ranges(motion: Trajectory) -> list[float]:
     """Smallest and largest position of the platform along x, then along y."""
-    return [*extremes(motion, 0), *extremes(motion, 1)]
+    return [*extreme_positions(motion, 0), *extreme_positions(motion, 1)]
 
 
 def half_range(motion: Trajectory, begin: float) -> float:
     """Amplitude of the platform's oscillation along x from an instant on: a whole period."""
-    lowest, highest = extremes(motion, 0, begin)
+    lowest, highest = extreme_positions(motion, 0, begin)
     return 0.5 * (highest - lowest)
 
 
-def period(motion: Trajectory) -> float:
+def mean_period(motion: Trajectory) -> float:
     """Mean time between two passages of the platform through x = 0 in the same direction."""
-    passages = _along(motion, 0).roots(extrapolate=False)
+    passages = _spline_along(motion, 0).roots(extrapolate=False)
     return float(np.diff(passages[::2]).mean())
 
 
@@ -77,11 +77,11 @@ def natural_periods(motion: Trajectory) -> Array:
     return periods
 
 
-def _along(motion: Trajectory, axis: int) -> CubicHermiteSpline:
+def _spline_along(motion: Trajectory, axis: int) -> CubicHermiteSpline:
     return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])
 
 
-def _dense(motion: Trajectory, begin: float, end: float) -> Array:
+def _dense_instants(motion: Trajectory, begin: float, end: float) -> Array:
     """Instants from `begin` to `end`: those of the motion, and PARTS between any two of them."""
     inner = motion.time[(motion.time > begin) & (motion.time < end)]
     knots = np.concatenate([[begin], inner, [end]])

@@ -15,7 +15,7 @@ from comparison.verdicts import (
     NOT_MET,
     Verdict,
     count_verdicts,
-    judge,
+    judge_error,
     word_counts_and_largest,
     word_error,
     word_verdict,
@@ -60,8 +60,8 @@ class PublishedNumber:
     def judge(self, value: float | None, error: float | None) -> Verdict:
         """Return the verdict on a value with its error, but for rounding of the value."""
         if value is None or error is None:
-            return judge(value, error)
-        return judge(value - self.published, error + self.uncertainty + ROUNDING * abs(value))
+            return judge_error(value, error)
+        return judge_error(value - self.published, error + self.uncertainty + ROUNDING * abs(value))
 
     def error_of(self, side: str) -> float | None:
         """Return the comparison error of a side, None without a value."""
@@ -138,11 +138,11 @@ MOST_DIGITS = 7  # digits of a value
 SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
 
 
-def page(table: Benchmarks) -> str:
+def word_page(table: Benchmarks) -> str:
     """benchmarks.md: five numbers, one of each kind, the counts, and every number by its benchmark."""
     text = (resources.files("comparison.evidence.benchmarks") / "page.md.j2").read_text(encoding="utf-8")
     short = [(each, each.rows[place]) for name, place in SHORT for each in table.benchmarks if each.name == name]
-    shown = {"word_explanations": word_explanations, "stated": stated, "with_error": with_error}
+    shown = {"word_explanations": word_explanations, "stated": word_published_number, "with_error": with_error}
     made: str = jinja2.Template(text, trim_blocks=True).render(table=table, short=short, **shown)
     return made
 
@@ -164,6 +164,6 @@ def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
     return f"{number.value:.{max(1, min(digits, known))}g} ± {number.error:.0e}"
 
 
-def stated(row: PublishedNumber) -> str:
+def word_published_number(row: PublishedNumber) -> str:
     """The published number with its unit and uncertainty."""
     return f"{row.published:.7g} {row.unit}".rstrip() + (f" ± {row.uncertainty:g}" if row.uncertainty else "")

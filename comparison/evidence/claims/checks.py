@@ -22,7 +22,11 @@ COMPLEX_SHARE = 0.25  # prominence over the range; at 20 % the count of mu_1 dep
 OTHER_SHARES = 0.15, 0.35  # prominences at which the same count may say otherwise
 NEAR = np.pi / 4.0  # rad, from a corner
 CORNER = (0.0, 0.0)  # rad; on the square that closes the four corners are one point
-VIEWS = {"periodic": counting.count_periodic, "drawn": counting.count_drawn, "profile": counting.count_profile}
+VIEWS = {
+    "periodic": counting.count_periodic_peaks_and_valleys,
+    "drawn": counting.count_drawn_peaks_and_valleys,
+    "profile": counting.count_profile_peaks_and_valleys,
+}
 
 
 @result
@@ -51,7 +55,7 @@ def compare_intensity(case: Evidence) -> StatementVerdict:
     return verdict_with_reason(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
 
 
-def correlate(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> StatementVerdict:
+def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> StatementVerdict:
     """Check that the surfaces of a body of each case are similar, at the phases that both have."""
     if any(case.flat(body) for case, body in zip(cases, bodies)):
         return verdict_with_reason(False, "one of them is flat")
@@ -67,7 +71,7 @@ def find_folds(*cases: Evidence) -> StatementVerdict:
     return verdict_with_reason(rough, "; ".join(map(_describe_bends, cases)))
 
 
-def find_no_folds(case: Evidence) -> StatementVerdict:
+def check_for_no_fold(case: Evidence) -> StatementVerdict:
     """Check that no surface has a fold or a jump where it bends most; a fold of the denominator of (5.1) is in all."""
     if case.ground is not None and not case.ground.smooth:
         return verdict_with_reason(False, f"cannot hold: the denominator of (5.1) has a fold; {_describe_bends(case)}")
@@ -135,7 +139,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Check that mu_2 has several peaks and valleys, and more of them than mu_1; the shares that say otherwise."""
 
     def counts(share: float) -> list[counting.Counts]:
-        return [counting.count_periodic(case.mu[..., body], case.error, share) for body in (0, 1)]
+        return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:
         first, second = counts(share)
@@ -154,7 +158,7 @@ def find_corner_peaks(case: Evidence) -> StatementVerdict:
     if case.flat(2):
         return verdict_with_reason(False, "flat")
     step = 2.0 * np.pi / len(mu)
-    tops = [(step * row, step * column) for row, column in counting.relief(mu, case.error).tops]
+    tops = [(step * row, step * column) for row, column in counting.find_relief(mu, case.error).tops]
     words = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
     nearest = min(torus_distance(top, CORNER) for top in tops)
     return verdict_with_reason(

@@ -76,7 +76,7 @@ CLAIMS: tuple[Claim, ...] = (
         "mu_1 is similar to the surface of a one-mass system",
         f"the platform alone, loaded close to its own period T_c: {_SIMILAR}",
         (_I, f"{_I} alone"),
-        checks.correlate,
+        checks.correlate_surfaces,
     ),
     Claim(
         "Fig. 3b",
@@ -104,7 +104,7 @@ CLAIMS: tuple[Claim, ...] = (
         "mu_1 is typical of one degree of freedom",
         f"the platform alone, loaded close to T_c, which moves along one line: {_SIMILAR}",
         (_II, f"{_II} alone"),
-        checks.correlate,
+        checks.correlate_surfaces,
     ),
     Claim(
         "Fig. 3d",
@@ -120,7 +120,7 @@ CLAIMS: tuple[Claim, ...] = (
         "mu_2 is similar to one degree of freedom under nonresonant perturbation",
         f"an oscillator without friction, of period T_3x: {_SIMILAR}",
         (_II, f"{_II} oscillator"),
-        partial(checks.correlate, bodies=(2, 1)),
+        partial(checks.correlate_surfaces, bodies=(2, 1)),
     ),
     Claim("Fig. 3", "all surfaces are not smooth", f"{_ZOOM} h or slower", (_I, _II), checks.find_folds),
     Claim(
@@ -130,14 +130,20 @@ CLAIMS: tuple[Claim, ...] = (
         (_DRY,),
         checks.find_plane,
     ),
-    Claim("Fig. 4a", "mu_1 is similar to case II", _SIMILAR, (_DRY, _II), checks.correlate),
-    Claim("Fig. 4b", "mu_2 is similar to case II", _SIMILAR, (_DRY, _II), partial(checks.correlate, bodies=(2, 2))),
+    Claim("Fig. 4a", "mu_1 is similar to case II", _SIMILAR, (_DRY, _II), checks.correlate_surfaces),
+    Claim(
+        "Fig. 4b",
+        "mu_2 is similar to case II",
+        _SIMILAR,
+        (_DRY, _II),
+        partial(checks.correlate_surfaces, bodies=(2, 2)),
+    ),
     Claim(
         "Fig. 4c, d",
         "viscous friction makes the surfaces smooth",
         f"smooth is read as differentiable: {_ZOOM} h^2",
         (_WET,),
-        checks.find_no_folds,
+        checks.check_for_no_fold,
         cannot='Read as "differentiable", it cannot hold by the definition (5.1): its denominator, the largest ground'
         " acceleration, has a fold where two of its peaks are equal, which no friction law removes. The paper may mean"
         " less.",

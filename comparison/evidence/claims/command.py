@@ -11,10 +11,9 @@ from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_li
 from comparison.evidence.forced_ratios import forced_ratios
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
-from comparison.study.study import Study
+from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import builtin_scenes, load_scene
 
-TOLERANCE = 1e-3  # relative error of a study; the surfaces of the claims have one of their own
 SURFACES = "reference:amplification"  # the function that the workers ask
 
 
@@ -27,7 +26,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_computing()
     options = parser.parse_args(argv)
     grid = GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)
-    study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
+    study = Study(tuple(map(load_scene, builtin_scenes())), grid, STUDY_TOLERANCE)
     console = wide_console()
     claims = Claims(grid)
     results = compute_tasks("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)

@@ -6,13 +6,14 @@ import numpy as np
 
 import reference
 from comparison.evidence.claims.readings import CASES, PeakReading
-from comparison.evidence.claims.smoothness import Bend, bends
+from comparison.evidence.claims.smoothness import Bend, find_bends
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.symmetry import complete_surface
 
-TOLERANCE = 1e-3  # relative, of surfaces that the study does not have: peaks are counted in parts of their range
+# Relative error of surfaces that the study does not have: enough to count peaks in parts of their range
+SURFACE_TOLERANCE = 1e-3
 SHARP = 1e-6  # relative error of the values that tell a fold from a curvature
 FLAT = 0.05  # range of a surface over its mean, below which it has no peaks to speak of
 MOTIONS = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, whose motion is looked at
@@ -62,7 +63,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     """Return surfaces, bends and facts of the motions of one case in one reading. Runs inside a worker process."""
     scene, cutoff = CASES[question.case](), question.reading.cutoff
 
-    def solve(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
+    def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
 
     surfaces = question.known
@@ -80,11 +81,11 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     apart, swing = _motion_facts(scene)
     return replace(
         surfaces,
-        bends=bends(surfaces.mu, lambda phases: solve(scene, phases, SHARP).mu),
+        bends=find_bends(surfaces.mu, lambda phases: solve(scene, phases, SHARP).mu),
         apart=apart,
         swing=swing,
         resonance=tuple((float(each), float(natural[np.abs(each / natural - 1.0).argmin()])) for each in periods),
-        ground=bends(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
+        ground=find_bends(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
     )
 
 

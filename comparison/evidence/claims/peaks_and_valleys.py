@@ -4,8 +4,9 @@ Peaks and valleys of a surface over the phases, by prominence.
 A peak is a maximum whose prominence is at least SHARE of the surface's range (highest minus lowest value) and larger
 than what the errors of the values can make; its prominence is how far one must go down from it to reach anything
 higher. A valley is a peak of the surface upside down. The square is periodic, so a ridge that leaves through one edge
-comes back through the opposite one and counts once. `count_drawn` counts on one period as it is drawn, bounded by its
-edges, where the same ridge is cut in two. `count_profile` counts on the mean along the diagonals alpha1 - alpha2.
+comes back through the opposite one and counts once. `count_drawn_peaks_and_valleys` counts on one period as it is
+drawn, bounded by its edges, where the same ridge is cut in two. `count_profile_peaks_and_valleys` counts on the mean
+along the diagonals alpha1 - alpha2.
 """
 
 from collections.abc import Sequence
@@ -37,21 +38,21 @@ class Counts(NamedTuple):
     valleys: int
 
 
-def count_periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_periodic_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """
     Peaks and valleys on the square that closes at 2 pi.
 
     mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
     """
-    return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
+    return Counts(len(find_relief(mu, error, share).tops), len(find_relief(-mu, error, share).tops))
 
 
-def count_drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """Peaks, and valleys between two peaks, on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges."""
     return _count_bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
 
-def count_profile(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """Peaks and valleys of the mean along the diagonals alpha1 - alpha2 as the drawn square shows it, -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
@@ -62,12 +63,12 @@ def count_profile(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts
 
 
 def _count_bounded(mu: Array, error: float, share: float) -> Counts:
-    peaks, valleys = (relief(side * mu, error, share, closed=False) for side in (1.0, -1.0))
+    peaks, valleys = (find_relief(side * mu, error, share, closed=False) for side in (1.0, -1.0))
     between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
     return Counts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
 
 
-def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
+def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
     """The peaks of a surface (n, m), `closed` if periodic; none where its range is within its errors."""
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
@@ -87,7 +88,7 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
         islands: dict[int, int] = {}  # adjacent to this node, and their highest node
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
-                islands.setdefault(_root(parent, other), other)
+                islands.setdefault(_root_of_node(parent, other), other)
         if not islands:
             tops.append(node)
             parent[node] = top_of[node] = node
@@ -100,12 +101,12 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
             if height[lesser] - height[node] < least:
                 into[lesser] = top_of[islands[highest]]
     peaks = [top for top in tops if into[top] == top]
-    number = {top: peaks.index(_root(into, top)) for top in tops}
+    number = {top: peaks.index(_root_of_node(into, top)) for top in tops}
     regions = np.array([number[top] for top in top_of]).reshape(mu.shape)
     return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
 
 
-def _root(parent: list[int], node: int) -> int:
+def _root_of_node(parent: list[int], node: int) -> int:
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]

@@ -25,7 +25,7 @@ READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
     """Return the supremum where friction cannot hold the platform: both readings are the same there."""
-    return reading if models.dry(scene) else LITERAL_SUPREMUM
+    return reading if models.has_dry_friction(scene) else LITERAL_SUPREMUM
 
 
 @cache

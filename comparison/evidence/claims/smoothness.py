@@ -44,24 +44,24 @@ class Bend:
         return "smooth" if self.smooth else "fold" if self.exponent > JUMP else "jump"
 
 
-def bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
+def find_bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
     """The sharpest bend of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad, to 1e-4."""
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
-    starts = [(body, *start) for body in range(bodies) for start in _sharpest(mu[..., body])]
+    starts = [(body, *start) for body in range(bodies) for start in _sharpest_places(mu[..., body])]
     body, places, ways = (np.array(part) for part in zip(*starts))
     center, way = step * places, step * ways
     values = np.array([[mu[*((at + side * go) % n), i] for side in (-1, 0, 1)] for i, at, go in starts])
     every = np.arange(len(starts))
-    sizes = [np.abs(_second(values))]
+    sizes = [np.abs(_second_differences(values))]
     for _ in range(HALVINGS):
         way = way / 2.0
         new = solve(np.concatenate([center - way, center + way])).reshape(2, len(starts), bodies)[:, every, body]
         row = np.stack([values[:, 0], new[0], values[:, 1], new[1], values[:, 2]], axis=1)
-        best = np.argmax([np.abs(_second(row[:, i : i + 3])) for i in range(3)], axis=0)
+        best = np.argmax([np.abs(_second_differences(row[:, i : i + 3])) for i in range(3)], axis=0)
         values = np.stack([row[every, best + i] for i in range(3)], axis=1)
         center = center + (best - 1)[:, None] * way
-        sizes.append(np.abs(_second(values)))
+        sizes.append(np.abs(_second_differences(values)))
     tiny = np.finfo(float).tiny
     exponents = np.log2(np.maximum(sizes[-1 - JUDGED], tiny) / np.maximum(sizes[-1], tiny)) / JUDGED
     of_bodies = (np.flatnonzero(body == number) for number in range(bodies))
@@ -70,12 +70,12 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
     return tuple(Bend(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest)
 
 
-def _second(values: Array) -> Array:
+def _second_differences(values: Array) -> Array:
     difference: Array = values[:, 0] - 2.0 * values[:, 1] + values[:, 2]
     return difference
 
 
-def _sharpest(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
+def _sharpest_places(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
     """The PLACES of largest second difference, no two of them adjacent: index pair and direction."""
     size = np.array(
         [np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way) for way in DIRECTIONS]

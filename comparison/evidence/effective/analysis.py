@@ -93,7 +93,7 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
     function = staticmethod(read_back)
     without_value = staticmethod(lambda task, failed: Effective(task[0].name, task[1].key, error_message=failed.reason))
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
         """Every model of every scene."""
         return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 
@@ -116,7 +116,7 @@ def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
         radius = float("inf")
     return {
         "radius": radius,
-        "friction": _friction(scene, motion, radius),
+        "friction": _friction_of_motion(scene, motion, radius),
         "contact": float(motion.contact_force[0]),
         "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
         "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
@@ -152,7 +152,7 @@ def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     return read | ({"damping": float(factors[1])} if damped and not turning else {})
 
 
-def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
+def _friction_of_motion(scene: Scene, motion: Trajectory, radius: float) -> float:
     """Median ratio of contact forces across and along the normal in fast slides; NaN where heat changes it."""
     if np.isnan(radius) or scene.dry_friction.heat is not None:
         return float("nan")

@@ -12,11 +12,11 @@ from comparison.report.section import Section
 from reference.problem import Scene
 
 
-def _effective(findings: Findings, scene: Scene) -> list[Effective]:
+def _effective_of_scene(findings: Findings, scene: Scene) -> list[Effective]:
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-EFFECTIVE = SceneField(EffectiveValues.key, list[Effective], "the scene, then every model", _effective)
+EFFECTIVE = SceneField(EffectiveValues.key, list[Effective], "the scene, then every model", _effective_of_scene)
 FORCED = SceneField(
     "forced",
     list[ForcedRatio],

@@ -61,12 +61,12 @@ def judge_reply(
         return MatrixEntry(CellVerdict.REFUSED if invalid else CellVerdict.FAILED, reply.invalid)
     if invalid:
         return MatrixEntry(CellVerdict.FAILED, "accepts an input that is against the rules")
-    points = [_point(reply, m, finer, tolerance, right) for m in range(len(reply.status))]
+    points = [_judge_point(reply, m, finer, tolerance, right) for m in range(len(reply.status))]
     order = list(CellVerdict)
     return max(points, key=lambda point: (order.index(point.verdict), point.error or 0.0))
 
 
-def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> MatrixEntry:
+def _judge_point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> MatrixEntry:
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICS | NUMERICS | {Outcome.OK}):
@@ -74,7 +74,7 @@ def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right
     if right and status != Outcome.OK and status not in right:
         return MatrixEntry(CellVerdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
     if status in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
-        return _value(status, mu, error, replies, tolerance)
+        return _judge_value(status, mu, error, replies, tolerance)
     if not np.isnan(mu).all():
         return MatrixEntry(CellVerdict.FAILED, f"{status}, and yet a value", status)
     if status in NUMERICS:
@@ -85,7 +85,7 @@ def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right
     return MatrixEntry(CellVerdict.REFUSED, status, status)
 
 
-def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> MatrixEntry:
+def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> MatrixEntry:
     """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
@@ -126,7 +126,7 @@ class Cell:
     column: ModelColumn
 
 
-def cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COLUMNS) -> list[Cell]:
+def list_cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COLUMNS) -> list[Cell]:
     """Every model that each extreme concerns; of the numerics of our engine none is for an engine of the user."""
     pairs = [(row, column) for row in rows for column in columns if (column.like or column.key) in row.columns]
     return [Cell(row, column) for row, column in pairs if not (column.like and row.amplification)]
@@ -140,14 +140,14 @@ def solve_cell(cell: Cell) -> MatrixEntry:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # overflow in an extreme is judged by what comes of it
         function = row.amplification or column.amplification
-        reply = _ask(row, function, {**column.settings, **row.settings, "tolerance": tolerance})
+        reply = _ask_model(row, function, {**column.settings, **row.settings, "tolerance": tolerance})
         seconds = time.process_time() - begin
         finer = []
-        for other, settings, usual in column.finer if answers(reply) else ():
+        for other, settings, usual in column.finer if has_claim(reply) else ():
             # another function knows only what its own settings name
             known = {key: value for key, value in row.settings.items() if other == function or key in settings}
             strict = max(usual * min(1.0, tolerance / column.tolerance), STRICTEST)
-            finer.append(_ask(row, other, {**settings, **known, "tolerance": strict}))
+            finer.append(_ask_model(row, other, {**settings, **known, "tolerance": strict}))
             if finer[-1].status and NUMERICS.isdisjoint(finer[-1].status):  # an answer, be it a refusal, at every point
                 break
     entry = judge_reply(reply, finer, tolerance, row.invalid, row.right)
@@ -157,7 +157,7 @@ def solve_cell(cell: Cell) -> MatrixEntry:
     return replace(entry, reason=reason, seconds=round(seconds, 3), total=round(total, 3))
 
 
-def answers(reply: Reply) -> bool:
+def has_claim(reply: Reply) -> bool:
     """
     Return whether there is anything that a finer run could contradict: not a value whose error is as large as itself.
     """
@@ -167,7 +167,7 @@ def answers(reply: Reply) -> bool:
     )
 
 
-def _ask(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> Reply:
+def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> Reply:
     """Return what a function replies at the row's phase pairs; one of the engine does the work that the row allows."""
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
@@ -202,12 +202,12 @@ class Extremes(Analysis[Matrix]):
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each cell, row by row."""
-        return [self._task(cell) for cell in cells(self.rows, self.columns)]
+        return [self._task(cell) for cell in list_cells(self.rows, self.columns)]
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Matrix:
         """The matrix, without what the command knows of the run."""
         entries: dict[tuple[str, str], dict[str, MatrixEntry]] = {}
-        for cell in cells(self.rows, self.columns):
+        for cell in list_cells(self.rows, self.columns):
             row = entries.setdefault((cell.row.group, cell.row.title), {})
             row[cell.column.key] = results.value(self._task(cell), _entry_of_failure)
         used = {key for row in entries.values() for key in row}

@@ -28,7 +28,7 @@ class ModelColumn:
 MAX_WORK = 6e5  # steps of the engine for a phase pair: a cell ends within the limit of its processor time
 
 
-def _column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
+def _model_column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
     function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
     return ModelColumn(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
 
@@ -37,13 +37,14 @@ _REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
-# the same law and geometry by other means and far closer; the engine itself where that has no answer
+# Calls that check a value, the first with an answer: the equations of the same law and geometry, then the engine at a
+# far closer tolerance
 _FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
 _FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
 COLUMNS = (
-    _column("small", "small equations", "small", None),
-    _column("exact", "exact equations", "exact", None),
-    _column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
+    _model_column("small", "small equations", "small", None),
+    _model_column("exact", "exact equations", "exact", None),
+    _model_column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
     ModelColumn("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
     ModelColumn("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
 )

@@ -16,16 +16,16 @@ from rich.console import Console
 from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
-from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, select_quick
+from comparison.evidence.extremes.analysis import LIMIT, Extremes, list_cells, select_quick
 from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED, user_column
 from comparison.evidence.extremes.matrix import FILE, STORED, CellVerdict, Matrix
-from comparison.evidence.extremes.rows import rows
-from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.evidence.extremes.rows import extreme_cases
+from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from reference.problem import SceneError
 
-MODELS = {EQUATIONS, ENGINE, STATED}  # what the workers ask
+MODELS = {EQUATIONS, ENGINE, STATED}  # functions that the workers call
 
 
 @command
@@ -45,7 +45,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
     options = parser.parse_args(argv)
     extremes = _choose_cells(options)
-    out = destination(options.out)
+    out = resolve_destination(options.out)
     refuse_foreign_files(out, [FILE])
     console = wide_console()
     matrix = judge_matrix(extremes, options, argv, console, executor)
@@ -55,7 +55,9 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
             for row, title, entry in matrix.cells_of(verdict):
                 console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
 
-    (file,) = write_and_show(out, partial(publish, out, {FILE: STORED.as_json(matrix)}, "comparison.extremes"), show)
+    (file,) = write_and_show(
+        out, partial(publish_files, out, {FILE: STORED.as_json(matrix)}, "comparison.extremes"), show
+    )
     counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
     spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
     console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
@@ -77,7 +79,7 @@ def judge_matrix(
         "cpu_seconds": round(sum(totals), 1),
         "stored_before": results.parts[extremes.stage].stored,
         "limit": extremes.limit,
-        "reduced": len([task for task in tasks if not task.group]) < len(cells(list(rows()))),
+        "reduced": len([task for task in tasks if not task.group]) < len(list_cells(list(extreme_cases()))),
     }
     return replace(matrix, run=run)
 
@@ -90,10 +92,10 @@ def _choose_cells(options: argparse.Namespace) -> Extremes:
     limit = LIMIT if options.limit is None else read_number("--limit", options.limit, 0.1, 1e6, "s of processor time")
     number_of_jobs(options)  # refused before anything else is looked at
     supplied = user_models(options.model, options.model_limit, options.scheduler)
-    every = list(rows())
+    every = list(extreme_cases())
     kept = [row for row in (select_quick(every) if options.reduced else every) if options.rows in row.name]
     columns = [column for column in COLUMNS if not options.models or column.key in options.models]
     columns += [user_column(model) for model in supplied]
-    if not cells(kept, columns):
+    if not list_cells(kept, columns):
         raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
     return Extremes(kept, columns, limit)

@@ -1,6 +1,6 @@
 """Stability at the extremes: in the report."""
 
-from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, Matrix, describe
+from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, Matrix, describe_entry
 from comparison.report.feature import Feature, ResultField
 from comparison.report.section import Section
 
@@ -15,10 +15,10 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "Stability at the extremes",
-        STORED.word_origin(),
+        STORED.word_how_to_make(),
         lambda report: {
             "verdicts": [(verdict.value, MEANING[verdict]) for verdict in CellVerdict],
-            "describe": describe,
+            "describe": describe_entry,
         },
         verifies=True,
         verdict=lambda results: FOUND.of(results).count_line,

@@ -97,7 +97,7 @@ class Matrix:
 STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")
 
 
-def describe(entry: MatrixEntry) -> str:
+def describe_entry(entry: MatrixEntry) -> str:
     """Return what stands in the field: the error claimed, or the status in its own words."""
     if entry.verdict == CellVerdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"

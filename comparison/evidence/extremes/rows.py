@@ -62,38 +62,38 @@ class ExtremeCase:
         return f"{self.group} {self.title}"
 
 
-def _rows(
+def _cases_of_group(
     group: str, scenes: Mapping[Any, Mapping[str, Any]], columns: tuple[str, ...] = ALL, **more: Any
 ) -> list[ExtremeCase]:
     titles = [value if isinstance(value, str) else f"{value:g}" for value in scenes]
     return [ExtremeCase(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
 
 
-def rows() -> Iterator[ExtremeCase]:
+def extreme_cases() -> Iterator[ExtremeCase]:
     """Every extreme, in the order of the matrix."""
     yield from _friction_laws()
-    yield from _numerics_of_the_engine()
-    yield from _sizes()
-    yield from _chains()
-    yield from _bars()
-    yield from _excitations()
-    yield from _directions()
-    yield from _starts_and_supports()
-    yield from _uneven()
-    yield from _tolerances()
+    yield from _engine_numerics_cases()
+    yield from _size_cases()
+    yield from _chain_cases()
+    yield from _bar_cases()
+    yield from _excitation_cases()
+    yield from _direction_cases()
+    yield from _start_and_support_cases()
+    yield from _uneven_cases()
+    yield from _tolerance_cases()
     yield from _outside_the_rules()
 
 
 def _friction_laws() -> Iterator[ExtremeCase]:
-    yield from _rows("friction", {friction: scene(friction=friction) for friction in (0.0, 1e-9, 1.0, 10.0)})
+    yield from _cases_of_group("friction", {friction: scene(friction=friction) for friction in (0.0, 1e-9, 1.0, 10.0)})
     laws = {
         f"{rate:g}, {slow:g} to {fast:g}": scene(friction={"slow": slow, "fast": fast, "rate": rate})
         for rate in (1e-3, 1.0, 1e2, 1e3, 1e4, 1e6, 1e9)
         for slow, fast in ((0.05, 0.1), (0.1, 0.05))
     }
-    yield from _rows("rate of friction, s/m", laws)
+    yield from _cases_of_group("rate of friction, s/m", laws)
     wet = {each: scene(friction=None, lubrication=each) for each in (0.0, 1e-9, 1.0, 1e3)}
-    yield from _rows("lubrication, s/m", wet, ("small", "exact", "translational"))
+    yield from _cases_of_group("lubrication, s/m", wet, ("small", "exact", "translational"))
     for exponent in range(1, 9):
         speed = 10.0**-exponent
         yield ExtremeCase("v_reg, m/s", f"{speed:g}", scene(), WITH_V_REG, settings={"regularization": speed})
@@ -101,7 +101,7 @@ def _friction_laws() -> Iterator[ExtremeCase]:
         yield ExtremeCase("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
 
 
-def _numerics_of_the_engine() -> Iterator[ExtremeCase]:
+def _engine_numerics_cases() -> Iterator[ExtremeCase]:
     stiff, step = "contact stiffness, N/m", "step of the engine, s"
     brief = {-6: 0.02, -5: 0.2}  # s of motion at a small step
     for group, key, exponents in ((stiff, "contact_stiffness", range(2, 13, 2)), (step, "step", range(-6, 0))):
@@ -111,10 +111,10 @@ def _numerics_of_the_engine() -> Iterator[ExtremeCase]:
             yield ExtremeCase(group, f"1e{exponent}", short, WITH_ENGINE, settings=changed, amplification=STATED)
 
 
-def _sizes() -> Iterator[ExtremeCase]:
+def _size_cases() -> Iterator[ExtremeCase]:
     group = "amplitude, m/s^2"
     sizes = (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9)
-    yield from _rows(group, {amplitude: scene(amplitudes=amplitudes_along(amplitude)) for amplitude in sizes})
+    yield from _cases_of_group(group, {amplitude: scene(amplitudes=amplitudes_along(amplitude)) for amplitude in sizes})
     near_rim = scene(amplitudes=amplitudes_along(12.0), friction=0.02, duration=20.0)
     yield ExtremeCase(group, "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     curved = {radius: raise_bodies(scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
@@ -123,13 +123,13 @@ def _sizes() -> Iterator[ExtremeCase]:
         "inf, upward 5 m/s^2": scene(radius=math.inf, amplitudes=amplitudes_upward(5.0)),
         "inf, 1e-06 m/s^2": scene(radius=math.inf, amplitudes=amplitudes_along(1e-6)),
     }
-    yield from _rows("rho, m", {**curved, **flat})
+    yield from _cases_of_group("rho, m", {**curved, **flat})
     far_off = scene(radius=math.inf, amplitudes=amplitudes_along(1e3))  # the platform leaves its supports
     yield ExtremeCase("rho, m", "inf, 1000 m/s^2", far_off, PLANAR)
-    yield from _rows("travel, m", {travel: scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
+    yield from _cases_of_group("travel, m", {travel: scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
 
 
-def _chains() -> Iterator[ExtremeCase]:
+def _chain_cases() -> Iterator[ExtremeCase]:
     # a shock takes to the top of the towers 0.5 to 1.6 s
     for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
         tower = scene(masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0)
@@ -137,7 +137,7 @@ def _chains() -> Iterator[ExtremeCase]:
         work = TOWER_WORK.get(count, MAX_WORK)
         yield ExtremeCase("bodies N", str(count), tower, models, phases=few, quick=count <= 100, max_work=work)
     totals = (1e-6, 1e-3, 1e3, 1e9)
-    yield from _rows("total mass, kg", {total: scene(masses=[0.5 * total, 0.5 * total]) for total in totals})
+    yield from _cases_of_group("total mass, kg", {total: scene(masses=[0.5 * total, 0.5 * total]) for total in totals})
     group = "platform's share of the mass"
     # below mu^2 / 4 the equations come to Painleve's paradox; a contact that gives way jams and opens
     paradox = ("painleve paradox", "contact lost")
@@ -149,17 +149,17 @@ def _chains() -> Iterator[ExtremeCase]:
     stiffest = scene(link=(1e-3, 0.8e-3))  # swings for 3000 of its periods
     yield ExtremeCase("link periods, s", "0.001", stiffest, PLANAR, max_work=MUCH_WORK)
     yield ExtremeCase("link periods, s", "0.001", stiffest, ("spatial",))
-    yield from _rows("link periods, s", {each: scene(link=(each, 0.8 * each)) for each in (1e-2, 30.0, 1e3)})
+    yield from _cases_of_group("link periods, s", {each: scene(link=(each, 0.8 * each)) for each in (1e-2, 30.0, 1e3)})
     damped: dict[Any, Any] = {zeta: scene(damping=zeta) for zeta in (0.0, 1e-6, 0.05, 1.0, 5.0)}
     damped["0 along x, 2 along y"] = scene(damping=[0.0, 20.0])
     damped["5, link periods 0.01 s"] = scene(damping=5.0, link=(0.01, 0.008))
-    yield from _rows("damping of the links, of critical", damped)
+    yield from _cases_of_group("damping of the links, of critical", damped)
 
 
-def _bars() -> Iterator[ExtremeCase]:
+def _bar_cases() -> Iterator[ExtremeCase]:
     """Bars under the weight of a mass of 1 kg, whose sway buckling load is stated in weights of that mass."""
     group = "load over the buckling load of bars"
-    yield from _rows(group, {share: put_on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
+    yield from _cases_of_group(group, {share: put_on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
     yield ExtremeCase(group, "1.000001", put_on_bars(1.000001), ALL, invalid=True)
     group = "axial stiffness of the bars, N"
     giving = {
@@ -167,53 +167,53 @@ def _bars() -> Iterator[ExtremeCase]:
         for stiffness in (1e2, 1e4, 1e8)
         for effect in ("softening", "shortening")
     }
-    yield from _rows(group, giving, SPATIAL, max_work=1e5)
+    yield from _cases_of_group(group, giving, SPATIAL, max_work=1e5)
     topples = put_on_bars(0.3, axial_stiffness=1.0, spread=0.8)
     topples["bodies"][1]["height"] = 6.0
     yield ExtremeCase(group, "1, under a body 6 m above", topples, SPATIAL, invalid=True)
 
 
-def _excitations() -> Iterator[ExtremeCase]:
+def _excitation_cases() -> Iterator[ExtremeCase]:
     harmonics = {
         "equal": scene(periods=(0.9, 0.9)),
         "1e-3 Hz": scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)),
         "1e3 Hz": scene(periods=(1e-3, 1.1e-3), duration=0.05),
         "1e-3 Hz and 1e3 Hz": scene(periods=(1e3, 1e-3), duration=0.05),
     }
-    yield from _rows("harmonics", harmonics)
-    yield from _rows("decay, 1/s", {decay: scene(decay=(decay, decay)) for decay in (0.0, 1e3, 1e6)})
+    yield from _cases_of_group("harmonics", harmonics)
+    yield from _cases_of_group("decay, 1/s", {decay: scene(decay=(decay, decay)) for decay in (0.0, 1e3, 1e6)})
     group = "duration, s"
-    yield from _rows(group, {duration: scene(duration=duration) for duration in (1e-3, 0.1)})
+    yield from _cases_of_group(group, {duration: scene(duration=duration) for duration in (1e-3, 0.1)})
     lasting = {duration: scene(duration=duration) for duration in (100.0, 1e4)}
-    yield from _rows(group, lasting, PLANAR, phases=PHASES[:1], max_work=MUCH_WORK)
+    yield from _cases_of_group(group, lasting, PLANAR, phases=PHASES[:1], max_work=MUCH_WORK)
     group = "vertical loading, m/s^2"
-    yield from _rows(group, {upward: scene(amplitudes=amplitudes_upward(upward)) for upward in (5.0, 9.8)})
+    yield from _cases_of_group(group, {upward: scene(amplitudes=amplitudes_upward(upward)) for upward in (5.0, 9.8)})
     exactly = scene(amplitudes=amplitudes_upward(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR, phases=weightless, right=("contact lost",))
     # the spatial model goes on when a contact opens: it may have an answer, or none, but no refusal
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
-    yield from _rows(group, {upward: scene(amplitudes=amplitudes_upward(upward)) for upward in (15.0, 1e3)})
+    yield from _cases_of_group(group, {upward: scene(amplitudes=amplitudes_upward(upward)) for upward in (15.0, 1e3)})
     yield ExtremeCase("phases", "at symmetric values", scene(duration=2.0), ALL, phases=SYMMETRIC)
 
 
-def _directions() -> Iterator[ExtremeCase]:
+def _direction_cases() -> Iterator[ExtremeCase]:
     lines = {
         "x alone": scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
         "y alone": scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),
         "one oblique line (4.7)": scene(amplitudes=[[2.0, 1.0], [1.0, 0.5]], link=(1.5, 1.5)),
     }
-    yield from _rows("direction", lines)
+    yield from _cases_of_group("direction", lines)
     planar = {
         f"x, and {across:g} m/s^2 across": scene(amplitudes=[[2.0, 1.0], [across, 0.0]])
         for across in (1e-3, 1e-6, 1e-9, 1e-12, 1e-15)
     }
     for still in (([2.0, 0.0], [0.0, 0.0]), ([0.0, 2.0], [0.0, 0.0])):
         planar[f"one harmonic alone, {still[0]}"] = scene(amplitudes=still)
-    yield from _rows("direction", planar, PLANAR)
+    yield from _cases_of_group("direction", planar, PLANAR)
 
 
-def _starts_and_supports() -> Iterator[ExtremeCase]:
+def _start_and_support_cases() -> Iterator[ExtremeCase]:
     limit = 0.1 * GRAVITY_LIMIT
     for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
@@ -222,17 +222,17 @@ def _starts_and_supports() -> Iterator[ExtremeCase]:
     three = {
         ring: scene(amplitudes=amplitudes_along(4.0), friction=0.05, supports=3, ring=ring) for ring in (1.0, 0.1, 0.01)
     }
-    yield from _rows("three supports, ring in m", three, ("spatial",))
+    yield from _cases_of_group("three supports, ring in m", three, ("spatial",))
 
 
-def _uneven() -> Iterator[ExtremeCase]:
+def _uneven_cases() -> Iterator[ExtremeCase]:
     """Uneven buildings: the equations and translation do not read what makes them so."""
     for share in (1e-6, 0.1, 0.45, 0.5, 1.0):  # shares of the ring, to a support: at 0.5 its opposite carries nothing
         moved, beyond = change_bodies(offset=[share * math.sqrt(0.5)] * 2), share >= 0.5
         work = MAX_WORK if beyond else 1e5
         yield ExtremeCase("offset over the ring", f"{share:g}", moved, SPATIAL, invalid=beyond, max_work=work)
     turned = {f"{yaw:.3g}": change_bodies(yaw=yaw) for yaw in (1e-6, 0.25 * math.pi)}
-    yield from _rows("yaw, rad", turned, SPATIAL)
+    yield from _cases_of_group("yaw, rad", turned, SPATIAL)
     positions = {
         "2 m by 0.02 m": [[1.0, 0.01], [-1.0, 0.01], [-1.0, -0.01], [1.0, -0.01]],
         "one 100 m away": [[-0.5, -0.5], [0.5, -0.5], [0.0, 100.0]],
@@ -240,12 +240,12 @@ def _uneven() -> Iterator[ExtremeCase]:
     }
     group = "positions of supports"
     held = {title: scene(ring=None, supports=places) for title, places in positions.items()}
-    yield from _rows(group, held, SPATIAL, max_work=5e4)
+    yield from _cases_of_group(group, held, SPATIAL, max_work=5e4)
     line = scene(ring=None, supports=[[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
     yield ExtremeCase(group, "on one line", line, SPATIAL, invalid=True)
 
 
-def _tolerances() -> Iterator[ExtremeCase]:
+def _tolerance_cases() -> Iterator[ExtremeCase]:
     for columns, tolerances in ((REFERENCE, (1e-1, 1e-2, 1e-4, 1e-8)), (("translational",), (1e-1, 1e-2, 1e-4, 1e-6))):
         for tolerance in tolerances:
             settings = {"tolerance": tolerance}
@@ -262,7 +262,7 @@ def _outside_the_rules() -> Iterator[ExtremeCase]:
         "radius beyond double precision": scene(period=1e200),
         "amplitude not a number": scene(amplitudes=amplitudes_along(math.nan)),
     }
-    yield from _rows(group, wrong, ("exact", "translational"), invalid=True)
+    yield from _cases_of_group(group, wrong, ("exact", "translational"), invalid=True)
     for speed in (0.0, -1.0, math.inf):
         yield ExtremeCase(
             group, f"v_reg {speed:g} m/s", scene(), WITH_V_REG, settings={"regularization": speed}, invalid=True

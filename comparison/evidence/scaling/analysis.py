@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 import reference
-from comparison.evidence.trends import NONE, Trend, trend
+from comparison.evidence.trends import NONE, Trend, fit_trend
 from comparison.result_types import Array
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.models import dry
+from comparison.study.models import has_dry_friction
 from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_C
@@ -57,7 +57,9 @@ def scene_trends(task: Arguments) -> list[Trend]:
     halving_error = np.hypot(small_error[:-1], small_error[1:]) / small[1:]
     name = _peak(scene, supremum)
     return [
-        trend(scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, error[..., body].T, 2.0)
+        fit_trend(
+            scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, error[..., body].T, 2.0
+        )
         for body in range(len(scene.bodies))
         for what, size, error in ((STEP, step, step_error), (PRINTED, halving, halving_error))
     ]
@@ -77,11 +79,11 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, supremum = task
     what = f"{STEP}, {_peak(scene, supremum)}"
     bodies = range(1, len(scene.bodies) + 1)
-    return [trend(scene.name, body, what, SCALES, NONE, NONE, 2.0, failed.reason) for body in bodies]
+    return [fit_trend(scene.name, body, what, SCALES, NONE, NONE, 2.0, failed.reason) for body in bodies]
 
 
 def _peak(scene: Scene, supremum: bool) -> str:
-    return "peak" if not dry(scene) else "supremum" if supremum else "resolved peak"
+    return "peak" if not has_dry_friction(scene) else "supremum" if supremum else "resolved peak"
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
@@ -91,7 +93,9 @@ class Scaling(MappedAnalysis[list[Trend]]):
     seconds = 0.1
     function, without_value = staticmethod(scene_trends), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
         """Every scene with phases and without heat, which does not scale, and whether the supremum is taken."""
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
-        return [(scene, supremum) for scene in scenes for supremum in ([True, False] if dry(scene) else [True])]
+        return [
+            (scene, supremum) for scene in scenes for supremum in ([True, False] if has_dry_friction(scene) else [True])
+        ]

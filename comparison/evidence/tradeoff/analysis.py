@@ -13,9 +13,9 @@ from comparison.evidence.tradeoff.settings import (
     Setting,
     Settings,
     TradeoffQuestion,
+    list_settings,
+    list_user_settings,
     questions_of,
-    settings,
-    user_settings,
 )
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
@@ -63,12 +63,12 @@ class SettingResult:
             raise ValueError(f"mu {self.mu.shape}, error_estimate {self.error_estimate.shape}")
 
 
-def sample(points: int) -> Array:
+def sample_phases(points: int) -> Array:
     """The phase pairs that are measured, rad."""
     return np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
 
 
-def measure(measurement: Measurement) -> SettingResult:
+def measure_setting(measurement: Measurement) -> SettingResult:
     """Call the function, warm, inside a worker process; where it raises there are no values, but the reason."""
     path, settings = measurement.function
     if path not in _warm:
@@ -124,7 +124,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         return [self._trade(scene, results) for scene in study.phased]
 
     def _settings(self, scene: Scene) -> list[Setting]:
-        return [*settings(scene, self.quick), *user_settings(self.supplied)]
+        return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
         """The tasks of the reference solution of every question; then of every setting, and of what it is against."""
@@ -140,13 +140,13 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
         """Those of one function on the sample of a question; seconds: per point of a motion of 20 s, about."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
-        size, phases = int(np.clip(CHUNK / each, 1, count)), sample(count)
+        size, phases = int(np.clip(CHUNK / each, 1, count)), sample_phases(count)
         engine = engine_of(function[1]).get("function", "")
         limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
         limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
         more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
         return [
-            Task(measure, Measurement(scene, function, chunk), self.stage, each * len(chunk), **more)
+            Task(measure_setting, Measurement(scene, function, chunk), self.stage, each * len(chunk), **more)
             for chunk in chunks
         ]
 
@@ -156,23 +156,23 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         )
         solutions = [(question, next(measured)) for question in questions_of(scene)]
         rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
-        entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
+        entries = [make_entry(setting, answer, against.mu) for setting, answer, against in rows]
         entries = trade.with_pareto_fronts(entries, len(scene.bodies))
         answered = [_count_answers(*solution, entries) for solution in solutions]
         numbers = zip(*((answer.mu, against.mu, answer.error_estimate) for _, answer, against in rows))
         values = dict(zip(trade.MEANINGS, map(list, numbers)))
-        phases = sample(max(question.points for question in answered))
+        phases = sample_phases(max(question.points for question in answered))
         found = trade.Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
         return trade.MeasuredTrade(found, trade.label_values(entries, values, phases))
 
 
-def entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
+def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """Return what one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points = len(measured.mu)
     median, most, estimate = (
-        [trade.quantile(column, share) for column in errors.T]
+        [trade.error_of_share(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
     )
     return trade.MeasuredSetting(
@@ -193,17 +193,17 @@ def _count_answers(
 ) -> trade.Answered:
     """The question with its reference solution, and what is known about that."""
     error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
-    error = trade.quantile(error_estimate.ravel(), 1.0)
+    error = trade.error_of_share(error_estimate.ravel(), 1.0)
     tolerance = question.reference_solution[1]["tolerance"]
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)
     solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
     own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
-    checks = [own, *_agreements(question, entries)]
+    checks = [own, *_word_agreements(question, entries)]
     return trade.Answered(question.key, question.title, len(reference_solution.mu), solution, error, checks)
 
 
-def _agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
+def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
     """
     Return how far the most accurate setting of other methods, else of the same one, agrees with the reference solution.
     """

@@ -19,14 +19,14 @@ from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.analysis import TradeOff
-from comparison.evidence.tradeoff.growth import Growth, MeasuredGrowth, Series, by_workers
+from comparison.evidence.tradeoff.growth import CostSeries, Growth, MeasuredGrowth, measure_by_workers
 from comparison.evidence.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
-from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load
+from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load_trades
 from comparison.runner.attempts import attempt
-from comparison.runner.output import destination, netcdf, publish, refuse_foreign_files
+from comparison.runner.output import netcdf_content, publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
-from comparison.study.study import Study, refuse_same_names
+from comparison.study.study import STUDY_TOLERANCE, Study, refuse_same_names
 from comparison.surfaces.figures.file_names import figure_file
 from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
@@ -35,7 +35,6 @@ DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
 MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
-TOLERANCE = 1e-3  # tolerance of a study; every setting has one of its own
 
 
 @command
@@ -58,7 +57,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     number_of_jobs(options)  # refused before anything else is looked at
     scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
-    out = destination(options.out)
+    out = resolve_destination(options.out)
     _load_trades(out)  # a file that is no trade is refused before anything is measured
     written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
     refuse_foreign_files(out, written)
@@ -69,11 +68,11 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
     def write() -> list[Path]:
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
-        files = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
+        files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
             name = _values_file(each.trade.scene)
-            values = attempt(name, partial(netcdf, each.values))
-            publish(out, {} if values is None else {name: values}, COMMAND)
+            values = attempt(name, partial(netcdf_content, each.values))
+            publish_files(out, {} if values is None else {name: values}, COMMAND)
         return files
 
     def show() -> None:
@@ -88,20 +87,20 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def _measure_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
-    begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
+    begin, study = time.monotonic(), Study((scene,), 1, STUDY_TOLERANCE)
     tasks = Growth().tasks(study)
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
-    series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
+    series = [*Growth().collect(study, None, results), measure_by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
-    write = partial(publish, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
+    write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     write_and_show(out, write, partial(print_growth, console, series))
     console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
     return 0
 
 
-def print_growth(console: Console, series: Sequence[Series]) -> None:
+def print_growth(console: Console, series: Sequence[CostSeries]) -> None:
     """A row for every value, with the slope of its series in the last one."""
     table = new_table("quantity", "model", "value", "s", "slope")
     for each in series:
@@ -130,7 +129,7 @@ def _load_phased_scene(name: str) -> Scene:
 def _load_trades(out: Path) -> list[Trade]:
     """The trades that are in the folder. Raises UsageError for a file that is none."""
     try:
-        return load(out) or []
+        return load_trades(out) or []
     except (OSError, ValueError) as error:
         raise UsageError(str(error)) from None
 
@@ -140,7 +139,7 @@ def measure_trades(
 ) -> list[MeasuredTrade]:
     """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
     supplied = user_models(options.model, options.model_limit, options.scheduler)
-    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, TOLERANCE)
+    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, STUDY_TOLERANCE)
     tasks, width = tradeoff.tasks(study), number_of_jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width
     for scene in scenes:

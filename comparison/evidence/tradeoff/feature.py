@@ -5,10 +5,10 @@ from itertools import groupby
 from typing import Any
 
 from comparison.evidence.tradeoff import growth, trade
-from comparison.evidence.tradeoff.growth import MeasuredGrowth, Series
+from comparison.evidence.tradeoff.growth import CostSeries, MeasuredGrowth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import panel
+from comparison.report.panels import make_panel
 from comparison.report.plots import MAX_CURVES, Panel
 from comparison.report.section import Report, Section
 from comparison.wording import scientific
@@ -47,7 +47,7 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     return answers
 
 
-def growth_panels(listed: Sequence[Series]) -> list[Panel]:
+def growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
     """One panel for each quantity that grows: seconds over it, the slopes in the legend."""
     panels: list[Panel] = []
     titles = list(dict.fromkeys(each.model for each in listed))
@@ -64,7 +64,7 @@ def growth_panels(listed: Sequence[Series]) -> list[Panel]:
         label = f"{time} over {quantity}; " + "; ".join(str(line["name"]) for line in series)
         x = {"title": f"{quantity}, {curves[0].unit}".rstrip(", "), "log": True}
         y = {"title": time, "range": [0.0, 1.1 * longest]} if wall else {"title": time, "log": True}
-        panels.append(panel(quantity, label, x, y, series))
+        panels.append(make_panel(quantity, label, x, y, series))
     return panels
 
 
@@ -80,18 +80,18 @@ def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
 
     shown = sorted(curves, key=rank)[:MAX_CURVES]
     title = f"{question.title}, mu_{body + 1}"
-    return panel(
+    return make_panel(
         title,
         f"{trade.scene}, {title}: relative error over processor time; " + ", ".join(shown),
         {"title": "processor time per point, s", "log": True},
         {"title": "relative error, 95 %", "log": True},
-        [_curve(method, curves[method], body, number) for number, method in enumerate(shown)],
+        [_line_of_method(method, curves[method], body, number) for number, method in enumerate(shown)],
         bands=[{"from": 1e-30, "to": question.error}] if question.error else [],
         height=260,
     )
 
 
-def _curve(method: str, entries: Sequence[MeasuredSetting], body: int, number: int) -> dict[str, Any]:
+def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, number: int) -> dict[str, Any]:
     times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
     x, y = [entry.seconds for entry in entries], [max(entry.most[body] or 0.0, 1e-16) for entry in entries]
     titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]
@@ -103,7 +103,7 @@ TRADES = ResultField(
     "tradeoff",
     list[Trade],
     trade.STORED.word_field("error against compute time for every model and parameter"),
-    load=trade.load,
+    load=trade.load_trades,
 )
 GROWTH = ResultField(
     "growth",
@@ -113,7 +113,7 @@ GROWTH = ResultField(
 )
 
 
-def _context(report: Report) -> Mapping[str, Any]:
+def _section_context(report: Report) -> Mapping[str, Any]:
     measured = GROWTH.get(report.results)
     panels, digests = growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
     functions = {"tradeoff_panels": tradeoff_panels, "tradeoff_answers": tradeoff_answers}
@@ -125,8 +125,8 @@ FEATURE = Feature(
     (TRADES, GROWTH),
     section=Section(
         "Speed for accuracy",
-        trade.STORED.word_origin(" SCENE"),
-        _context,
+        trade.STORED.word_how_to_make(" SCENE"),
+        _section_context,
         verifies=True,
         verdict=lambda results: word_trades(TRADES.get(results) or ()),
     ),

@@ -9,18 +9,17 @@ from typing import Annotated, Any, Literal
 import numpy as np
 import xarray as xr
 
-from comparison.evidence.tradeoff.analysis import Measurement, measure, sample, without_value
+from comparison.evidence.tradeoff.analysis import Measurement, measure_setting, sample_phases, without_value
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import require, require_size, result
 from comparison.runner.analysis import Analysis
-from comparison.runner.processes import cores
+from comparison.runner.processes import count_cores
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
-from comparison.study.study import Study
+from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Scene
 
-TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
 CALLS, PAIRS = 16, 64  # calls and phase pairs of the equations, shared by the workers
 
 FILE = "growth.json"
@@ -34,10 +33,10 @@ TALL_DURATION = 5.0  # s, of scenes with many bodies
 SHAKEN = 3.0  # times the loading of the scene: else friction holds a tall platform, which costs nothing
 STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
 LIMIT = 60.0  # s of processor time of one measurement
-MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a refusal
+MAX_WORK = 1e9  # steps of the engine: none is refused in advance; LIMIT ends what takes too long
 
 
-def tall(scene: Scene, bodies: int) -> Scene:
+def make_tall(scene: Scene, bodies: int) -> Scene:
     """Return the scene with its upper body cut into `bodies` - 1, each above the other on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
@@ -64,7 +63,7 @@ class GrowingQuantity:
 
 _EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    GrowingQuantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _EACH),
+    GrowingQuantity("bodies", "", BODIES, lambda scene, n: make_tall(scene, int(n)), _EACH),
     GrowingQuantity(
         "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH
     ),
@@ -73,7 +72,7 @@ QUANTITIES = (
 
 
 @result
-class Series:
+class CostSeries:
     """Cost of one model over the values of one quantity."""
 
     quantity: Annotated[str, "what grows"]
@@ -100,17 +99,19 @@ class MeasuredGrowth:
     schema: Annotated[Literal["phase-resonance/growth"], "what the file is"]
     scene: Annotated[str, "name of the scene that grows"]
     title: Annotated[str, "title of the scene"]
-    series: Annotated[Sequence[Series], "one per quantity and model"]
+    series: Annotated[Sequence[CostSeries], "one per quantity and model"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
 
 STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance tradeoff --growth")
 
 
-def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:
+def series_with_slope(
+    quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]
+) -> CostSeries:
     """The series with its slope; NaN where there is no measurement."""
     slope = map(finite_or_none, fit_slope(values, seconds))
-    return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
+    return CostSeries(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
@@ -124,7 +125,7 @@ def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float,
     return float(slope), float(np.sqrt(max(covariance[0, 0], 0.0)))
 
 
-class Growth(Analysis[list[Series]]):
+class Growth(Analysis[list[CostSeries]]):
     """The series of the first scene with phases."""
 
     key, stage = "growth", "growth"
@@ -133,14 +134,14 @@ class Growth(Analysis[list[Series]]):
         """One task for every quantity, model and value."""
         return [task for _, _, tasks in self._series(study) for task in tasks]
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Series]:
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[CostSeries]:
         """In the order of quantities and models."""
         collected = []
         for quantity, model, tasks in self._series(study):
             answers = [results.value(task, without_value) for task in tasks]
             costs = [each.seconds / (1 if quantity.name == PAIRED else len(each.mu)) for each in answers]
             seconds = [cost if np.isfinite(each.mu).all() else float("nan") for cost, each in zip(costs, answers)]
-            collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
+            collected.append(series_with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
     def _series(self, study: Study) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
@@ -154,23 +155,24 @@ class Growth(Analysis[list[Series]]):
 
     def _task(self, quantity: GrowingQuantity, model: Model, scene: Scene, value: float) -> Task:
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
-        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE), **work}
-        phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])
+        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(STUDY_TOLERANCE), **work}
+        phases = sample_phases(int(value) if quantity.name == PAIRED else POINTS[model.side])
         measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), phases)
-        return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
+        return Task(measure_setting, measurement, self.stage, about=scene, timeout=LIMIT)
 
 
-def by_workers(scene: Scene, pool: Callable[[int], Executor]) -> Series:
+def measure_by_workers(scene: Scene, pool: Callable[[int], Executor]) -> CostSeries:
     """Wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
-    most = cores()
+    most = count_cores()
     counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
     settings = {**EXACT.settings, "tolerance": 1e-6}
-    call = Measurement(scene, (EXACT.amplification, settings), sample(PAIRS))
+    call = Measurement(scene, (EXACT.amplification, settings), sample_phases(PAIRS))
     seconds = []
     for workers in counts:
         with pool(workers) as executor:
-            list(executor.map(measure, [call] * 2 * workers))  # every worker is warm
+            # before the clock starts, every worker imports and compiles
+            list(executor.map(measure_setting, [call] * 2 * workers))
             begin = time.monotonic()
-            list(executor.map(measure, [call] * CALLS))
+            list(executor.map(measure_setting, [call] * CALLS))
             seconds.append(time.monotonic() - begin)
-    return with_slope("workers", "", EXACT.title, list(map(float, counts)), seconds)
+    return series_with_slope("workers", "", EXACT.title, list(map(float, counts)), seconds)

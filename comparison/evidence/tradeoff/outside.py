@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
 from comparison.result_types import Array
-from reference.problem import GRAVITY, Scene, checked_phases, exponents, ground_acceleration, ground_peak
+from reference.problem import GRAVITY, Scene, check_phases, exponents, ground_acceleration, ground_peak
 from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack
 
@@ -23,7 +23,7 @@ ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any
 
 
 @njit  # type: ignore[untyped-decorator]
-def slope(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
+def state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
     """Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s."""
     below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
@@ -59,26 +59,28 @@ def slope(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) 
 
 
 @njit  # type: ignore[untyped-decorator]
-def slopes(times: Array, states: Array, constants: Any) -> Array:
-    """`slope` at times (T,) and states (T, 4 N)."""
+def state_derivatives(times: Array, states: Array, constants: Any) -> Array:
+    """`state_derivative` at times (T,) and states (T, 4 N)."""
     out = np.empty_like(states)
     for n in range(len(times)):
-        out[n] = slope(times[n], states[n], *constants)
+        out[n] = state_derivative(times[n], states[n], *constants)
     return out
 
 
 def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
-    """Return what `slope` is called with after t and y."""
+    """Return what `state_derivative` is called with after t and y."""
     system = pack(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * ALWAYS_LINEAR), ALWAYS_LINEAR
     return system, exponents(scene), np.asarray(phase, dtype=float), v_reg
 
 
-def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float) -> tuple[Array, Array]:
+def integrate_motion(
+    scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float
+) -> tuple[Array, Array]:
     """Instants, s, close near the peaks, and states (T, 4 N) of a motion by SciPy. Raises ValueError if it fails."""
     run = solve_ivp(
-        slope, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
+        state_derivative, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
         args=constants_of(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE,
     )  # fmt: skip
     if not run.success:
@@ -88,7 +90,7 @@ def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg:
     def states(instants: Array) -> Array:
         return np.ascontiguousarray(run.sol(instants).T)
 
-    high = accelerations(scene, phase, times, states(times), v_reg)
+    high = absolute_accelerations(scene, phase, times, states(times), v_reg)
     near = np.flatnonzero((high >= (1.0 - NEAR) * high.max(axis=0)).any(axis=1))
     before, after = times[np.maximum(near - 1, 0)], times[np.minimum(near + 1, len(times) - 1)]
     closer = np.linspace(before, after, 2 * FINER + 1)
@@ -96,10 +98,10 @@ def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg:
     return times, states(times)
 
 
-def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
+def absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
     """Sizes of the absolute accelerations of a motion, (T, N)."""
     constants, count = constants_of(scene, phase, v_reg), len(scene.bodies)
-    a = slopes(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
+    a = state_derivatives(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
     depth = np.sqrt(scene.radius**2 - (x**2).sum(axis=1))
     vz = (x * v).sum(axis=1) / depth
@@ -110,15 +112,21 @@ def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v
     return size
 
 
-def factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
+def amplification_factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
     """mu_i (N,) of a motion."""
     peaks: Array = (
-        accelerations(scene, phase, times, states, v_reg).max(axis=0) / ground_peak(scene, np.reshape(phase, (1, 2)))[0]
+        absolute_accelerations(scene, phase, times, states, v_reg).max(axis=0)
+        / ground_peak(scene, np.reshape(phase, (1, 2)))[0]
     )
     return peaks
 
 
 def factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
     """mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if that fails at a phase pair."""
-    pairs: Array = checked_phases(phases)
-    return np.array([factors(scene, phase, *motion(scene, phase, method, tolerance, v_reg), v_reg) for phase in pairs])
+    pairs: Array = check_phases(phases)
+    return np.array(
+        [
+            amplification_factors(scene, phase, *integrate_motion(scene, phase, method, tolerance, v_reg), v_reg)
+            for phase in pairs
+        ]
+    )

@@ -6,12 +6,12 @@ A reference solution is a run at a tolerance at least 100 times tighter than any
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from comparison.evidence.tradeoff.trade import StatedSetting
-from comparison.study.models import V_REG_TEXT, Model, dry, has_spatial_data
+from comparison.study.models import V_REG_TEXT, Model, has_dry_friction, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
@@ -82,52 +82,77 @@ def questions_of(scene: Scene) -> list[TradeoffQuestion]:
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
-def settings(scene: Scene, quick: bool = False) -> list[Setting]:
+def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
     """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
     keys = {question.key for question in questions_of(scene)}
-    every = [*_reference(scene), *_scipy(quick), *_levels(quick), *_constant(quick)]
+    every = [
+        *_reference_settings(scene),
+        *_scipy_settings(quick),
+        *_engine_settings(quick),
+        *_constant_step_settings(quick),
+    ]
     return [setting for setting in every if setting.question in keys]
 
 
-def _curve(
-    question: str, method: str, parameter: str, call: tuple[str, str, Settings], values: Sequence[float],
-    seconds: float | Sequence[float], unit: str = "", controlled: bool = False, model_error: bool = False,
-    against: tuple[str, Settings] | None = None,
+class _VariedCall(NamedTuple):
+    """A function, its argument that varies along a curve, and its other arguments."""
+
+    function: str
+    argument: str
+    others: Settings
+
+
+def _settings_of_curve(
+    question: str, method: str, parameter: str, call: _VariedCall, values: Sequence[float],
+    seconds: float | Sequence[float], **stated: Any,
 ) -> list[Setting]:  # fmt: skip
-    """The settings of a curve. call: function, the key of it that has each of the values, its other settings."""
-    function, key, others = call
-    stated = question, method, parameter, unit
+    """
+    Return one setting for each of `values`, which the varied argument of `call` takes.
+
+    question, method, parameter: as `StatedSetting` has them. seconds: s, per point, of each or of all. stated: other
+    fields of `Setting`, as `unit` or `against`, by name.
+    """
+    fields = {"unit": "", "controlled": False, "model_error": False, **stated}
     return [
-        Setting(*stated, value, controlled, model_error, function, {**others, key: value}, time, against)
+        Setting(
+            question=question, method=method, parameter=parameter, value=value, function=call.function,
+            settings={**call.others, call.argument: value}, seconds=time, **fields,
+        )
         for value, time in zip(values, np.broadcast_to(seconds, len(values)).tolist())
-    ]
+    ]  # fmt: skip
 
 
-def _reference(scene: Scene) -> Iterator[Setting]:
+def _reference_settings(scene: Scene) -> Iterator[Setting]:
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
-        held, single = (REFERENCE, "tolerance", law), (RUN, "inside", law)
+        controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(RUN, "step_tolerance", law)
         method = "reference, two runs and an estimate"
-        yield from _curve(question, method, "tolerance of mu", held, powers[1:], 0.003, controlled=True)
-        yield from _curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
-    call = REFERENCE, "regularization", {"tolerance": 1e-6}
-    for speed in DRY_SPEEDS if dry(scene) else ():
+        yield from _settings_of_curve(
+            question, method, "tolerance of mu", controlled, powers[1:], 0.003, controlled=True
+        )
+        yield from _settings_of_curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
+    call = _VariedCall(REFERENCE, "regularization", {"tolerance": 1e-6})
+    for speed in DRY_SPEEDS if has_dry_friction(scene) else ():
         faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
         for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
             method = f"v_reg, model error against the {what}"
-            yield from _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", False, True, against)
+            yield from _settings_of_curve(
+                "exact", method, "v_reg", call, [speed], 0.004, unit="m/s", model_error=True, against=against
+            )
 
 
-def _scipy(quick: bool) -> Iterator[Setting]:
+def _scipy_settings(quick: bool) -> Iterator[Setting]:
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
     # LSODA checks the reference solution, too
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
-        call = SCIPY, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG}
+        call = _VariedCall(SCIPY, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG})
         values = [10.0**-power for power in powers]
-        yield from _curve("regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds)
+        yield from _settings_of_curve(
+            "regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds
+        )
 
 
-def _levels(quick: bool) -> Iterator[Setting]:
+def _engine_settings(quick: bool) -> Iterator[Setting]:
     """The engine as the package runs it: error-controlled, and single runs with one parameter changed."""
     parameters = (
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
@@ -139,21 +164,26 @@ def _levels(quick: bool) -> Iterator[Setting]:
         ("spatial", "spatial", {1e-2: 0.35, 1e-3: 0.35}, 1.7),
     ):
         law, method = {"model": model, "regularization": DEFAULT_V_REG}, f"{model} engine, two levels and an estimate"
-        seconds, held = [dearer * each for each in tolerances.values()], (ENGINE, "tolerance", law)
-        yield from _curve(question, method, "tolerance of mu", held, list(tolerances), seconds, controlled=True)
+        seconds = [dearer * each for each in tolerances.values()]
+        controlled = _VariedCall(ENGINE, "tolerance", law)
+        yield from _settings_of_curve(
+            question, method, "tolerance of mu", controlled, list(tolerances), seconds, controlled=True
+        )
         for name, parameter, key, values in parameters:
             method, few = f"{model} engine, one run: {name}", values[:: 3 if quick else 1]
-            yield from _curve(question, method, parameter, (LEVEL, key, law), few, 0.25 * dearer)
+            call = _VariedCall(LEVEL, key, law)
+            yield from _settings_of_curve(question, method, parameter, call, few, 0.25 * dearer)
 
 
-def _constant(quick: bool) -> Iterator[Setting]:
+def _constant_step_settings(quick: bool) -> Iterator[Setting]:
     for solver, steps in STEPS.items():
-        call, few = (CONSTANT, "step", {"solver": solver, "v_reg": DEFAULT_V_REG}), steps[:: 2 if quick else 1]
+        call = _VariedCall(CONSTANT, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
+        few = steps[:: 2 if quick else 1]
         seconds = [0.25e-3 / step for step in few]
-        yield from _curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, "s")
+        yield from _settings_of_curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, unit="s")
 
 
-def user_settings(models: Sequence[Model]) -> list[Setting]:
+def list_user_settings(models: Sequence[Model]) -> list[Setting]:
     """Engines of the user at the tolerances that they take, or as they are."""
     measured = []
     for model in models:
@@ -164,6 +194,8 @@ def user_settings(models: Sequence[Model]) -> list[Setting]:
         parameter, values = "as it is, beside a tolerance of", [1e-3]
         if "tolerance" in engine_of(model.settings).get("names", ""):
             parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
-        call = model.amplification, "tolerance", model.settings
-        measured += _curve(question, f"user model: {model.title}", parameter, call, values, 1.0, against=against)
+        call = _VariedCall(model.amplification, "tolerance", model.settings)
+        measured += _settings_of_curve(
+            question, f"user model: {model.title}", parameter, call, values, 1.0, against=against
+        )
     return measured

@@ -104,13 +104,13 @@ class Trade:
         return curves
 
 
-def quantile(errors: Array, share: float) -> float | None:
+def error_of_share(errors: Array, share: float) -> float | None:
     """The error that a share of the points does not exceed: one that occurred; None if no error is known."""
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
-def unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
+def is_unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
     """Return whether nothing else is at least as good in cost and error and better in one."""
     beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
     return math.isfinite(sum(mine)) and not beaten
@@ -120,15 +120,15 @@ def with_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
     """The entries with `pareto_front` filled in, compared with those that answer their question at every point."""
     complete = [entry for entry in entries if entry.complete and not entry.model_error]
 
-    def pair(entry: MeasuredSetting, body: int) -> tuple[float, float]:
+    def time_and_error(entry: MeasuredSetting, body: int) -> tuple[float, float]:
         error = entry.most[body]
         return entry.seconds, math.inf if error is None else error
 
-    def front(entry: MeasuredSetting, body: int) -> bool:
-        rivals = [pair(other, body) for other in complete if other.question == entry.question]
-        return entry in complete and unbeaten(pair(entry, body), rivals)
+    def is_on_front(entry: MeasuredSetting, body: int) -> bool:
+        rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
+        return entry in complete and is_unbeaten(time_and_error(entry, body), rivals)
 
-    return [replace(entry, pareto_front=tuple(front(entry, body) for body in range(bodies))) for entry in entries]
+    return [replace(entry, pareto_front=tuple(is_on_front(entry, body) for body in range(bodies))) for entry in entries]
 
 
 @result
@@ -142,7 +142,7 @@ class TradeFile:
 STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeoff")
 
 
-def load(folder: Path) -> list[Trade] | None:
+def load_trades(folder: Path) -> list[Trade] | None:
     """The trades that a command left in a folder, as `StoredFile.load`."""
     content = STORED.load(folder)
     return None if content is None else content.trades

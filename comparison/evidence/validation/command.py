@@ -21,8 +21,8 @@ from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import frame, pendulum
 from comparison.evidence.validation.files import DECAY, FRAME_SOURCE, LARGE, PENDULUM_SOURCE, read_folder, wrong_file
 from comparison.evidence.validation.table import STORED, Found, Validation, join_findings, load_record
-from comparison.runner.environment import provenance
-from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.runner.environment import describe_provenance
+from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.progress import wide_console
 from comparison.verdicts import NOT_COMPARED, word_counts
 from comparison.wording import exception_line
@@ -54,10 +54,10 @@ def main(argv: Sequence[str]) -> int:
             console.print(f"  {source}", soft_wrap=True)
         console.print(f"and name their folder: {STORED.command} FOLDER")
         return 0
-    out = destination(options.out)
+    out = resolve_destination(options.out)
     refuse_foreign_files(out, [STORED.name])
     table = compare_folder(options.folder)
-    write = partial(publish, out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
+    write = partial(publish_files, out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
     files = write_and_show(out, write, partial(print_validation, console, table))
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by phase-resonance run shows it.")
@@ -68,15 +68,15 @@ def compare_folder(folder: Path) -> Validation:
     """Everything that a folder of measured files allows."""
     begin = time.process_time()
     measured = read_folder(folder)
-    found = [_compare("s_b_<weight>g_x.mat", frame.compare, measured.runs)] if measured.runs else []
-    found += [_compare(DECAY, pendulum.compare_decay, measured.decay)] if measured.decay else []
-    found += [_compare(LARGE, pendulum.compare_large, measured.large)] if measured.large else []
+    found = [_compare_file("s_b_<weight>g_x.mat", frame.compare_frame, measured.runs)] if measured.runs else []
+    found += [_compare_file(DECAY, pendulum.compare_decay, measured.decay)] if measured.decay else []
+    found += [_compare_file(LARGE, pendulum.compare_large, measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
-    run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": provenance()}
+    run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": describe_provenance()}
     return Validation(*join_findings(found), run)
 
 
-def _compare(file: str, compare: Callable[[Any], Found], measured: Any) -> Found:
+def _compare_file(file: str, compare: Callable[[Any], Found], measured: Any) -> Found:
     """Return what an experiment adds. Raises SceneError, one line, for a motion that no comparison can be made of."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():

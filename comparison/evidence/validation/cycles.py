@@ -24,8 +24,8 @@ class Cycles(NamedTuple):
     run: Shaken
     motions: Array
     frequency: float  # Hz
-    amplitude: float  # mm, of the base
-    second: complex  # mm, its second harmonic
+    amplitude: float  # mm, of the fundamental of the base
+    second: complex  # mm, second harmonic of the base
 
     @property
     def mean(self) -> Array:

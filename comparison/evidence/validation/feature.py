@@ -8,7 +8,7 @@ from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
 from comparison.evidence.validation.statements import verdict_line
 from comparison.evidence.validation.table import STORED, Validation
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import panel
+from comparison.report.panels import make_panel
 from comparison.report.plots import Panel
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES, MEANING
@@ -20,7 +20,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 
 
-def panels(table: Validation) -> list[Panel]:
+def experiment_panels(table: Validation) -> list[Panel]:
     """A plot for every experiment: measured and computed."""
     drawn = []
     for title, group in groupby(table.curves, key=lambda curve: curve.panel):
@@ -31,7 +31,9 @@ def panels(table: Validation) -> list[Panel]:
             for curve in curves
         ]
         x, y = curves[0].axes
-        drawn.append(panel(title, f"{title}: {y} over {x}; " + ", ".join(LOOKS), {"title": x}, {"title": y}, series))
+        drawn.append(
+            make_panel(title, f"{title}: {y} over {x}; " + ", ".join(LOOKS), {"title": x}, {"title": y}, series)
+        )
     return drawn
 
 
@@ -46,9 +48,9 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "Measured motions",
-        STORED.word_origin(" FOLDER"),
+        STORED.word_how_to_make(" FOLDER"),
         lambda report: {
-            "validation_panels": panels,
+            "validation_panels": experiment_panels,
             "validation_verdicts": MEANING,
             "validation_colors": CLASSES,
             "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),

@@ -93,9 +93,9 @@ def read_folder(folder: Path) -> MeasuredFiles:
         raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing, but its partner is there")
     workers = Workers(1)
     try:
-        runs = [_shaken(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
-        decay = _swing(workers, files[DECAY], decay_columns, ("Theta1",)) if DECAY in files else None
-        large = _swing(workers, files[LARGE], large_columns, CELLS) if LARGE in files else None
+        runs = [_read_shaken(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
+        decay = _read_swing(workers, files[DECAY], decay_columns, ("Theta1",)) if DECAY in files else None
+        large = _read_swing(workers, files[LARGE], large_columns, CELLS) if LARGE in files else None
     finally:
         workers.abandon()
     if not (runs or decay or large):
@@ -104,23 +104,25 @@ def read_folder(folder: Path) -> MeasuredFiles:
     return MeasuredFiles(runs, decay, large)
 
 
-def _shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:
-    x, y = (_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
-    time = _series(plate, "t", x["t"])
+def _read_shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:
+    x, y = (_read_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
+    time = _check_series(plate, "t", x["t"])
     for name, file, values, count in (("x", plate, x["x"], len(time)), ("y", base, y["y"], len(time))):
-        if np.ptp(_series(file, name, values, count, "mm")) == 0.0 and name == "y":
+        if np.ptp(_check_series(file, name, values, count, "mm")) == 0.0 and name == "y":
             raise wrong_file(file, "y must move: every sample of the base is the same")
-    own = _series(base, "t", y["t"])
+    own = _check_series(base, "t", y["t"])
     if len(own) != len(time) or np.abs(own - time).max() > 0.5 * (time[1] - time[0]):
         raise wrong_file(base, f"t must be the same as in {plate.name}")
     return Shaken(grams * 1e-3, time, *(np.asarray(values, dtype=float) for values in (x["x"], y["y"])))
 
 
-def _swing(workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]) -> Swing:
-    found = _columns(workers, file, columns, names)
+def _read_swing(
+    workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]
+) -> Swing:
+    found = _read_columns(workers, file, columns, names)
     (first, instants), (second, angles) = found.items()
-    time = _series(file, first, instants)
-    angle = _series(file, second, angles, len(time), "rad")
+    time = _check_series(file, first, instants)
+    angle = _check_series(file, second, angles, len(time), "rad")
     if np.ptp(angle) == 0.0:
         raise wrong_file(file, f"{second} must move: every sample is the same")
     return Swing(time, angle - np.pi)
@@ -145,7 +147,7 @@ def large_columns(content: Mapping[str, Any]) -> dict[str, Any]:
         raise ValueError("Y_id must be cells of angles and rates, (2, T)") from None
 
 
-def _columns(
+def _read_columns(
     workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]
 ) -> Mapping[str, Any]:
     """Return the columns of numbers in a file, read by a process of its own. Raises SceneError, one line."""
@@ -173,7 +175,7 @@ def read_columns(
                 if name not in kinds:
                     return f"must hold the variable {name}"
                 if columns is dict and kinds[name] not in NUMERIC:
-                    return _must_be_a_column(name)
+                    return _rule_of_column(name)
             found = loadmat(io.BytesIO(data), variable_names=names, simplify_cells=True)
     except OSError as error:
         return error.strerror or "cannot be read"
@@ -187,7 +189,7 @@ def read_columns(
         return str(error)
     for name, values in listed.items():
         if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiu" or values.size > 3 * MAX_SAMPLES:
-            return _must_be_a_column(name)
+            return _rule_of_column(name)
     return listed
 
 
@@ -210,15 +212,15 @@ def limit_memory() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_AS, before)
 
 
-def _must_be_a_column(name: str) -> str:
+def _rule_of_column(name: str) -> str:
     return f"{name} must be one column of 500 to {MAX_SAMPLES} numbers"
 
 
-def _series(file: Path, name: str, values: Any, count: int | None = None, unit: str = "") -> Array:
+def _check_series(file: Path, name: str, values: Any, count: int | None = None, unit: str = "") -> Array:
     """Return a column of finite samples; rising at even steps where it is the time, `count` is None."""
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
-        raise wrong_file(file, _must_be_a_column(name))
+        raise wrong_file(file, _rule_of_column(name))
     series = series.astype(float)
     if count is not None and len(series) != count:
         raise wrong_file(file, f"{name} must have as many samples as the time, {count}, not {len(series)}")

@@ -37,17 +37,17 @@ from comparison.evidence.validation.table import (
     Found,
 )
 from comparison.result_types import Array
+from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import GRAVITY, Scene, Trajectory
 
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s
 FAST = 1.0  # by how much friction would grow at infinite speed: the slope at zero is what counts
 CYCLES = 12  # computed, of which the last is read
 REGULARIZATION = 1e-4  # m/s, of the engine
-TOLERANCE = 1e-3  # relative error asked of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
 SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
 LOADED = ", friction of the load"  # behind the name of a run
-STEP = 0.005  # step of ratio and scale, for slopes
+STEP = 0.005  # step of ratio and scale in difference quotients
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", CYCLE, DEGREES, DEGREES)
 
@@ -72,7 +72,8 @@ ASSUMED = {  # uncertainty of each input, its name, unit and source
     "second": (1.0, "share of the second harmonic of the base", "", "0 or the measured one, 1 % of the first: assumed"),
     "disc": (0.01, "weight of the disc over the stated one", "", "authors; 1 % assumed"),
 }
-REFITTED = ("mass", "stiffness", "damping", "scale", "second")  # with these the ratio is fitted again
+# Inputs whose change by their uncertainty asks for another fit of the ratio
+REFITTED = ("mass", "stiffness", "damping", "scale", "second")
 
 
 def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
@@ -109,29 +110,29 @@ def last_cycle(motion: Trajectory, frequency: float) -> Array:
     return about
 
 
-def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
+def compute_motion(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     """The motion of a run by one side, from the base's largest position on."""
     scene, phases = scene_of(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
-    return table.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
+    return table.motion_of(side, scene, phases, place, REGULARIZATION, STUDY_TOLERANCE, "small")
 
 
-def read(cycles: Cycles, motion: Trajectory) -> ComputedValues:
+def read_quantities(cycles: Cycles, motion: Trajectory) -> ComputedValues:
     """The quantities of a computed motion of a run."""
     rate = cycles.frequency
-    return table.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
+    return table.values_of_motion(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
 
 
-def solve(cycles: Cycles, setup: Setup) -> Array:
+def solve_quantities(cycles: Cycles, setup: Setup) -> Array:
     """The quantities of a run by the equations."""
-    return read(cycles, compute(EQUATIONS, cycles, setup)).values
+    return read_quantities(cycles, compute_motion(EQUATIONS, cycles, setup)).values
 
 
-def fit(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
+def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
     """The inputs for which the equations come closest to the mean cycle, and their scatter (J, names)."""
 
     def curve(at: Setup) -> Array:
-        return last_cycle(compute(EQUATIONS, cycles, at), cycles.frequency)
+        return last_cycle(compute_motion(EQUATIONS, cycles, at), cycles.frequency)
 
     for _ in range(12):
         nearby = [setup._replace(**{name: getattr(setup, name) + STEP}) for name in names]
@@ -146,7 +147,7 @@ def fit(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
     return setup, scatter
 
 
-class Fitted(NamedTuple):
+class FittedRun(NamedTuple):
     """
     A run with the friction ratio of its motion.
 
@@ -166,26 +167,26 @@ class Fitted(NamedTuple):
         return [self.setup._replace(ratio=self.setup.ratio + self.spread), heavier, *self.changed]
 
 
-def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> Fitted:
+def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
     """Fit the friction ratio of a run; shift: base motion of `shifted`, None to fit that of this run."""
-    setup, scatter = fit(cycles, start, "ratio")
+    setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + ASSUMED[name][0]} for name in REFITTED)
-    changed = [fit(cycles, setup._replace(**change), "ratio")[0] for change in changes]
+    changed = [fit_inputs(cycles, setup._replace(**change), "ratio")[0] for change in changes]
     if shift is None:
-        shifted, _ = fit(cycles, setup, "ratio", "scale")
+        shifted, _ = fit_inputs(cycles, setup, "ratio", "scale")
     else:
-        shifted, _ = fit(cycles, setup._replace(scale=shift.scale), "ratio")
-    return Fitted(cycles, setup, spread, changed, shifted)
+        shifted, _ = fit_inputs(cycles, setup._replace(scale=shift.scale), "ratio")
+    return FittedRun(cycles, setup, spread, changed, shifted)
 
 
-def compare(runs: Sequence[Shaken]) -> Found:
+def compare_frame(runs: Sequence[Shaken]) -> Found:
     """Compare all runs of a folder: by one ratio, and by friction of the load where there are runs to predict."""
     folded = [fold(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
     setup, varied = fitted.setup, fitted.variations()
-    own = [setup if each is first else fit(each, setup, "ratio")[0] for each in folded]
+    own = [setup if each is first else fit_inputs(each, setup, "ratio")[0] for each in folded]
     inputs = [
         table.word_input(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
@@ -196,23 +197,23 @@ def compare(runs: Sequence[Shaken]) -> Found:
         for each, best in zip(folded, own)
     ]
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
-    if any(_slides(each) for each, _ in rest):
+    if any(_is_sliding(each) for each, _ in rest):
         parts.append(_compare_by_load(fitted, rest))
     return table.join_findings([Found([], inputs, [], [], []), *parts])
 
 
-def _slides(cycles: Cycles) -> bool:
+def _is_sliding(cycles: Cycles) -> bool:
     return bool(read_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
 
 
-def _ratio_of_setup(fitted: Fitted) -> str:
+def _ratio_of_setup(fitted: FittedRun) -> str:
     source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
     return table.word_input("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 
 
-def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
+def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
     """Friction that is a power of the load, fitted to two runs; the others are predicted."""
-    sliding = [cycles for cycles, _ in rest if _slides(cycles)]
+    sliding = [cycles for cycles, _ in rest if _is_sliding(cycles)]
     chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND))
     second = fit_run(chosen, first.setup, first.shifted)
     one, two = first.setup.ratio, second.setup.ratio
@@ -246,9 +247,9 @@ def _compare_run(
     title = cycles.run.name + law
     found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
-    motions = {side: compute(side, cycles, setup) for side in SIDES}
-    answers = {side: read(cycles, motion) for side, motion in motions.items()}
-    by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
+    motions = {side: compute_motion(side, cycles, setup) for side in SIDES}
+    answers = {side: read_quantities(cycles, motion) for side, motion in motions.items()}
+    by_input, by_ratio = (np.abs(solve_quantities(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> str:
         shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
@@ -258,8 +259,8 @@ def _compare_run(
             return f"{LAW}: gone with the ratio of this run, {own.ratio:.3f}, so the ratio depends on the load"
         return f"{OPEN}: gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
-    rows = table.quantities(title, data, answers, [solve(cycles, each) for each in varied], explain)
-    best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
+    rows = table.measured_quantities(title, data, answers, [solve_quantities(cycles, each) for each in varied], explain)
+    best = last_cycle(compute_motion(EQUATIONS, cycles, own), cycles.frequency)
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
     }
@@ -273,5 +274,5 @@ def _compare_run(
     residual = table.CycleResidual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
     return Found(
-        rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()})
+        rows, [], [fact], [residual], table.plot_curves(title, axes, {name: (turn, y) for name, y in lines.items()})
     )

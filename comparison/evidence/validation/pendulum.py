@@ -58,13 +58,13 @@ def compare_decay(swing: Swing) -> Found:
 
     def compute(side: str, values: Array) -> Trajectory:
         half, loss, start = values.tolist()
-        return _motion(side, half, 0.5 * loss, start, SHOWN[-1] + 2.5)
+        return _move_half_swings(side, half, 0.5 * loss, start, SHOWN[-1] + 2.5)
 
     motions = {side: compute(side, nominal) for side in SIDES}
-    answers = {side: table.answer(motion, read, len(data.names)) for side, motion in motions.items()}
+    answers = {side: table.values_of_motion(motion, read, len(data.names)) for side, motion in motions.items()}
     varied = [read(compute(EQUATIONS, nominal + change)) for change in np.diag(uncertain)]
     cause = f"{LAW}: friction before sliding gives way like a spring, which Coulomb's law lacks (not computed)"
-    rows = table.quantities("pendulum, decay", data, answers, varied, lambda k, allowed: cause)
+    rows = table.measured_quantities("pendulum, decay", data, answers, varied, lambda k, allowed: cause)
     named = zip(("half period", "loss of a half swing", "first angle"), nominal, uncertain, ("s", "rad", "rad"))
     source = f"fitted to the first {HALF} half periods and {COULOMB} half swings, and its scatter"
     fact = (
@@ -73,7 +73,7 @@ def compare_decay(swing: Swing) -> Found:
     )
     drawn = {"measured": sizes} | {side: 1e3 * _compute_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
-    curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
+    curves = table.plot_curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
     given = [
         table.word_input(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named
     ]
@@ -82,21 +82,21 @@ def compare_decay(swing: Swing) -> Found:
 
 def compare_large(swing: Swing) -> Found:
     """Half periods at large angles."""
-    passages = _passages(swing)
+    passages = _passage_times(swing)
     sizes = np.array([np.abs(swing.angle[(swing.time > a) & (swing.time < b)]).max() for a, b in pairwise(passages)])
     periods = np.diff(passages)
     for angle in (*ANGLES, FITTED, REFITTED):
         if np.sum(np.abs(sizes - angle) < WINDOW) < FEWEST:
             raise wrong_file(LARGE, f"Y must have {FEWEST} half swings within {WINDOW} of {angle} rad")
-    values, spreads = np.transpose([_near(sizes, periods, angle) for angle in (*ANGLES, FITTED, REFITTED)])
+    values, spreads = np.transpose([_half_period_near(sizes, periods, angle) for angle in (*ANGLES, FITTED, REFITTED)])
     at_rest = [0.5 * np.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) for angle in (FITTED, REFITTED)]
     (half, other), scatter = values[-2:] * at_rest, float(spreads[-2] * at_rest[0])
     names = [f"half period at {angle:g} rad" for angle in ANGLES]
     data = Data(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
     def compute(side: str, half: float, equations: str = "exact") -> ComputedValues:
-        motions = [_motion(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
-        parts = [table.answer(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
+        motions = [_move_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
+        parts = [table.values_of_motion(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
         return ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in SIDES}
@@ -107,7 +107,7 @@ def compare_large(swing: Swing) -> Found:
             return f"{INPUT}: gone with the half period fitted at {REFITTED} rad, where friction weighs less"
         return f"{OPEN}: not gone with the half period fitted at {REFITTED} rad"
 
-    rows = table.quantities("pendulum, large angles", data, answers, [varied], explain)
+    rows = table.measured_quantities("pendulum, large angles", data, answers, [varied], explain)
     off = zip(100.0 * (small / data.values - 1.0), ANGLES)
     fact = "pendulum, large angles: the half period of the small-vibration equations is off by "
     fact += ", ".join(f"{error:.1f} % at {angle:g} rad" for error, angle in off)
@@ -117,10 +117,10 @@ def compare_large(swing: Swing) -> Found:
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    return Found(rows, [given], [fact], [], table.curves("pendulum, large angles", axes, drawn))
+    return Found(rows, [given], [fact], [], table.plot_curves("pendulum, large angles", axes, drawn))
 
 
-def _motion(
+def _move_half_swings(
     side: str, half: float, friction: float, start: float, swings: float, equations: str = "exact"
 ) -> Trajectory:
     """So many half swings from rest at an angle."""
@@ -161,7 +161,7 @@ def _of_mean(values: Array) -> float:
     return COVERAGE * float(values.std(ddof=1)) / float(np.sqrt(len(values)))
 
 
-def _passages(swing: Swing) -> Array:
+def _passage_times(swing: Swing) -> Array:
     """Instants at which the pendulum passes its lowest position, s."""
     k = np.flatnonzero((swing.angle[:-1] < 0.0) != (swing.angle[1:] < 0.0))
     before, after = swing.angle[k], swing.angle[k + 1]
@@ -169,7 +169,7 @@ def _passages(swing: Swing) -> Array:
     return instants
 
 
-def _near(sizes: Array, periods: Array, angle: float) -> tuple[float, float]:
+def _half_period_near(sizes: Array, periods: Array, angle: float) -> tuple[float, float]:
     """The half period at an amplitude and its uncertainty: of a line in the squares of those about it."""
     near = np.abs(sizes - angle) < WINDOW
     line = np.polyfit(sizes[near] ** 2 - angle**2, periods[near], 1)

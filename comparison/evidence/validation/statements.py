@@ -73,7 +73,7 @@ def word_met_of(rows: Sequence[MeasuredQuantity]) -> str:
     return f"{sum(verdict_on(each) == MET for each in rows)} of {len(rows)}"
 
 
-def word_validated(table: Validation) -> str:
+def word_what_is_validated(table: Validation) -> str:
     """Return what the measured motions validate, and what not, without the last full stop."""
     loaded = [each for each in frame_rows(table, True, "predicted") if each.name == HALF_RANGE]
     held = bool(loaded) and all(verdict_on(each) == MET for each in loaded)
@@ -83,7 +83,7 @@ def word_validated(table: Validation) -> str:
     return f"{head}: {what}, {load}; {ratio}. No building has been compared"
 
 
-def word_validated_briefly(table: Validation) -> str:
+def word_what_is_validated_briefly(table: Validation) -> str:
     """Return the same in one sentence for a first screen, without the full stop."""
     met = {}
     for loaded in (True, False):
@@ -109,7 +109,7 @@ def word_motions(table: Validation, loaded: bool) -> str:
     return f"whole motion off by {', '.join(sizes)} (rms over the half range)"
 
 
-def word_farther_off(table: Validation) -> str:
+def word_motions_farther_off(table: Validation) -> str:
     """Return in how many predicted runs of the frame the whole motion is farther off than its relative quantities."""
     runs = [each for each in table.residuals if each.use == "predicted"]
     farther = 0

@@ -14,7 +14,7 @@ import reference
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import Array, require, require_size, result
-from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
+from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge_error, word_verdict
 from reference.measures.demand_reader import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
@@ -36,7 +36,7 @@ class Comparison:
     verdict: Annotated[Verdict, "met: |E| is within u_val; not met; not compared: no E or no u_val"]
 
     def __post_init__(self) -> None:
-        if self.verdict != judge(self.error, self.validation):
+        if self.verdict != judge_error(self.error, self.validation):
             raise ValueError(f"verdict {self.verdict!r} contradicts E = {self.error} and u_val = {self.validation}")
 
 
@@ -186,7 +186,7 @@ def motion_of(
     return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
 
 
-def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
+def values_of_motion(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
     """Return what is read from a motion, `count` values, and its errors; NaN from one that ended early."""
     nothing = np.full(count, np.nan)
     if motion.status not in ANSWERED or motion.accuracy is None:
@@ -206,7 +206,7 @@ def word_input(name: str, value: float, uncertainty: float, unit: str, source: s
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
 
-def quantities(
+def measured_quantities(
     experiment: str,
     data: Data,
     answers: Mapping[str, ComputedValues],
@@ -227,7 +227,7 @@ def quantities(
         for side, (values, errors) in answers.items():
             error = float(values[k] - data.values[k])
             allowed = math.hypot(errors[k], inputs[k], data.uncertainty[k])
-            verdict = judge(error, allowed)
+            verdict = judge_error(error, allowed)
             if verdict == NOT_MET and side != SMOOTHED:
                 cause = explain(k, allowed)
             value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
@@ -237,6 +237,6 @@ def quantities(
     return rows
 
 
-def curves(title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]) -> list[Curve]:
+def plot_curves(title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]) -> list[Curve]:
     """The lines of one plot, by name."""
     return [Curve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]

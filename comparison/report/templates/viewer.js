@@ -2,6 +2,7 @@
 // paper, engine and their difference of one body of one scene, side by side; the second screen
 const camera = { azimuth: -0.65, elevation: 0.5 };
 const state = { scene: 0, body: 1, pair: "total", view: "3d", grid: "own", cursor: null, place: null, away: null };
+const CHOICES = ["view", "grid"];  // parts of the state that buttons choose
 let study = null;  // the data, unpacked when the page stands
 const viewer = document.getElementById("viewer") ?? document.createElement("div");  // empty where no surfaces were asked for
 const part = name => viewer.querySelector(`[data-part="${name}"]`);
@@ -132,7 +133,7 @@ function change(changes) {
   pairs.replaceChildren(...scene.pairs.map(pair => new Option(`${pair.title}: ${scene.labels[pair.first]} | ${scene.labels[pair.second]}`.replaceAll("_", " "), pair.key, false, pair === pairNow())));
   part("sentence").replaceChildren(...indexed(`${pairNow().sentence}.`));
   part("scene").value = String(state.scene);
-  ["view", "grid"].forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.setAttribute("aria-pressed", String(button.dataset[name] === state[name]))));
+  CHOICES.forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.setAttribute("aria-pressed", String(button.dataset[name] === state[name]))));
   listPlaces();
   show();
   readOut();
@@ -196,7 +197,7 @@ function startViewer() {
   part("body").addEventListener("change", event => chooseScene(state.scene, Number(event.target.value)));
   part("pair").addEventListener("change", event => { change({ pair: event.target.value }); showMotions(); });
   part("place").addEventListener("change", event => { change({ place: Number(event.target.value), away: null, cursor: null }); showMotions(); });
-  ["view", "grid"].forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.addEventListener("click", () => change({ [name]: button.dataset[name] }))));
+  CHOICES.forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.addEventListener("click", () => change({ [name]: button.dataset[name] }))));
   viewer.querySelectorAll("button[data-turn]").forEach(button => button.addEventListener("click", () => { camera.azimuth += Number(button.dataset.turn) * Math.PI / 8; paintSoon(); }));
   canvases.forEach(canvas => {
     let pressed = null;

@@ -19,7 +19,7 @@ from comparison.surfaces.model_difference import ModelDifference, difference_of
 from comparison.surfaces.surfaces import stride_of, values_of
 from comparison.wording import mathtext
 from reference.problem import Scene
-from reference.support.drawing import verbatim
+from reference.support.drawing import escape_for_matplotlib
 
 HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"
@@ -34,19 +34,23 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
     both = [surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(
-        verbatim(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"), fontsize=12, y=0.98
+        escape_for_matplotlib(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"),
+        fontsize=12,
+        y=0.98,
     )
     low, high = limits_of([height for _, height in both])
     for left, surface, model in zip((0.0, 0.315), both, (pair.first, pair.second)):
         axes = figure.add_axes((left, 0.0, 0.31, 0.86), projection="3d")
         assert isinstance(axes, Axes3D)
-        _surface(axes, *surface, low, high)
+        _draw_surface(axes, *surface, low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(label_of(model, scene))}", fontsize=11, pad=0)
-    _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), difference_of(surfaces, scene.name, pair, body))
+    _draw_difference_map(
+        figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), difference_of(surfaces, scene.name, pair, body)
+    )
     figure.savefig(path, pil_kwargs=PNG)
 
 
-def save(figure: Figure, path: Path) -> None:
+def save_figure(figure: Figure, path: Path) -> None:
     """Write the figure to `path`, PNG, and beside it as PDF."""
     figure.savefig(path)
     save_pdf(figure, path)
@@ -100,7 +104,7 @@ def draw_in_space(
     axes.set_yticks(*QUARTER_TICKS)
 
 
-def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
+def _draw_surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
     colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
     draw_in_space(axes, phase, height, (low, high), 0.62, 0.88, **colors)
     axes.tick_params(labelsize=8, pad=0)
@@ -108,7 +112,7 @@ def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=2)
 
 
-def _map(figure: Figure, axes: Axes, difference: ModelDifference) -> None:
+def _draw_difference_map(figure: Figure, axes: Axes, difference: ModelDifference) -> None:
     percent = 100.0 * difference.size
     size = np.abs(percent[np.isfinite(percent)])
     largest = float(size.max()) if size.size else 0.0

@@ -1,8 +1,8 @@
 """
 Formats of recorded accelerograms: one table of readers, one file a format.
 
-A reader is (name, what it recognizes in the first lines, function of text and file name). The first that recognizes a
-file reads it. A new format is one file in this folder and its line in the table.
+A reader is (name, what it recognizes in the first lines, function of text and file name, suffix). The first that
+recognizes a file reads it. A new format is one file in this folder and its line in the table.
 """
 
 from __future__ import annotations
@@ -17,22 +17,27 @@ from reference.records.samples import Array, RecordError, RecordSamples, join_di
 
 
 class Reader(NamedTuple):
-    """One format: its name, whether it recognizes the first lines of a file, and the function that reads it."""
+    """
+    One format: its name, whether it recognizes the first lines of a file, and the function that reads it.
+
+    suffix: of the files that are of this format where no reader recognizes their content; "" for none.
+    """
 
     name: str
     recognizes: Callable[[Sequence[str]], bool]
     read: Callable[..., RecordSamples]
+    suffix: str = ""
 
 
 READERS = (
-    Reader(at2.FORMAT, at2.recognizes_at2, at2.read_at2),
+    Reader(at2.FORMAT, at2.recognizes_at2, at2.read_at2, ".at2"),
     Reader(knet.FORMAT, knet.recognizes_knet, knet.read_knet),
     Reader(esm.FORMAT, esm.recognizes_esm, esm.read_esm),
     Reader(cosmos.FORMAT, cosmos.recognizes_cosmos, cosmos.read_cosmos),
     Reader(jma.FORMAT, jma.recognizes_jma, jma.read_jma),
-    Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv),
+    Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv, ".csv"),
 )
-SUFFIXES = {".at2": READERS[0], ".csv": READERS[-1]}  # tell the format where the content is of none
+BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
 CONVERTED = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # suffixes of files of networks
 OPTIONS = ("file", *plain_text.OPTIONS)  # keys of the table of a file
 
@@ -42,7 +47,7 @@ def recognize_format(text: str, suffix: str = "") -> Reader | None:
     head = text[: 2**16].splitlines()[:MAX_HEADER_LINES]
     known = next((reader for reader in READERS if reader.recognizes(head)), None)
     if known is None and not plain_text.begins_with_numbers(head):
-        return SUFFIXES.get(suffix.lower())
+        return BY_SUFFIX.get(suffix.lower())
     return known
 
 

@@ -26,15 +26,15 @@ ACCELERATION_IN_G = re.compile(r"ACC(?:EL\w*)?\b[^,;]*?(?:\bIN |, ?|[\[(])[\[(]?
 
 def recognizes_at2(head: Sequence[str]) -> bool:
     """Tell whether one of the first lines states NPTS and DT."""
-    return any(_sizes(line) for line in _short(head))
+    return any(_read_sizes(line) for line in _shorten_lines(head))
 
 
 @lru_cache(maxsize=64)
 def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
     """Return what a PEER .AT2 file holds. Raises RecordError."""
     lines = text.splitlines()
-    head = _short(lines)
-    counts = next(((row, sizes) for row, line in enumerate(head) if (sizes := _sizes(line))), None)
+    head = _shorten_lines(lines)
+    counts = next(((row, sizes) for row, line in enumerate(head) if (sizes := _read_sizes(line))), None)
     if counts is None:
         raise RecordError("the header must have a line 'NPTS= 1000, DT= .0100 SEC'")
     last, (count, step) = counts
@@ -52,7 +52,7 @@ def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
     return evenly_spaced(FORMAT, spacing, GRAVITY * np.array(values), notes=notes)
 
 
-def _short(lines: Sequence[str]) -> list[str]:
+def _shorten_lines(lines: Sequence[str]) -> list[str]:
     return [" ".join(line[:MAX_LINE].split()) for line in lines[:MAX_HEADER_LINES]]
 
 
@@ -75,7 +75,7 @@ def _check_unit(header: list[str], proposal: str) -> None:
     raise RecordError(f"{quoted}the header names no unit that is known: {rule}")
 
 
-def _sizes(line: str) -> tuple[str, str] | None:
+def _read_sizes(line: str) -> tuple[str, str] | None:
     """NPTS and DT of 'NPTS= 1000, DT= .0100 SEC' or '1000 .0100 NPTS, DT', if the line is one of them."""
     words = line.replace(",", " ").replace("=", " = ").replace(":", " = ").split()
     names = [word.upper() for word in words]

@@ -62,15 +62,15 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
     found = _header_row(rows, separator)
     top, separator = (0, separator or _guess_separator(rows[0][1])) if found is None else found
     head, header = rows[top]
-    cells, below = _cells(head, header, separator), rows[top + 1 :]
-    if below and (units := _units_row(_cells(*below[0], separator), cells)):
+    cells, below = _split_cells(head, header, separator), rows[top + 1 :]
+    if below and (units := _units_row(_split_cells(*below[0], separator), cells)):
         cells, below = units, below[1:]
-    columns = _columns(head, cells, unit, name)
+    columns = _header_columns(head, cells, unit, name)
     notes = [f"{top} lines above the header are ignored"] if top else []
     if others := [brief(column.text) for column in columns if column.kind == "other"]:
         notes.append(f"columns that are not needed: {', '.join(others)}")
-    directions = _directions(head, [column for column in columns if column.kind == "acceleration"])
-    table = _table(below, columns, separator)
+    directions = _columns_by_axis(head, [column for column in columns if column.kind == "acceleration"])
+    table = _read_table(below, columns, separator)
     clock = next(column.place for column in columns if column.kind == "time")
     time = table[:, [column.place for column in columns].index(clock)] if len(table) else np.zeros(0)
     _check_rising(below, time)
@@ -103,7 +103,7 @@ def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple
             continue
         mark = separator or _guess_separator(line)
         try:
-            kinds = [_column(place, cell).kind for place, cell in enumerate(_cells(number, line, mark))]
+            kinds = [_header_column(place, cell).kind for place, cell in enumerate(_split_cells(number, line, mark))]
         except RecordError:
             continue
         below = rows[row + 1][1].split() if row + 1 < len(rows) else kinds
@@ -112,7 +112,7 @@ def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple
     return None
 
 
-def _cells(number: int, line: str, separator: str) -> list[str]:
+def _split_cells(number: int, line: str, separator: str) -> list[str]:
     if len(line) > MAX_LINE:
         raise RecordError(f"line {number}: {len(line)} letters: must be at most {MAX_LINE}")
     if separator == " ":
@@ -138,11 +138,11 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
     return [f"{name} [{unit}]" if unit else name for name, unit in zip(header, units)] + header[len(units) :]
 
 
-def _columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
+def _header_columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
     """The columns of the header. Nothing is quoted where none is as it must be: that is no record. RecordError."""
     columns = []
     for place, cell in enumerate(cells):
-        columns.append(_column(place, cell))
+        columns.append(_header_column(place, cell))
     times = [column for column in columns if column.kind == "time"]
     usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
     if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
@@ -196,7 +196,7 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
     return text, ""
 
 
-def _column(place: int, cell: str) -> HeaderCell:
+def _header_column(place: int, cell: str) -> HeaderCell:
     """Return a cell of the header; its kind is "wrong" with the unit of an acceleration and no name of one."""
     name, unit = _name_and_unit(cell)
     words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
@@ -216,7 +216,7 @@ def _column(place: int, cell: str) -> HeaderCell:
     return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 
 
-def _directions(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
+def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
     """The columns by axis, or one under "" that names no direction. Raises RecordError."""
     for column in columns:
         if sum(one.word.lower() == column.word.lower() for one in columns) > 1:
@@ -241,12 +241,12 @@ def _directions(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCel
     return {axis: columns[number] for axis, number in places.items()}
 
 
-def _table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:
+def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:
     """The values of the needed columns, (K, len(columns)). Raises RecordError."""
     needed = [(at, column.place) for at, column in enumerate(columns) if column.kind != "other"]
     table, commas, points = np.zeros((len(rows), len(columns))), 0, 0
     for row, (number, line) in enumerate(rows):
-        cells = line.split() if separator == " " else _cells(number, line, separator)
+        cells = line.split() if separator == " " else _split_cells(number, line, separator)
         if len(cells) == 1 and not cells[0]:
             raise RecordError(f"line {number}: only separators: remove it")
         if len(cells) != len(columns):

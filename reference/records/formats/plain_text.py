@@ -73,8 +73,8 @@ def read_plain_text(
             raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose_line(text, name)}")
-    rows, notes = _rows(lines, skip, text, name)
-    values = _values(rows, column, text, name, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])))
+    rows, notes = _read_rows(lines, skip, text, name)
+    values = _column_values(rows, column, text, name, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])))
     _check_count(lines[:skip], len(values))
     seen = _even_step([row for _, row in rows]) if column is not None and column > 1 else None
     if seen is not None and abs(seen - spacing) > EVEN * spacing:
@@ -112,12 +112,12 @@ def propose_line(text: str, name: str) -> str:
 def _first_data_line(lines: Sequence[str]) -> int | None:
     """The first line, from 0, from which on lines have numbers alone; a line of count and step is a header."""
     for number, line in enumerate(lines[:MAX_HEADER_LINES]):
-        if _loose_cells(line) and not (COUNT_AND_STEP.fullmatch(line) and _counts(lines, number)):
+        if _loose_cells(line) and not (COUNT_AND_STEP.fullmatch(line) and _states_count(lines, number)):
             return number
     return None
 
 
-def _counts(lines: Sequence[str], number: int) -> bool:
+def _states_count(lines: Sequence[str], number: int) -> bool:
     """Tell whether a line 'count step' states how many values are behind it."""
     stated = COUNT_AND_STEP.fullmatch(lines[number][:MAX_LINE])
     behind = sum(len(line.split()) for line in lines[number + 1 :])
@@ -146,7 +146,9 @@ def _read_step(header: str) -> float | None:
     return None
 
 
-def _rows(lines: Sequence[str], skip: int, text: str, name: str) -> tuple[list[tuple[int, list[float]]], list[str]]:
+def _read_rows(
+    lines: Sequence[str], skip: int, text: str, name: str
+) -> tuple[list[tuple[int, list[float]]], list[str]]:
     """The numbers of every line behind the header with its number, and notes. Raises RecordError."""
     data = [(number, line) for number, line in enumerate(lines[skip:], skip + 1) if line.strip()]
     joined = "".join(line for _, line in data)
@@ -166,7 +168,7 @@ def _rows(lines: Sequence[str], skip: int, text: str, name: str) -> tuple[list[t
     return rows, notes + (["commas are read as decimal commas"] if commas else [])
 
 
-def _values(
+def _column_values(
     rows: Sequence[tuple[int, list[float]]], column: int | None, text: str, name: str, counted: bool
 ) -> list[float]:
     """The values of a column, or all in their order where nothing speaks against it. Raises RecordError."""

@@ -99,7 +99,7 @@ def structure_from_tuple(kind: type[ByReference]) -> Any:
     def construct(context: Any, values: Any) -> Any:
         structure = kind(list(zip(values.fields, values.types)))
 
-        def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             reference = _allocate(context, builder, structure)
             for k, (name, field) in enumerate(structure._fields):
                 value = builder.extract_value(arguments[0], k)
@@ -107,7 +107,7 @@ def structure_from_tuple(kind: type[ByReference]) -> Any:
                 builder.store(value, structure.pointer(context, builder, reference, name))
             return reference
 
-        return structure(values), lower
+        return structure(values), lower_call
 
     return construct
 
@@ -118,9 +118,9 @@ def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
 
     @intrinsic
     def construct(context: Any) -> Any:
-        def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             return _allocate(context, builder, structure)
 
-        return structure(), lower
+        return structure(), lower_call
 
     return construct

@@ -69,7 +69,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class _AsPart(LoweringPass):  # type: ignore[misc]
+class _LowerAsPart(LoweringPass):  # type: ignore[misc]
     """Pass before the lowering: its code goes into a `_PartLibrary` and counts no references."""
 
     _name = "as_part"
@@ -105,7 +105,7 @@ remembered_functions = cache(_RememberedFunctions)
 
 
 class PartCompiler(CompilerBase):  # type: ignore[misc]
-    """Numba's own passes but those that a part does not need, and `_AsPart` among them."""
+    """Numba's own passes but those that a part does not need, and `_LowerAsPart` among them."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
@@ -116,6 +116,6 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
         """Return the passes in their order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED]
-        passes.add_pass_after(_AsPart, AnnotateTypes)
+        passes.add_pass_after(_LowerAsPart, AnnotateTypes)
         passes.finalize()
         return [passes]

@@ -80,9 +80,9 @@ def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy
 
 
 @compiled
-def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
+def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return (excess, reaction / m1) of the consistent condition for rest of the exact equations, (T4) of docs/theory.md.
+    Return (excess, reaction / m1) by the consistent condition for rest of the exact equations, (T4) of docs/theory.md.
 
     The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
     at most mu times its normal part N > 0, that is while the excess |T|^2 - (mu N)^2 is not positive.
@@ -100,7 +100,7 @@ def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
 
 
 @compiled
-def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
+def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
     Return (excess, reaction / m1) of the condition for rest of (4.3): rest while |Mf^-1 F_3| <= 1 (4.6, corrected).
 
@@ -124,9 +124,9 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
 
 
 @compiled
-def rest_excess_printed(system: System, load: Load) -> Number:
+def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     """
-    Return |F_3|^2 - |F_F|^2 of (4.6) as printed in the paper.
+    Return |F_3|^2 - |F_F|^2 of (4.6) as printed in the paper, over m1^2; m^2/s^4.
 
     The components of F_F are mu N each, so the limit is sqrt(2) mu N at the origin. F_3 has gravity and spring with the
     printed signs. It serves to measure the effect of this misprint.

@@ -25,27 +25,30 @@ MAX_MISFIT = 1e-7
 
 
 @compiled
-def _keep_number(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
-    """Return the number: friction depends on neither load nor heating."""
-    return number
+def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
+    """Return the coefficient as it is: friction depends on neither load nor heating."""
+    return coefficient
 
 
 @compiled
-def _scale_by_share(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
-    return number * load_factor(system, k_t, reaction)
+def _scale_by_load_factor(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
+    """Return the coefficient at k_T and under a reaction, from that under the weight."""
+    return coefficient * load_factor(system, k_t, reaction)
 
 
 @compiled
-def _keep_slip(system: System, reaction: Number, number: Number) -> Number:
-    return number
+def _keep_slip(system: System, reaction: Number, slip: Number) -> Number:
+    """Return a component of the slip vector as it is: friction does not depend on the load."""
+    return slip
 
 
 @compiled
-def _scale_by_response(system: System, reaction: Number, number: Number) -> Number:
-    return number * (1.0 + elasticity(system, reaction))
+def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number:
+    """Return a component of the slip vector times the relative change of friction over that of the reaction."""
+    return slip * (1.0 + elasticity(system, reaction))
 
 
-scale_by_load = variants("exponent", _keep_number, _scale_by_share)
+scale_by_load = variants("exponent", _keep_coefficient, _scale_by_load_factor)
 """Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
 
 scale_by_response = variants("exponent", _keep_slip, _scale_by_response)

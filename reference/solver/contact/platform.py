@@ -7,10 +7,10 @@ from math import sqrt
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import (
     coefficient,
-    rest_excess_exact,
-    rest_excess_printed,
-    rest_excess_small,
     slip_vector,
+    squared_rest_excess_as_printed,
+    squared_rest_excess_exact,
+    squared_rest_excess_small,
     squared_sliding_speed,
     static_limit,
     viscous_factor,
@@ -98,11 +98,11 @@ def acceleration_along(
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     """Return (excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
     if system.small:
-        excess, reaction = rest_excess_small(system, load)
+        excess, reaction = squared_rest_excess_small(system, load)
     else:
-        excess, reaction = rest_excess_exact(system, load)
+        excess, reaction = squared_rest_excess_exact(system, load)
     if system.rest_condition == PRINTED:
         # Where (4.6) as printed lets go of a platform that friction can hold, no motion begins.
-        excess = min(excess, rest_excess_printed(system, load))
+        excess = min(excess, squared_rest_excess_as_printed(system, load))
     limit = static_limit(system, load.k_t, reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

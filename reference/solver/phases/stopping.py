@@ -181,7 +181,9 @@ def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -
     excess, reaction = rest_excess(system, load)
     if excess > 0.0:
         straight = abs(across) <= MAX_STRAIGHT_TURN * kinetic_coefficient(system) * reaction
-        if system.rate > 0.0:  # the sign at rest decides: a slide along the drive slows down and does not turn
+        if system.rate > 0.0:
+            # Friction that grows with the speed: the sign of the acceleration at speed 0 decides. A slide along the
+            # drive slows down by friction and does not turn round.
             ex, ey = heading(work.angle, system.axes)
             ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
             along = ax * ex + ay * ey

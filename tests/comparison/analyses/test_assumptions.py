@@ -59,7 +59,7 @@ def found_of(
     cells: list[AssumptionCell], directions: list[DirectionTrial] | None = None, scene: Scene = FIRST
 ) -> Validity:
     directions = directions or []
-    ranges = tuple(validity.ranges(scene, cells, directions))
+    ranges = tuple(validity.find_validity_ranges(scene, cells, directions))
     phases, as_integrated = validity.PHASES, AS_INTEGRATED
     return Validity(validity.ASSUMPTIONS, as_integrated, phases, 6.0, tuple(cells), tuple(directions), ranges)
 
@@ -181,9 +181,13 @@ def test_the_worst_direction_is_followed_until_limits_are_close(monkeypatch: pyt
     assert [each.variation.direction for each in answer.trials if each.variation] == pytest.approx(
         [math.pi / 2.0] * len(answer.trials)
     )
-    cells = [validity._cell(FIRST, each, fake_trial(FIRST, None, None, validity.PHASES)) for each in answer.trials]
+    cells = [validity._make_cell(FIRST, each, fake_trial(FIRST, None, None, validity.PHASES)) for each in answer.trials]
     cells.append(cell(Variation(), 0.0))
-    by = {(r.body, r.share): r for r in validity.ranges(FIRST, cells, answer.directions) if r.key == "offset"}
+    by = {
+        (r.body, r.share): r
+        for r in validity.find_validity_ranges(FIRST, cells, answer.directions)
+        if r.key == "offset"
+    }
     first = by[1, 0.05]  # mu_1 falls by 1.4 times the offset
     assert first.holds <= 0.05 / 1.4 < first.fails <= trials.CLOSE * first.holds
     assert first.direction == pytest.approx(math.pi / 2.0)
@@ -235,7 +239,7 @@ WIDE = cell(Variation(ring=2.0), 0.004)
 def test_a_range_ends_at_the_first_value_that_fails(
     cells: list[AssumptionCell], key: Axis, share: float, expected: tuple[float | None, float | None]
 ) -> None:
-    lines = validity.ranges(FIRST, cells)
+    lines = validity.find_validity_ranges(FIRST, cells)
     [found] = [(each.holds, each.fails) for each in lines if (each.body, each.key, each.share) == (1, key, share)]
     assert found == expected
 
@@ -258,7 +262,7 @@ def test_a_blind_trial_is_no_evidence() -> None:
     assert " met" not in describe_verdict(found)
     assert describe_verdict(found).endswith(f"fig3-I not compared: {NO_EFFECT}.")
     assert assumption_panels(found, FIRST) == []
-    partly = validity.ranges(FIRST, [*rings[:2], cell(Variation(ring=2.0), 0.003)])
+    partly = validity.find_validity_ranges(FIRST, [*rings[:2], cell(Variation(ring=2.0), 0.003)])
     assert next((r.holds, r.fails, r.no_effect) for r in partly if r.key == "ring") == (2.0, None, "")
 
 
@@ -266,7 +270,7 @@ def test_a_blind_trial_that_has_an_effect_is_not_called_blind() -> None:
     plain = trials.Trial(None, np.full((2, 2), 2.0), np.full((2, 2), 1e-4), ("ok",) * 2, "", 0.0)
     for size, reason in ((1.0, ONE_PLANE), (1.02, "")):
         control = trials.Trial(Variation(ring=0.5), plain.mu[:1] * size, plain.error[:1], ("ok",), "", 0.0)
-        assert validity._cell(PLANAR, control, plain).no_effect == reason
+        assert validity._make_cell(PLANAR, control, plain).no_effect == reason
 
 
 def test_a_change_says_reading_base_sign_error_and_place() -> None:
@@ -278,7 +282,9 @@ def test_a_change_says_reading_base_sign_error_and_place() -> None:
     assert (change.size, change.phases, change.base) == (pytest.approx(0.576 / 0.96 - 1.0), (2.0, 0.7), STATED)
     assert change.error == pytest.approx(math.hypot(3e-3, 1e-3))
     text = "mu_1 (as integrated) changes by −40.0 ± 0.3 % against the stated spatial model, at (2, 0.7) rad"
-    assert describe_change(change) == text.replace("−40.0 ± 0.3 %", statements.difference(-0.4, change.error))
+    assert describe_change(change) == text.replace(
+        "−40.0 ± 0.3 %", statements.difference_with_error(-0.4, change.error)
+    )
     assert describe_change(replace(change, size=0.02, error=0.004)).startswith(
         "mu_1 (as integrated) changes by +2.0 ± 0.4"
     )
@@ -384,7 +390,7 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
         bars["axial_stiffness"] = stiffness
         scene = FIRST.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
         study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
-        asked = [what for _, _, what, *_ in Assumptions((), directed=()).arguments(study)]
+        asked = [what for _, _, what, *_ in Assumptions((), directed=()).task_arguments(study)]
         assert asked == [None, *expected]
         effects = [variation.of(scene).bodies[1].bars.load_effect for variation in expected]
         assert effects == ["softening", "shortening"][: len(expected)]

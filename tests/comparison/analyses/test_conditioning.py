@@ -183,7 +183,7 @@ def test_each_scene_with_dry_friction_and_phases_is_asked(monkeypatch: pytest.Mo
     flat = load_scene("fig3-I").with_values({"bodies.0.height": None})
 
     def asked(grid: int, *scenes: Scene) -> list[tuple[str, int, int]]:
-        return [(each.name, *rest) for each, *rest in Conditioning().arguments(Study(scenes, grid, 1e-3))]
+        return [(each.name, *rest) for each, *rest in Conditioning().task_arguments(Study(scenes, grid, 1e-3))]
 
     assert asked(48, *scenes) == [("fig3-I", number, 16 if number < EXACT else 0) for number in range(5)]
     assert SPATIAL not in {number for _, number, _ in asked(4, flat)}, "without a height"

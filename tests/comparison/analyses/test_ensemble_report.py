@@ -396,7 +396,8 @@ def fails(*rest: Any) -> None:
 @pytest.mark.parametrize(
     ("owner", "name", "lost"),
     [
-        (panels, "_panel", "plot 1"), (panels, "_profile", "plot 1"), (page, "trust_rows", "section trust"),
+        (panels, "_demand_panel", "plot 1"), (panels, "_profile_panel", "plot 1"),
+        (page, "trust_rows", "section trust"),
         (page, "demand_rows", "section demands"), (sentences, "support_sentences", "section supports"),
         (sentences, "answer_sentence", "answer"), (page, "extended_rows", "section extended"),
     ],

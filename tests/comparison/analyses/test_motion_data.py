@@ -22,7 +22,7 @@ from comparison.analyses.motions.analysis import (
     compute_motion,
     decimate,
 )
-from comparison.analyses.motions.page_data import contact_geometry, motion_numbers, places
+from comparison.analyses.motions.page_data import contact_geometry, encode_motions, places_with_motions
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import trace_contact_paths
@@ -67,7 +67,7 @@ def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -
         for extreme in (np.min, np.max):
             np.testing.assert_array_equal(extreme(kept[name], axis=0), extreme(columns, axis=0))
         lines = np.stack([np.interp(whole.time, kept["time"][:, 0], column) for column in kept[name].T], axis=1)
-        assert (np.abs(lines - columns) <= 1.001 * SHARE * analysis.swing(columns)).all(), name
+        assert (np.abs(lines - columns) <= 1.001 * SHARE * analysis.half_swing(columns)).all(), name
 
 
 def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
@@ -86,12 +86,12 @@ def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
 def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
-    [place] = places(found(motion), long)
+    [place] = places_with_motions(found(motion), long)
     [about] = place["motions"]
     assert (about["status"], about["count"], about["blocks"]) == ("step limit", 0, {})
     assert about["demands"]["drift"] == [[None, None]]
     assert about["spectra"] is None
-    assert motion_numbers(found(motion)) == motion_numbers(found())
+    assert encode_motions(found(motion)) == encode_motions(found())
 
 
 def test_supports_stand_off_the_center_of_an_eccentric_platform(scene) -> None:
@@ -129,7 +129,9 @@ def test_at_the_largest_difference_of_every_body_its_own_model_moves() -> None:
     assert list(places.values())[:2] == ["largest difference of body 1", "largest difference of body 2"]
     assert places[5, 2] == "largest difference in translation, body 1"
     assert len(places) == 9, "two of each difference, and five evenly spread"
-    moving = {(model.key, place.row, place.column) for _, model, _, place, _ in Motions().arguments(study, surfaces)}
+    moving = {
+        (model.key, place.row, place.column) for _, model, _, place, _ in Motions().task_arguments(study, surfaces)
+    }
     assert {("spatial", 3, 9), ("translational", 5, 2), ("translational", 0, 0), ("spatial", 0, 0)} <= moving
     assert not {("translational", 3, 9), ("spatial", 5, 2)} & moving
     assert {("small-resolved", *place) for place in places} <= moving, "the equations move everywhere"

@@ -10,7 +10,7 @@ import xarray as xr
 
 import reference
 from comparison.analyses.worst_phases import analysis
-from comparison.analyses.worst_phases.feature import _kind, _reading
+from comparison.analyses.worst_phases.feature import _name_reading, _word_kind
 from comparison.runner.task import result_without_value
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
@@ -89,7 +89,7 @@ def test_a_largest_value_has_the_reading_of_its_model_or_both_without_dry_fricti
         ("fig4-viscous", "exact", "amplification", "both readings"),
         (SHORT.name, "small", "displacement", ""),
     ):
-        assert _reading(report, analysis.Worst(scene, model, quantity, 1)) == reading  # type: ignore[arg-type]
+        assert _name_reading(report, analysis.Worst(scene, model, quantity, 1)) == reading  # type: ignore[arg-type]
 
 
 def test_what_a_largest_value_is_stands_beside_it() -> None:
@@ -104,7 +104,7 @@ def test_what_a_largest_value_is_stands_beside_it() -> None:
         ({"kind": "smooth"}, "on a smooth maximum"),
         ({"kind": "jump", "side": (-0.25, 0.968)}, "beside a jump, approached from (-0.25, +0.97)"),
     ):
-        assert _kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
+        assert _word_kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
 
 
 def test_a_model_that_was_not_searched_has_the_largest_value_of_the_next_one() -> None:

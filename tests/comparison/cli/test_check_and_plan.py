@@ -17,13 +17,13 @@ from studies import difference_rows, solved
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces
 from comparison.cli.options import parse_options
-from comparison.runner.processes import cores
+from comparison.runner.processes import count_cores
 from comparison.study.costs import seconds_per_motion
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, check_limits
 from comparison.surfaces.body_comparison import body_comparisons
-from comparison.surfaces.unanswered import unanswered
+from comparison.surfaces.unanswered import list_unanswered
 
 UNCHECKED = "--check: not checked, as no limit is stated: total, translational of fig3-I\n"
 SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
@@ -31,7 +31,7 @@ SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
 
 def limits_of(study: Study, surfaces: xr.Dataset) -> list[Limit]:
     """The limits of a study, compared with its surfaces."""
-    return check_limits(body_comparisons(study, surfaces), unanswered(study, surfaces))
+    return check_limits(body_comparisons(study, surfaces), list_unanswered(study, surfaces))
 
 
 def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run], tmp_path: Path) -> None:
@@ -159,7 +159,7 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
     monkeypatch.chdir(tmp_path)
     usual = parse_options([])
     assert [scene.name for scene in usual.scenes] == ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"]
-    assert (usual.grid, usual.tolerance, usual.out, usual.jobs) == (48, 1e-3, Path("report"), cores())
+    assert (usual.grid, usual.tolerance, usual.out, usual.jobs) == (48, 1e-3, Path("report"), count_cores())
     assert (usual.budget, usual.max_work, usual.scheduler, usual.models) == (None, None, None, ())
     assert not any((usual.check, usual.plan, usual.fresh, usual.full))
     words = "--grid 3 --tolerance 1e-4 --out r --jobs 5 --budget 60 --max-work 7 --check --fresh --full --amplitude 2"

@@ -80,7 +80,7 @@ def test_the_times_of_a_run_are_the_same_in_every_place(
         return (datetime.now(UTC) - datetime.fromisoformat(began)).total_seconds()
 
     monkeypatch.setattr(reports, "Clock", Told)
-    monkeypatch.setattr(comparison.run, "start_time", lambda: Clock(900.0, 20.0))
+    monkeypatch.setattr(comparison.run, "command_start", lambda: Clock(900.0, 20.0))
     run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
     times = summary_of(run.report)["run"]
     assert (times["wall_seconds"], times["processor_seconds"]) == (102.0, 30.0)

@@ -15,7 +15,7 @@ import pytest
 from places import ROOT
 
 import reference
-from comparison.cli.start import commands, main, start
+from comparison.cli.start import commands, main, run_command
 
 COMMANDS = commands()
 MODULES = ("multibody.animate", "comparison.run")  # started by their own names, too
@@ -138,7 +138,7 @@ def test_an_engine_that_cannot_be_loaded_is_one_line(
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
     with pytest.raises(SystemExit) as end:
-        start("command_without_engine")
+        run_command("command_without_engine")
     assert (end.value.code, *capsys.readouterr()) == (3, "", "phase-resonance cannot start: Tried: libGL.so.1\n")
 
 

@@ -79,13 +79,13 @@ def test_the_requirement_is_where_others_find_the_project(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: dict[str, Any] | None, origin: str, address: str
 ) -> None:
     said = {"rev-parse": COMMIT, "branch": "origin/main" if origin else "", "remote": origin}
-    monkeypatch.setattr(source, "git", lambda folder, verb, *rest: said[verb])
+    monkeypatch.setattr(source, "ask_git", lambda folder, verb, *rest: said[verb])
     text = json.dumps(recorded or {})
     monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
     monkeypatch.setattr(source, "CHECKOUT", tmp_path)
     if recorded is None:  # not installed: it runs from a checkout
         (tmp_path / "pyproject.toml").touch()
-    assert source.requirement() == f"phase-resonance{address}"
+    assert source.requirement_line() == f"phase-resonance{address}"
     assert f"\nphase-resonance{address}\n".encode() in study_files("x")["requirements.txt"]
 
 

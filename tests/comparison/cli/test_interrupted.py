@@ -26,7 +26,7 @@ from runs import Run, no_executor
 from comparison.evidence.extremes import command as extremes
 from comparison.evidence.extremes.matrix import STORED
 from comparison.runner.cache import Cache, locate_store
-from comparison.runner.output import publish
+from comparison.runner.output import publish_files
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -56,7 +56,7 @@ if __name__ == "__main__":
 @pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.long)])
 def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Signals) -> None:
     old = tmp_path / "report"
-    publish(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")
+    publish_files(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")
     script = SCRIPT.format(here=str(HELPERS), root=str(ROOT))
     process = subprocess.Popen(
         [sys.executable, "-c", script],
@@ -124,7 +124,7 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     models = "honest", "lies_about_its_error"
     rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
     monkeypatch.setattr(extremes, "COLUMNS", tuple(replace(fake(model), key=model) for model in models))
-    monkeypatch.setattr(extremes, "rows", lambda: iter(rows))
+    monkeypatch.setattr(extremes, "extreme_cases", lambda: iter(rows))
     monkeypatch.chdir(tmp_path)
     words = ["--jobs", "2", "--out", "report"]
     assert extremes.main(words, Interrupted) == 130

@@ -15,8 +15,16 @@ from rich.console import Console
 
 import reference
 from comparison.evidence.benchmarks import analysis, readings
-from comparison.evidence.benchmarks.analysis import BenchmarkTable, SideNumbers, _benchmark, solve
-from comparison.evidence.benchmarks.cases import LIMITS, Case, MotionReading, cases, mastodon, published, shipped
+from comparison.evidence.benchmarks.analysis import BenchmarkTable, SideNumbers, _make_benchmark, solve_side
+from comparison.evidence.benchmarks.cases import (
+    LIMITS,
+    Case,
+    MotionReading,
+    list_cases,
+    load_shipped_scene,
+    mastodon,
+    published_number,
+)
 from comparison.evidence.benchmarks.command import main, print_benchmarks
 from comparison.evidence.benchmarks.table import (
     FRICTION,
@@ -24,15 +32,15 @@ from comparison.evidence.benchmarks.table import (
     STORED,
     Benchmarks,
     Number,
-    page,
-    stated,
     verdict_line,
     with_error,
+    word_page,
+    word_published_number,
 )
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
-CASES = cases()
+CASES = list_cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
 INPUT = Path(os.environ.get("PHASE_RESONANCE_MASTODON", "mastodon-fp-seismic-input.csv"))
 BY_NAME = {case.scene.name: case for case in CASES}
@@ -41,7 +49,7 @@ BY_NAME = {case.scene.name: case for case in CASES}
 @pytest.mark.parametrize("name", BY_NAME)
 def test_the_equations_meet_every_published_number(name, within):
     case = BY_NAME[name]
-    solved = solve((case, EQUATIONS))
+    solved = solve_side((case, EQUATIONS))
     assert len(solved.values) == len(case.published)
     for value, error, row in zip(solved.values, solved.errors, case.published):
         within(abs(value - row.published) / max(error + row.uncertainty, 1e-300), 1.0)
@@ -86,7 +94,7 @@ def test_both_sides_meet_mastodon_within_three_percent():
         assert abs(engine.value - smoothed.value) <= engine.error + smoothed.error, "both sides agree"
     cold = case.scene.with_values({"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}})
     heated, plain = (
-        1e3 * np.array(readings.ranges(reference.trajectory(each, (0.0, 0.0), "small", tolerance=1e-5)))
+        1e3 * np.array(readings.position_ranges(reference.trajectory(each, (0.0, 0.0), "small", tolerance=1e-5)))
         for each in (case.scene, cold)
     )
     assert np.abs(heated - LIMITS).max() < 3.1
@@ -95,15 +103,22 @@ def test_both_sides_meet_mastodon_within_three_percent():
 
 def test_the_error_covers_that_of_few_instants(monkeypatch):
     monkeypatch.setattr(analysis, "SAMPLES", 201)
-    solved, known = solve((BY_NAME["sdnd104-15"], EQUATIONS)), BY_NAME["sdnd104-15"].published[0].published
+    solved, known = solve_side((BY_NAME["sdnd104-15"], EQUATIONS)), BY_NAME["sdnd104-15"].published[0].published
     assert 1e-4 < abs(solved.values[0] - known) <= solved.errors[0] < 0.01
 
 
 def _words(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]:
-    case = Case("a", "b", "c", [published("x", 1.0, 0.01, "mm")], MotionReading(readings.period), shipped("pendulum"))
+    case = Case(
+        "a",
+        "b",
+        "c",
+        [published_number("x", 1.0, 0.01, "mm")],
+        MotionReading(readings.mean_period),
+        load_shipped_scene("pendulum"),
+    )
     case = replace(case, difference=difference)
     answers = {side: SideNumbers([value], [error], "ok", 0.0) for side, (value, error) in sides.items()}
-    row = _benchmark(case, answers).rows[0]
+    row = _make_benchmark(case, answers).rows[0]
     return {side: row.word(side, explained=True) for side in row.numbers}
 
 
@@ -158,7 +173,7 @@ def test_the_page_in_docs_has_every_benchmark():
         assert f"Source: {case.source}. Evidence for: {case.evidence}." in section
         assert f"v_reg of the engine: {case.regularization:g} m/s" in section
         for row in case.published:
-            assert f"\n| {row.quantity} | {stated(row)} | " in section
+            assert f"\n| {row.quantity} | {word_published_number(row)} | " in section
     assert "\n- 0 not met and not explained\n" in text
 
 
@@ -170,10 +185,10 @@ def test_every_number_stands_under_its_side(capsys):
     numbers = "2.02423 ± 2e-08", "met", "none", "not compared"
     assert cells == ["frame", "isolation period, s", "2.0242", *numbers]
     row = "| isolation period | 2.0242 s ± 5e-05 | 2.02423 ± 2e-08 | met | 2.02425 ± 3e-08 | none | not compared |"
-    assert row in page(table)
+    assert row in word_page(table)
     assert (
         "| quantity | published | equations | verdict | equations with the engine's friction | engine | verdict |"
-        in page(table)
+        in word_page(table)
     )
 
 
@@ -218,7 +233,7 @@ def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, mon
     assert main(["--only", "frame", "--out", str(tmp_path / "report")]) == code
     stored = STORED.load(tmp_path / "report")
     assert stored.benchmarks == table.benchmarks
-    assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == page(stored)
+    assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == word_page(stored)
     printed = capsys.readouterr().out
     assert f"2 published numbers: {verdict_line(table).removeprefix('2 published numbers: ')}." in printed
     assert said in printed
@@ -231,7 +246,7 @@ def test_both_laws_of_friction_and_the_engine_are_asked(monkeypatch):
     )
     for side in (EQUATIONS, SMOOTHED, ENGINE):
         with pytest.raises(AttributeError):  # None is no motion
-            solve((BY_NAME["sdnd100"], side))
+            solve_side((BY_NAME["sdnd100"], side))
     laws = [(path.partition(":")[0], settings["regularization"], settings["tolerance"]) for path, settings in asked]
     assert laws == [("reference", None, 1e-8), ("reference", 1e-7, 1e-8), ("multibody", 1e-7, 1e-4)]
     assert {settings["initial"].position[0, 0] for _, settings in asked} == {0.85e-3}

@@ -8,7 +8,7 @@ from second_integration import by_scipy, stepped
 from comparison.evidence.claims.claims import CLAIMS
 from comparison.evidence.claims.evidence import MOTIONS, CaseInReading, Evidence, gather_evidence
 from comparison.evidence.claims.readings import AS_INTEGRATED, CASES, effective_reading
-from comparison.evidence.claims.smoothness import bends
+from comparison.evidence.claims.smoothness import find_bends
 from comparison.evidence.claims.table import GRID
 from reference import amplification, modes
 from reference.problem import Scene, ground_peak
@@ -52,11 +52,11 @@ def _second(case: str) -> Evidence:
         mu,
         1e-3,
         ("ok",),
-        tuple(bends(mu, factors)),
+        tuple(find_bends(mu, factors)),
         tuple(apart.max(axis=0)),
         float(facts[:, 0].max() / scene.radius**2),
         tuple((T, float(natural[np.abs(T / natural - 1.0).argmin()])) for T in scene.excitation.periods),
-        bends(tops, lambda at: ground_peak(scene, at)[:, None])[0],
+        find_bends(tops, lambda at: ground_peak(scene, at)[:, None])[0],
         case=case,
     )
 

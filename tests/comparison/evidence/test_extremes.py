@@ -16,7 +16,7 @@ from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import CellVerdict
-from comparison.evidence.extremes.rows import rows
+from comparison.evidence.extremes.rows import extreme_cases
 from comparison.evidence.extremes.scenes import scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
@@ -81,9 +81,9 @@ def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
 
 def test_the_equations_fail_at_no_extreme():
     groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
-    chosen = [row for row in analysis.select_quick(list(rows())) if row.group in groups]
+    chosen = [row for row in analysis.select_quick(list(extreme_cases())) if row.group in groups]
     assert {row.group for row in chosen} == groups
-    for cell in analysis.cells(chosen):
+    for cell in analysis.list_cells(chosen):
         entry = analysis.solve_cell(cell)
         assert entry.verdict != CellVerdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
         assert entry.total >= entry.seconds, "with its finer runs"
@@ -111,7 +111,7 @@ QUANTITIES = {
 
 def test_a_row_has_the_quantity_that_it_names():
     seen = set()
-    for row in rows():
+    for row in extreme_cases():
         number = row.title.replace("-g exactly", "9.81").partition(",")[0]
         if row.group in QUANTITIES and re.fullmatch(r"[-+.\de]+|inf", number) and not row.invalid:
             found = QUANTITIES[row.group](analysis.read_scene(row.scene))
@@ -121,13 +121,15 @@ def test_a_row_has_the_quantity_that_it_names():
             if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
                 assert row.settings[key] == pytest.approx(float(row.title)), row.name
     assert seen == {*QUANTITIES}
-    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.cells(list(rows()))}
+    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(list(extreme_cases()))}
     assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    matrix = collected(analysis.Extremes(analysis.select_quick(list(rows())), limit=120.0), None, executor=process_pool)
+    matrix = collected(
+        analysis.Extremes(analysis.select_quick(list(extreme_cases())), limit=120.0), None, executor=process_pool
+    )
     assert [
         (row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(CellVerdict.FAILED)
     ] == []
@@ -138,7 +140,7 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
     columns = tuple(replace(fake(model), key=model) for model in ("calls_nan_ok", "unable", "at_the_rim", "honest"))
     plain = replace(PLAIN, columns=tuple(each.key for each in columns))
     monkeypatch.setattr("comparison.evidence.extremes.command.COLUMNS", columns)
-    monkeypatch.setattr("comparison.evidence.extremes.command.rows", lambda: iter([plain]))
+    monkeypatch.setattr("comparison.evidence.extremes.command.extreme_cases", lambda: iter([plain]))
     assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
     limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
     assert limit == "limit: anything plain, unable: step limit"
@@ -178,7 +180,7 @@ def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
 
 def test_a_value_with_an_error_as_large_as_itself_is_not_confirmed() -> None:
     mu, status = np.array([[1.0, 2.0]]), (Outcome.TOLERANCE_NOT_MET.value,)
-    assert [analysis.answers(analysis.Reply(mu, share * mu, status)) for share in (1.0, 0.9)] == [False, True]
+    assert [analysis.has_claim(analysis.Reply(mu, share * mu, status)) for share in (1.0, 0.9)] == [False, True]
 
 
 def test_a_motion_that_leaves_the_model_is_refused() -> None:

@@ -169,8 +169,8 @@ def test_a_damaged_measured_file_is_read_or_refused_in_one_line(
 ) -> None:
     """Two hundred damaged files, the same every time; what is read is not compared."""
     monkeypatch.setattr(files, "Workers", Here)
-    monkeypatch.setattr("comparison.evidence.validation.command._compare", lambda *rest: Found([], [], [], [], []))
-    monkeypatch.setattr("comparison.evidence.validation.command.provenance", dict)
+    monkeypatch.setattr("comparison.evidence.validation.command._compare_file", lambda *rest: Found([], [], [], [], []))
+    monkeypatch.setattr("comparison.evidence.validation.command.describe_provenance", dict)
     chance, endings = random.Random(5), Counter()
     for content in (pair(), decay(INSTANTS[:600], SWING[:600])):
         for name, variables in content.items():

@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.evidence.claims.peaks_and_valleys import Counts, count_drawn, count_periodic, count_profile, relief
-from comparison.evidence.claims.smoothness import bends
+from comparison.evidence.claims.peaks_and_valleys import (
+    Counts,
+    find_relief,
+)
+from comparison.evidence.claims.peaks_and_valleys import count_drawn_peaks_and_valleys as count_drawn
+from comparison.evidence.claims.peaks_and_valleys import count_periodic_peaks_and_valleys as count_periodic
+from comparison.evidence.claims.peaks_and_valleys import count_profile_peaks_and_valleys as count_profile
+from comparison.evidence.claims.smoothness import find_bends
 from reference.problem import phase_grid
 
 Array = NDArray[np.float64]
@@ -36,7 +42,7 @@ def test_ridges_are_counted_along_their_own_diagonal() -> None:
 def test_a_peak_across_the_edge_counts_once() -> None:
     corner = np.exp(np.cos(A1) + np.cos(A2))
     assert count_periodic(corner).peaks == 1
-    assert relief(corner).tops == [(0, 0)]
+    assert find_relief(corner).tops == [(0, 0)]
     assert count_drawn(corner).peaks == 4
 
 
@@ -66,7 +72,7 @@ def test_a_plateau_is_one_peak_however_wide() -> None:
 
 def test_regions_belong_to_the_peak_across_the_saddle() -> None:
     heights = np.array([[9.0, 0.0, 5.0, 4.0, 4.5, 1.0, 8.0]])  # the peak of 4.5 is lesser: it hangs on the one of 5
-    peaks = relief(heights, share=0.3, closed=False)
+    peaks = find_relief(heights, share=0.3, closed=False)
     assert peaks.tops == [(0, 0), (0, 6), (0, 2)]
     assert peaks.regions[0, 4] == 2
 
@@ -88,13 +94,13 @@ def test_the_exponent_is_that_of_the_shape(kind: str) -> None:
     """That of a fold depends on where it lies between the points: by a factor of two over three halvings, 1/3."""
     phases = phase_grid(16)
     mu = SHAPES[kind](*phases.T).reshape(16, 16, 1)
-    bend = bends(mu, lambda at: SHAPES[kind](*np.mod(at, 2.0 * np.pi).T)[:, None])[0]
+    bend = find_bends(mu, lambda at: SHAPES[kind](*np.mod(at, 2.0 * np.pi).T)[:, None])[0]
     assert bend.kind == kind
     assert bend.exponent == pytest.approx({"smooth": 2.0, "fold": 1.0, "jump": 0.0}[kind], abs=0.34)
 
 
 def test_every_body_is_judged_by_its_own_surface() -> None:
-    smooth, fold = bends(_both(phase_grid(16)).reshape(16, 16, 2), _both)
+    smooth, fold = find_bends(_both(phase_grid(16)).reshape(16, 16, 2), _both)
     assert (smooth.kind, fold.kind) == ("smooth", "fold")
     alpha1, alpha2 = fold.phases
     other_side = np.cos(alpha1 + alpha2 + 0.3)
@@ -103,4 +109,4 @@ def test_every_body_is_judged_by_its_own_surface() -> None:
 
 def test_a_place_without_a_value_is_no_answer() -> None:
     mu = _both(phase_grid(16)).reshape(16, 16, 2)
-    assert {bend.kind for bend in bends(mu, lambda at: np.full((len(at), 2), np.nan))} == {"no answer"}
+    assert {bend.kind for bend in find_bends(mu, lambda at: np.full((len(at), 2), np.nan))} == {"no answer"}

@@ -13,10 +13,10 @@ from rich.console import Console
 from scipy.stats import linregress
 
 from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
-from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, entry, join_results, sample
-from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, tall, with_slope
-from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, settings
-from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
+from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, join_results, make_entry, sample_phases
+from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, make_tall, series_with_slope
+from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, list_settings
+from comparison.evidence.tradeoff.trade import error_of_share, is_unbeaten, load_trades, with_pareto_fronts
 from comparison.study.batches import import_function
 from comparison.study.study import Study
 from reference import amplification
@@ -30,22 +30,22 @@ SETTING = Setting("exact", "one", "step", "", 1.0, False, False, RUN, {}, 1.0)
 
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
     pairs = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 1e-4), (2.5, 2e-3), (1.0, 1e-1), (4.0, float("inf"))]
-    assert [unbeaten(pair, pairs) for pair in pairs] == [True, True, True, False, False, False]
-    assert unbeaten(pairs[0], [pairs[0]] * 2), "two that are alike"
+    assert [is_unbeaten(pair, pairs) for pair in pairs] == [True, True, True, False, False, False]
+    assert is_unbeaten(pairs[0], [pairs[0]] * 2), "two that are alike"
 
 
 def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
-    assert quantile(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
-    assert quantile(np.array([np.nan]), 0.5) is None
+    assert error_of_share(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
+    assert error_of_share(np.array([np.nan]), 0.5) is None
     share = np.arange(101.0)[:, None]
-    shares = entry(SETTING, SettingResult(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
+    shares = make_entry(SETTING, SettingResult(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
     assert (shares.median, shares.most, shares.error_estimate) == ([50.0], [95.0], [95.0])
 
 
 def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     ones = np.ones((3, 1))
     good, lost, uneven, other = (
-        entry(SETTING, SettingResult(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
+        make_entry(SETTING, SettingResult(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
         for mu, seconds in (
             (1.1, 3.0),
             ([[1.0], [np.nan], [1.0]], 1.0),
@@ -66,7 +66,7 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
 
 def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> None:
     mu, share = np.array([[1.0, 2.0], [4.0, 5.0], [7.0, 8.0]]), np.array([[0.01, 0.03], [0.02, 0.005], [0.01, 0.01]])
-    plain = entry(SETTING, SettingResult(mu, mu, 1.0, np.nan), mu)
+    plain = make_entry(SETTING, SettingResult(mu, mu, 1.0, np.nan), mu)
     entries = [
         replace(plain, method=method, value=value, most=most, model_error=method.startswith("v_reg"))
         for method, value, most in (
@@ -93,7 +93,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
     ids=str,
 )
 def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str, friction: object) -> None:
-    for function in ("slope", "slopes", "exact_acceleration"):  # not compiled
+    for function in ("state_derivative", "state_derivatives", "exact_acceleration"):  # not compiled
         monkeypatch.setattr(outside, function, getattr(outside, function).py_func)
     bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
     values = {"duration": 0.8, "bodies": bodies} | ({"isolator.friction": friction} if friction else {})
@@ -116,7 +116,7 @@ def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
 
 
 def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
-    every = settings(load_scene("fig3-I"))
+    every = list_settings(load_scene("fig3-I"))
     for question in QUESTIONS:
         of_question = [setting for setting in every if setting.question == question.key]
         side = "multibody" if question.key == "spatial" else "reference"
@@ -125,7 +125,7 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
     loosest = {each.method: each.value for each in reversed(every) if each.question == "exact"}
     assert [loosest[f"reference, {runs}"] for runs in ("two runs and an estimate", "one run")] == [1e-2, 1e-1]
     for each in every:
-        inspect.signature(import_function(each.function)).bind(SCENE, sample(1), **each.settings)
+        inspect.signature(import_function(each.function)).bind(SCENE, sample_phases(1), **each.settings)
     model_errors = [each for each in every if each.model_error]
     for each in model_errors:
         assert each.settings == {"tolerance": 1e-6, "regularization": each.value}
@@ -145,21 +145,21 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
     question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
-    monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
+    monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "questions_of", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
-    (first,) = load(tmp_path / "out")
+    (first,) = load_trades(tmp_path / "out")
     assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
-    assert np.stack([values["alpha1"], values["alpha2"]], axis=1).tolist() == sample(3).tolist()
+    assert np.stack([values["alpha1"], values["alpha2"]], axis=1).tolist() == sample_phases(3).tolist()
     assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
     assert (values["reference_solution"] == 1.0).all()
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
     monkeypatch.setattr(analysis, "import_function", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
-    (again,) = load(tmp_path / "out")
+    (again,) = load_trades(tmp_path / "out")
     assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
 
 
@@ -174,7 +174,7 @@ def test_a_known_slope_is_found_in_the_larger_half() -> None:
 
 
 def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
-    scene = tall(SCENE, 6)
+    scene = make_tall(SCENE, 6)
     heights = [body.height for body in scene.bodies]
     assert (len(heights), heights) == (6, sorted(heights))
     assert scene.isolator.ring >= 6.0
@@ -201,7 +201,7 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
         mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
         return SettingResult(mu, mu, float(mu.size), np.nan)
 
-    monkeypatch.setattr(growth, "measure", measured)
+    monkeypatch.setattr(growth, "measure_setting", measured)
     few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
     monkeypatch.setattr(growth, "QUANTITIES", few)
     *bodies, pairs = collected(Growth(), Study((SCENE,), 1, 1e-3))
@@ -210,11 +210,11 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
 
 
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
-    bodies = with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
-    workers = with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
+    bodies = series_with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
+    workers = series_with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
     monkeypatch.setattr(command, "compute_tasks", lambda *rest: None)
     monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
-    monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
+    monkeypatch.setattr(command, "measure_by_workers", lambda *rest: workers)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
     assert found.series == [bodies, workers]
@@ -226,8 +226,8 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
 
 def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[object] = []
-    monkeypatch.setattr(growth, "measure", calls.append)
-    monkeypatch.setattr(growth, "cores", lambda: 3)
-    series = growth.by_workers(SCENE, ThreadPoolExecutor)
+    monkeypatch.setattr(growth, "measure_setting", calls.append)
+    monkeypatch.setattr(growth, "count_cores", lambda: 3)
+    series = growth.measure_by_workers(SCENE, ThreadPoolExecutor)
     assert list(series.values) == [1.0, 2.0, 3.0]
     assert len(calls) == 3 * growth.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"

@@ -12,8 +12,8 @@ import reference
 from comparison.evidence.convergence import analysis as convergence
 from comparison.evidence.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
 from comparison.evidence.scaling.analysis import PRINTED, STEP, Scaling, scale_scene
-from comparison.evidence.trends import Trend, fit_slope, trend, word_trends
-from comparison.study.shorten import shorten
+from comparison.evidence.trends import Trend, fit_slope, fit_trend, word_trends
+from comparison.study.shorten import shorten_scene
 from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene
@@ -67,7 +67,7 @@ def test_values_within_their_error_bars_are_not_fitted() -> None:
     sizes = _power(2.0, 1e-3)
     errors = np.full_like(sizes, 1e-4)  # the last two sizes, 6e-5 and 1.6e-5, drown, and 2.5e-4 is not known to a fifth
     assert np.isnan(fit_slope(SCALES, sizes, errors).exponent)
-    noise = trend("s", 1, "w", SCALES, sizes, errors, 2.0)
+    noise = fit_trend("s", 1, "w", SCALES, sizes, errors, 2.0)
     assert noise.verdict == "within the error bars: no slope can be told"
 
 
@@ -82,15 +82,15 @@ def test_values_within_their_error_bars_are_not_fitted() -> None:
     ],
 )
 def test_the_verdict_says_what_the_fit_allows(sizes: Array, expected: float | None, says: str) -> None:
-    assert trend("s", 1, "w", SCALES, sizes, 1e-6 * np.abs(sizes), expected).verdict == says
+    assert fit_trend("s", 1, "w", SCALES, sizes, 1e-6 * np.abs(sizes), expected).verdict == says
 
 
 def test_expected_exponents_are_counted_and_the_first_that_is_not_met_is_named() -> None:
     def told(scene: str, body: int, exponent: float, expected: float | None) -> Trend:
         sizes = _power(exponent, 1e-2)
-        return trend(scene, body, "small, exact", SCALES, sizes, 1e-3 * sizes, expected)
+        return fit_trend(scene, body, "small, exact", SCALES, sizes, 1e-3 * sizes, expected)
 
-    noise = trend("d", 1, "small, exact", SCALES, _power(2.0, 1e-3), np.ones((1, 4)), 2.0)
+    noise = fit_trend("d", 1, "small, exact", SCALES, _power(2.0, 1e-3), np.ones((1, 4)), 2.0)
     met, missed, free, other = (
         told("a", 1, 2.0, 2.0),
         told("b", 2, 1.0, 2.0),
@@ -111,13 +111,15 @@ def test_an_exponent_agrees_within_the_larger_of_its_uncertainty_and_what_is_not
     off: float, noise: float, says: str
 ) -> None:
     sizes = _power(2.0 + off, 1e-2)
-    found = trend("s", 1, "w", SCALES, sizes, noise * np.abs(sizes), 2.0)
+    found = fit_trend("s", 1, "w", SCALES, sizes, noise * np.abs(sizes), 2.0)
     assert found.uncertainty == pytest.approx(2.0 * noise / (np.sqrt(5.0) * np.log(2.0)), rel=1e-6)
     assert found.verdict == says
 
 
 def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
-    sizes = trend("s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None)
+    sizes = fit_trend(
+        "s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None
+    )
     assert sizes.medians == (3.0, 1.0)
 
 
@@ -265,9 +267,9 @@ def test_a_limit_has_its_error_and_as_many_periods_as_asked() -> None:
         Amplification(np.full((1, 2), mu), np.full((1, 2), error), np.array(["ok"]), np.full(1, np.nan), 0.0)
         for mu, error in ((2.0, 3e-3), (3.0, 4e-3))
     )
-    sizes, errors = convergence._relative([(answer, limit)])
+    sizes, errors = convergence._relative_differences([(answer, limit)])
     assert (sizes.tolist(), errors.ravel().tolist()) == ([[[0.5, 0.5]]], pytest.approx([2.5e-3] * 2))
-    assert shorten(load_scene("fig3-I"), 3.0).duration == pytest.approx(3.0 * 1.1), "of 0.9 and 1.1 s"
+    assert shorten_scene(load_scene("fig3-I"), 3.0).duration == pytest.approx(3.0 * 1.1), "of 0.9 and 1.1 s"
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -279,6 +281,6 @@ def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch,
 
     monkeypatch.setattr(convergence, "_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", _regularized(60.0))
-    sizes, errors = convergence._stiffen(load_scene("fig3-I"))
+    sizes, errors = convergence._compare_stiff_contacts(load_scene("fig3-I"))
     assert (np.abs(sizes) <= errors).all()
     assert (errors <= 5.0 * np.abs(sizes)).all()

@@ -19,7 +19,7 @@ from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.evidence.validation import command, frame, pendulum, table
 from comparison.evidence.validation.command import compare_folder, main
 from comparison.evidence.validation.cycles import SPEED, WIDTH
-from comparison.evidence.validation.feature import panels
+from comparison.evidence.validation.feature import experiment_panels
 from comparison.evidence.validation.files import DECAY, LARGE, Shaken, read_folder
 from comparison.evidence.validation.table import COVERAGE, LAW, Validation, load_record
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
@@ -76,7 +76,7 @@ def test_the_equations_predict_a_run_of_an_independent_program(tmp_path: Path):
     cycles = frame.fold(read_folder(tmp_path).runs[0])
     assert cycles.frequency == pytest.approx(FREQUENCY, abs=1e-5)
     found = np.mean([frame.read_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
-    computed = frame.read(cycles, frame.compute(EQUATIONS, cycles, frame.Setup(ratio=RATIO))).values
+    computed = frame.read_quantities(cycles, frame.compute_motion(EQUATIONS, cycles, frame.Setup(ratio=RATIO))).values
     assert computed[:2] == pytest.approx(found[:2], rel=5e-4)  # without the damper: 5e-3
     assert computed[2:] == pytest.approx(found[2:], abs=0.2)
 
@@ -123,10 +123,10 @@ def test_the_scene_of_a_run_has_the_force_of_disc_and_base():
 def test_the_numbers_of_a_motion_have_its_errors():
     accuracy = SimpleNamespace(coarser=[[1.5, 2.5], [3.0, 7.0]], error_of=lambda value, others: sum(others) - 2 * value)
     motion = SimpleNamespace(status="ok", accuracy=accuracy)
-    found = table.answer(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
+    found = table.values_of_motion(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
     assert (found.values.tolist(), found.errors.tolist()) == ([1.0, 2.0], [2.5, 5.5])
     ended = SimpleNamespace(status="rim reached", accuracy=accuracy)
-    assert np.isnan(np.concatenate(table.answer(ended, np.asarray, 2))).all()
+    assert np.isnan(np.concatenate(table.values_of_motion(ended, np.asarray, 2))).all()
 
 
 def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
@@ -147,7 +147,7 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     for name, known in (("fold", folded), ("compute", lambda side, cycles, setup: setup), ("read", read)):
         monkeypatch.setattr(frame, name, known)
     monkeypatch.setattr(frame, "last_cycle", lambda motion, frequency: cycle(motion))
-    found = frame.compare([Shaken(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
+    found = frame.compare_frame([Shaken(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
     rows = {(each.experiment, each.name): each for each in found.quantities}
     uses = {title: each.use for (title, name), each in rows.items() if name == "half range"}
     plain = [f"frame, {grams} g" for grams in (250, 350, 450)]
@@ -179,7 +179,7 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
         source = f"fitted to the motion of the run with {grams} g; its scatter over the cycles"
         assert found.inputs[place] == f"frame: friction ratio {fitted:.5g} ± {spread:.2g} ({source})"
     (plot, *_), titles = (
-        panels(Validation([], [], [], [], found.curves, {})),
+        experiment_panels(Validation([], [], [], [], found.curves, {})),
         ("phase of the base, deg", "top plate, mm"),
     )
     assert (plot["title"], plot["plot"]["x"]["title"], plot["plot"]["y"]["title"]) == ("frame, 250 g", *titles)
@@ -248,7 +248,7 @@ def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
     save(tmp_path, 250)
     save(tmp_path, 450, offset=0.3)
     table = compare_folder(tmp_path)
-    assert len(table.quantities) == 10
+    assert len(table.measured_quantities) == 10
     assert table.counts()[MET] == 20
     assert "ratio of this run alone is 0.240" in table.facts[1]
 
@@ -257,7 +257,7 @@ def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
 @pytest.mark.skipif(not MEASURED, reason="PHASE_RESONANCE_MEASURED names no folder with the published files")
 def test_the_recorded_table_is_that_of_the_published_files():
     table = compare_folder(Path(MEASURED))
-    new = {(each.experiment, each.name): each for each in table.quantities}
+    new = {(each.experiment, each.name): each for each in table.measured_quantities}
     for each in load_record().quantities:
         again = new[each.experiment, each.name]
         assert again.measured == pytest.approx(each.measured, rel=1e-6)
@@ -335,7 +335,7 @@ def test_a_comparison_error_is_within_all_uncertainties():
     values = np.array([1.1285, 1.135])
     answers = dict.fromkeys((EQUATIONS, ENGINE), table.ComputedValues(values, np.array([0.03, 0.03])))
     varied = [values + 0.024, values - 0.032]
-    first, second = table.quantities("run", data, answers, varied, lambda k, allowed: "why")
+    first, second = table.measured_quantities("run", data, answers, varied, lambda k, allowed: "why")
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [MET, NOT_MET]
     assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])
     assert first.sides[EQUATIONS].validation == pytest.approx(0.13)

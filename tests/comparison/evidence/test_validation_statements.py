@@ -9,7 +9,7 @@ import pytest
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import statements
 from comparison.evidence.validation.table import STORED, Comparison, MeasuredQuantity, Validation, load_record
-from comparison.verdicts import judge
+from comparison.verdicts import judge_error
 
 LOADED = ", friction of the load"
 Change = Callable[[Comparison], Comparison]
@@ -30,7 +30,7 @@ def changed(experiment: str, name: str, change: Change, sides: tuple[str, ...] =
 def of_error(factor: float) -> Change:
     def change(found: Comparison) -> Comparison:
         error = factor * found.error
-        return replace(found, error=error, verdict=judge(error, found.validation))
+        return replace(found, error=error, verdict=judge_error(error, found.validation))
 
     return change
 
@@ -52,15 +52,15 @@ PLANTED = {
 def test_what_is_validated_follows_the_record(planted: str) -> None:
     (experiment, change), said = PLANTED[planted]
     table = changed(experiment, "half range", change)
-    assert said in statements.word_validated(table)
-    assert said not in statements.word_validated(load_record())
+    assert said in statements.word_what_is_validated(table)
+    assert said not in statements.word_what_is_validated(load_record())
     assert said in "\n".join(statements.readme_rows(table))
 
 
 def test_both_sides_are_worded_equations_first() -> None:
     def both(equations: float, engine: float) -> str:
         sides = {
-            side: Comparison(1.0 + error, error, 0.0, 0.1, judge(error, 0.1))
+            side: Comparison(1.0 + error, error, 0.0, 0.1, judge_error(error, 0.1))
             for side, error in ((EQUATIONS, equations), (ENGINE, engine))
         }
         return MeasuredQuantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
@@ -81,12 +81,12 @@ def test_the_runs_of_the_fit_are_judged_as_well() -> None:
 
 
 def test_nothing_is_validated_where_one_run_or_one_side_is_not_met() -> None:
-    assert statements.word_validated(load_record()).startswith("Validated is one quantity: ")
+    assert statements.word_what_is_validated(load_record()).startswith("Validated is one quantity: ")
     for sides in ((EQUATIONS,), (ENGINE,)):
         table = changed("frame, 350 g" + LOADED, "half range", of_error(10.0), sides)
-        assert statements.word_validated(table).startswith("Nothing is validated, not even one quantity: ")
+        assert statements.word_what_is_validated(table).startswith("Nothing is validated, not even one quantity: ")
     rest = [each for each in load_record().quantities if not each.experiment.endswith(LOADED)]
-    alone = statements.word_validated(replace(load_record(), quantities=rest))
+    alone = statements.word_what_is_validated(replace(load_record(), quantities=rest))
     assert alone.startswith("Nothing is validated")
     assert "friction of the load, fitted at 250 g, not compared: no such run;" in alone
 
@@ -98,7 +98,7 @@ def test_the_runs_of_the_fit_are_those_of_the_record() -> None:
         else each
         for each in load_record().quantities
     ]
-    text = statements.word_validated(replace(load_record(), quantities=other))
+    text = statements.word_what_is_validated(replace(load_record(), quantities=other))
     assert "one friction ratio, fitted at 350 g, at 250 g not met (by +2.6 %), at 450 g" in text
 
 
@@ -121,7 +121,7 @@ def test_the_predictions_of_the_pendulum_are_counted() -> None:
 
 
 def test_a_run_whose_motion_is_as_close_as_its_quantities_is_not_counted() -> None:
-    words = statements.word_farther_off
+    words = statements.word_motions_farther_off
     assert words(load_record()).endswith("in 5 of 5 predicted runs")
     closer = [
         replace(each, share=0.12) if each.experiment == "frame, 550 g" else each for each in load_record().residuals

@@ -21,7 +21,7 @@ from comparison.cli.reports import CompleteLevel, Reports
 from comparison.json_file import json_text
 from comparison.registry import FEATURES
 from comparison.report import page, writing
-from comparison.report.panels import draw_panels, panel
+from comparison.report.panels import draw_panels, make_panel
 from comparison.report.results import Results
 from comparison.run import main
 from comparison.runner.runner import Runner
@@ -184,7 +184,7 @@ def test_a_logarithmic_panel_without_any_value_is_drawn(tmp_path: Path) -> None:
     lines = [{"name": name, "x": [0.1, 1.0], "y": [None, None], "low": [None, None], "high": [None, None], "band": True}
              for name in "ab"]  # fmt: skip
     axes = {"title": "period, s", "log": True}, {"title": "acceleration, g", "range": [0.0, 1.0]}
-    draw_panels(tmp_path / "panel.png", "no median", [panel("spectrum", "spectrum", *axes, lines)])
+    draw_panels(tmp_path / "panel.png", "no median", [make_panel("spectrum", "spectrum", *axes, lines)])
     assert (tmp_path / "panel.png").stat().st_size > 1000
 
 

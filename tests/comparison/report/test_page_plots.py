@@ -10,9 +10,9 @@ from comparison.evidence.tradeoff.feature import tradeoff_answers, tradeoff_pane
 from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
 from comparison.evidence.trend_feature import trend_panels
 from comparison.evidence.trends import Trend
-from comparison.report.glossary import GLOSSARY, explained
+from comparison.report.glossary import GLOSSARY, explain_words
 from comparison.report.page import content_policy
-from comparison.report.panels import draw_panels, panel
+from comparison.report.panels import draw_panels, make_panel
 from comparison.report.plots import MAX_CURVES
 
 
@@ -68,7 +68,7 @@ def test_trends_of_a_scene_and_parameter_share_a_panel() -> None:
 
 def test_a_word_of_the_glossary_is_explained_where_it_is_first() -> None:
     for word in GLOSSARY:
-        text = str(explained(f"The {word} & the {word}."))
+        text = str(explain_words(f"The {word} & the {word}."))
         assert (text.count("data-tip"), text.count("&amp;")) == (1, 1), word
 
 
@@ -87,7 +87,7 @@ def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch, tm
         {**about, "name": "bars", "color": "gray", "marks": True, "dash": "4 2"},
         {"name": "points", "x": [3.0], "y": [2.0], "color": 10, "line": False, "marks": True, "legend": False},
     ]
-    described = panel("title of μ_2", "", x, y, series, bands=[{"from": -9.0, "to": 0.5}])
+    described = make_panel("title of μ_2", "", x, y, series, bands=[{"from": -9.0, "to": 0.5}])
     told = figures_are_told(monkeypatch)
     draw_panels(tmp_path / "drawn.png", "a title", [described] * 2, 3)
     shown = [

@@ -11,7 +11,7 @@ from report_texts import both_pages
 from runs import SMALL, Run
 
 from comparison.evidence.tradeoff.trade import FILE as TRADES
-from comparison.runner.output import publish
+from comparison.runner.output import publish_files
 
 MAKES = ("extremes", "benchmarks", "tradeoff SCENE", "validation FOLDER")
 
@@ -38,7 +38,7 @@ def test_results_beside_a_report_are_part_of_the_next(command: Callable[..., Run
 def test_a_file_that_is_no_result_is_refused_at_the_start(
     command: Callable[..., Run], tmp_path: Path, name: str
 ) -> None:
-    publish(tmp_path / "report", {name: b'{"schema": "a-secret", "a-secret": 1}'}, "a test")
+    publish_files(tmp_path / "report", {name: b'{"schema": "a-secret", "a-secret": 1}'}, "a test")
     run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
     assert re.search(rf"{name}: not (a|an) .*: run phase-resonance ", run.err)

@@ -17,7 +17,7 @@ from comparison.evidence.extremes.matrix import STORED as MATRIX
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import SCHEMA, STORED, TradeFile
 from comparison.evidence.validation.table import STORED as VALIDATION
-from comparison.runner.output import publish
+from comparison.runner.output import publish_files
 
 STORES = {each.name: each for each in (BENCHMARKS, ENSEMBLE, MATRIX, STORED, growth.STORED, VALIDATION)}
 TRADES = STORED.as_json(TradeFile(SCHEMA, [known_trade("fig3-I")]))
@@ -78,7 +78,7 @@ def test_fields_that_contradict_each_other_are_refused(
 
 
 def test_a_senseless_file_beside_a_report_is_a_wrong_input(command: Callable[..., Run], tmp_path: Path) -> None:
-    publish(tmp_path / "report", {MATRIX.name: edited(MATRIX.name, ("columns",), {})}, "a test")
+    publish_files(tmp_path / "report", {MATRIX.name: edited(MATRIX.name, ("columns",), {})}, "a test")
     run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
 

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from comparison.cli.closing import _print_differences
 from comparison.report import page
-from comparison.report.page import _alert_groups, _environment, word_measurements
+from comparison.report.page import _alert_groups, _template_environment, word_measurements
 from comparison.report.results import VALIDATED_BRIEFLY
 from comparison.report.scene_result import ModelOutcome
 from comparison.report.summary_text import summary_text
@@ -35,7 +35,7 @@ ROW = Difference(
 
 def tables_of(section: str, **context: Any) -> Tables:
     titles = {"small": "small equations", "spatial": "spatial engine"}
-    template = _environment().get_template(f"sections/{section}.html.j2")
+    template = _template_environment().get_template(f"sections/{section}.html.j2")
     return Tables(template.render({"titles": titles, **context}))
 
 
@@ -151,7 +151,7 @@ def test_the_answers_stand_below_their_heads_and_beside_their_labels() -> None:
     cells = SimpleNamespace(**{name: lambda line, name=name: f"<{name} {line.body}>" for name in names})
     scene = SimpleNamespace(name="tower", title="", headlines=[SimpleNamespace(name="platform", body=1)])
     results = SimpleNamespace(scenes=[scene], phased=True, gate="", engine_lines=[])
-    template = _environment().get_template("sections/summary.html.j2")
+    template = _template_environment().get_template("sections/summary.html.j2")
     text = template.render(results=results, cells=cells, second_title="SECOND", drawn=[])
     less = "less the paper's equations, relative to these, as integrated"
     assert Tables(text).rows(0) == [{

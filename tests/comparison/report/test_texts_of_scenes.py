@@ -14,15 +14,15 @@ from runs import RUN, Run
 from studies import solved
 
 from comparison.registry import EVERYTHING, report_of
-from comparison.report.junit import junit
-from comparison.report.panels import draw_panels, panel
+from comparison.report.junit import junit_xml
+from comparison.report.panels import draw_panels, make_panel
 from comparison.report.summary_text import summary_text
-from comparison.runner.progress import progress, wide_console
+from comparison.runner.progress import show_progress, wide_console
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file, with_ending
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
 from reference.problem import Scene, load_scene
-from reference.support.drawing import verbatim
+from reference.support.drawing import escape_for_matplotlib
 
 
 def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
@@ -51,7 +51,7 @@ def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) ->
     wide_console().print("[red]a[/b] :warning:")
     assert capsys.readouterr().out == "[red]a[/b] :warning:\n"
     console = Console(width=80, force_terminal=True)
-    with console.capture() as shown, progress(console, 1.0, 1) as display:
+    with console.capture() as shown, show_progress(console, 1.0, 1) as display:
         display.advance("x[/b]", "1 of 1 tasks", 1.0)
     assert "x[/b]" in shown.get()
 
@@ -59,7 +59,7 @@ def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) ->
 def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     scene = load_scene("fig3-I").with_values({"title": r"x $\frac{$ y"})
     axes = {"title": "a$b$", "ticks": [[0.0, r"$\frac{$"]]}, {"title": "$"}
-    odd = panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
+    odd = make_panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
     draw_panels(tmp_path / "family.png", scene.title, [odd])
     assert (tmp_path / "family.png").stat().st_size > 0
 
@@ -73,7 +73,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
     results = report_of(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
-    suites = ElementTree.fromstring(junit(results).encode())
+    suites = ElementTree.fromstring(junit_xml(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
     text = summary_text(results)
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
@@ -115,7 +115,7 @@ NAN = float("nan")
         (mathtext, "effects on mu_1 over rho", r"effects on $μ_{\mathrm{1}}$ over ρ"),
         (mathtext, "effects on μ_1 over ρ", r"effects on $μ_{\mathrm{1}}$ over ρ"),
         (mathtext, "a $", r"a \$"),
-        (verbatim, "5 $ a_b", r"5 \$ a_b"),
+        (escape_for_matplotlib, "5 $ a_b", r"5 \$ a_b"),
     ],
 )
 def test_names_and_numbers_are_written_as_the_house_writes_them(

@@ -32,8 +32,8 @@ from comparison.evidence.claims.table import paper_complete
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.runner.cache import MAGIC, Cache, CacheKey
 from comparison.runner.environment import (
+    describe_provenance,
     environment_fingerprint,
-    provenance,
     source_digest,
     task_environment_fingerprint,
 )
@@ -86,9 +86,9 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
     with monkeypatch.context() as patch:
         patch.setenv("EXUDYN_MODULE", "fast")
         assert {_batch_task().key, _task().key}.isdisjoint(keys.values())
-    assert provenance()["exudyn module"] == multibody.models.engine.MODULE
+    assert describe_provenance()["exudyn module"] == multibody.models.engine.MODULE
     before = fingerprint(model)
-    for name in ("_version", "source_digest"):
+    for name in ("_version_of", "source_digest"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
             assert {_batch_task().key, _task().key}.isdisjoint(keys.values()), name
@@ -111,9 +111,9 @@ def test_a_key_names_versions_and_sources_and_a_report_the_commit(monkeypatch: p
     said = {"--show-toplevel": str(ROOT), "HEAD": "0123abc"}
     for changed, commit in (("", "0123abc"), (" M a.py", "0123abc with uncommitted changes")):
         monkeypatch.setattr(
-            "comparison.runner.environment.git", lambda folder, *words, now=changed: said.get(words[1], now)
+            "comparison.runner.environment.ask_git", lambda folder, *words, now=changed: said.get(words[1], now)
         )
-        about = provenance()
+        about = describe_provenance()
         assert (about["commit"], about["processors"]) == (commit, str(os.cpu_count()))
 
 

@@ -16,7 +16,7 @@ from report_texts import summary_of
 from runs import Run
 
 from comparison.runner import dask
-from comparison.runner.dask import cluster
+from comparison.runner.dask import connect_cluster
 from comparison.runner.processes import ExecutorLostError, Pool, WorkerDiedError
 from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
@@ -46,7 +46,7 @@ def workers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
 def test_numbers_of_a_cluster_are_those_of_this_machine(workers: LocalCluster) -> None:
     here = _results(ThreadPoolExecutor)
     assert [status for *_, status in here] == [["ok"]] * 16
-    with cluster(workers.address, {"fake_models:uneven"}) as there:
+    with connect_cluster(workers.address, {"fake_models:uneven"}) as there:
         assert there.width == 2
         assert _results(there) == here
         assert _results(there, lambda count: workers.kill_a_worker() if count == 4 else None) == here, "nothing is lost"
@@ -68,7 +68,7 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with Lost(3) as lost:
-        monkeypatch.setattr("comparison.cli.computing.cluster", lambda address, models: nullcontext(lost))
+        monkeypatch.setattr("comparison.cli.computing.connect_cluster", lambda address, models: nullcontext(lost))
         run = command("fig3-I", "--grid", "4", "--fresh", "--scheduler", "tcp://there:1")
         assert (run.code, run.report.exists()) == (4, False)
         kept = len(list(run.report.with_name("report.tiles").glob("*/*.batch")))
@@ -134,7 +134,7 @@ def test_a_scheduler_and_a_number_of_processes_exclude_each_other(command: Calla
 def test_workers_with_other_code_are_refused(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("comparison.runner.environment._version", lambda name: "9.9")
+    monkeypatch.setattr("comparison.runner.environment._version_of", lambda name: "9.9")
     run = command("fig3-I", "--scheduler", workers.address, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.err.count("\n")) == (2, 1)
     assert "here it is 9.9: install the same" in run.err

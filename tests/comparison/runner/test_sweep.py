@@ -24,8 +24,8 @@ from comparison.runner.processes import (
     Pool,
     TimeLimitError,
     WorkerDiedError,
-    executing,
     one_thread_each,
+    open_executor,
     process_pool,
 )
 from comparison.runner.runner import Runner
@@ -149,9 +149,9 @@ def test_an_executor_ends_with_the_block_that_it_was_made_for() -> None:
             ended.append((wait, cancel_futures))
             super().shutdown(wait, cancel_futures=cancel_futures)
 
-    with executing(Told, 1) as made:
+    with open_executor(Told, 1) as made:
         assert made.submit(len, "abc").result() == 3
-    with pytest.raises(ZeroDivisionError), executing(Told, 1):
+    with pytest.raises(ZeroDivisionError), open_executor(Told, 1):
         raise ZeroDivisionError
     assert ended == [(True, False), (False, True)], "without waiting after an exception"
 
@@ -224,7 +224,7 @@ def test_a_silent_process_is_waited_for_by_its_limit(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(system, "setrlimit", lambda kind, pair: limits.append((kind, pair)), raising=False)
     monkeypatch.setattr(processes.time, "process_time", lambda: 100.2)
     for seconds in (1.5, None):
-        processes._allow(seconds)
+        processes._limit_processor_time(seconds)
     assert limits == [(4, (0, never)), (0, (102, never)), (4, (0, never)), (0, (never, never))], "no dump, 1.5 s, none"
 
 

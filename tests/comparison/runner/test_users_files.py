@@ -20,7 +20,13 @@ from comparison.evidence.extremes import command as extremes
 from comparison.report import page
 from comparison.runner.cache import Cache, CacheKey, locate_store
 from comparison.runner.manifest import MANIFEST, Own, list_foreign_files, manifest_json, read_manifest
-from comparison.runner.output import clear_dead, destination, publish, refuse_foreign_files, replace_report
+from comparison.runner.output import (
+    clear_dead,
+    publish_files,
+    refuse_foreign_files,
+    replace_report,
+    resolve_destination,
+)
 from reference.support.files import TEMPORARY
 
 TABLES = ["extremes.json", "extremes.png"]
@@ -126,10 +132,10 @@ def test_a_file_added_while_the_report_is_moved_stays(tmp_path: Path, monkeypatc
 @pytest.mark.parametrize("moves", range(4))
 def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moves: int) -> None:
     put(tmp_path / "report", "index.html", "figures/old.png", content="old")
-    publish(tmp_path / "tables", {"extremes.json": b"old"}, "comparison.extremes")
+    publish_files(tmp_path / "tables", {"extremes.json": b"old"}, "comparison.extremes")
     move = os.replace
     for most, ends in (
-        (moves, lambda: publish(tmp_path / "tables", dict.fromkeys(TABLES, b"new"), "comparison.extremes")),
+        (moves, lambda: publish_files(tmp_path / "tables", dict.fromkeys(TABLES, b"new"), "comparison.extremes")),
         (max(moves, 1), lambda: put(tmp_path / "report", "index.html", "summary.json")),  # 0 is no move of the report
     ):
         done: list[Path] = []
@@ -199,7 +205,7 @@ def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
     put(tmp_path / "report")
     with replace_report(tmp_path / "report") as report:
         (report.folder / "index.html").write_text("newer", encoding="utf-8")
-        publish(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
+        publish_files(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
     assert report.place == tmp_path / "report"
     assert (tmp_path / "report" / "extremes.json").read_bytes() == b"{}"
     assert list_foreign_files(tmp_path / "report") == []
@@ -305,4 +311,4 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
 
 def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert locate_store(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")
+    assert locate_store(resolve_destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")

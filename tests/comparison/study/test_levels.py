@@ -22,13 +22,13 @@ from comparison import registry
 from comparison import run as command_module
 from comparison.cli import reports
 from comparison.runner.cache import Cache
-from comparison.runner.progress import Deadline, Display, TimeUpError, progress
+from comparison.runner.progress import Deadline, Display, TimeUpError, show_progress
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
-from comparison.study.study import Study, levels, nested_grids
+from comparison.study.study import Study, levels_of_phases, nested_grids
 from comparison.study.user_models import user_model
 from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import load_scene
@@ -48,7 +48,7 @@ def command(command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch) -> Cal
 
 @pytest.mark.parametrize("grid", [1, 2, 7, 12, 16, 45, 48, 96])
 def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
-    chain, level = nested_grids(grid), levels(grid)
+    chain, level = nested_grids(grid), levels_of_phases(grid)
     assert chain[-1] == grid
     assert all(fine % coarse == 0 and fine > coarse for coarse, fine in itertools.pairwise(chain))
     assert [(level <= number).sum() for number in range(len(chain))] == list(chain)
@@ -58,15 +58,15 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
     asked = [{task.key for task in surface_tasks(level.study)} for level in found]
     assert all(coarse <= fine for coarse, fine in itertools.pairwise(asked))
     for level in found:
-        axis = {model.key: len(level.study.axis(model)) for model in level.study.hierarchy}
+        axis = {model.key: len(level.study.phase_indices(model)) for model in level.study.hierarchy}
         assert axis["small"] == axis["regularised"] == level.study.grid
 
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
     models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
     study = Study((load_scene("fig3-I"),), 48, 1e-3, models, selection=registry.EVERYTHING)
-    first, second, last = (level.study for level in registry.levels(study))
-    grids = [[len(study.axis(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
+    first, second, last = (level.study for level in registry.study_levels(study))
+    grids = [[len(study.phase_indices(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
     assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
     why = "follows at a later level of the study"
     later = [{key for key in study.absent if study.absent[key] == why} for study in (first, second)]
@@ -180,7 +180,7 @@ def test_the_time_left_follows_from_the_work_so_far(
 ) -> None:
     now = [100.0]
     monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: now[0])
-    with progress(Console(), 120.0, 2) as display:
+    with show_progress(Console(), 120.0, 2) as display:
         display.skip(20.0)
         for count, seconds in enumerate((14.0, 16.0, 30.9, 31.4)):  # a line every 15 s
             now[0] = 100.0 + seconds

@@ -17,11 +17,11 @@ from comparison.study.models import (
     pairs_of,
     with_softened_bars,
 )
-from comparison.study.reductions import reductions
+from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.surfaces import label_surfaces
-from comparison.surfaces.unanswered import advice
+from comparison.surfaces.unanswered import advise_on_outcome
 from reference.problem import Outcome, Scene, load_scene
 
 
@@ -29,7 +29,7 @@ def test_what_needs_phases_is_not_asked_of_a_record():
     study = Study((load_scene("synthetic-pair"),), 4, 1e-3, selection=EVERYTHING)
     assert {task.stage for task in first_tasks(study, ANALYSES)} == {"effective values"}
     assert Pictures().tasks(study, label_surfaces(study, [], [])) == []
-    assert reductions(study) == []
+    assert list_omissions(study) == []
     (place,) = choose_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
 
@@ -73,7 +73,7 @@ def test_bars_that_buckle_cost_no_other_model() -> None:
     study = Study((scene,), 1, 1e-3, models_of(scene, hierarchy)[5:])
     finite = np.isfinite(solved(study)["mu"])
     assert [bool(finite.sel(model=model.key).all()) for model in study.hierarchy] == [True, True, False]
-    assert "buckle sideways" in advice(study, scene, SOFTENED_TRANSLATIONAL, Outcome.SOLVER_FAILED)
+    assert "buckle sideways" in advise_on_outcome(study, scene, SOFTENED_TRANSLATIONAL, Outcome.SOLVER_FAILED)
 
 
 def test_the_motion_of_a_softened_step_is_that_of_the_softened_scene() -> None:

@@ -23,9 +23,9 @@ from comparison.study.models import (
     TRANSLATIONAL,
     Model,
     models_of,
-    never,
+    no_scene,
 )
-from comparison.study.reductions import reductions
+from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene, mirror_symmetric
 
@@ -79,7 +79,7 @@ def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
     fewer, reduced = surfaces(scene, [EXACT], full=False)
     assert (whole, fewer) == (GRID**2, GRID)
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
-    (row,) = reductions(Study((scene,), GRID, 1e-3, [EXACT]))
+    (row,) = list_omissions(Study((scene,), GRID, 1e-3, [EXACT]))
     why = "a harmonic without amplitude: its phase changes nothing"
     assert row[:3] == ("mirrored phases, all but 1/4", "all models", why)
 
@@ -109,20 +109,20 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     platform = {**load_scene("fig3-I").model_dump(exclude_none=True)["bodies"][0], "height": 0.0}
     scene = short(isolator={"friction": 0.0}).with_values({"bodies": [platform]})
-    assert [(row.what, row.models) for row in reductions(Study((scene,), GRID, 1e-3))] == [
+    assert [(row.what, row.models) for row in list_omissions(Study((scene,), GRID, 1e-3))] == [
         ("mirrored phases, all but 1/4", "all models"),
         ("laws of friction", "small-resolved, resolved, small-regularised, regularised"),
         ("every run but one per harmonic", "small"),
         ("rotations, all supports but one", "spatial"),
     ]
-    assert reductions(Study((scene,), GRID, 1e-3, full=True)) == []
-    (_, *plane) = reductions(Study((load_scene("fig4-dry"),), GRID, 1e-3))
+    assert list_omissions(Study((scene,), GRID, 1e-3, full=True)) == []
+    (_, *plane) = list_omissions(Study((load_scene("fig4-dry"),), GRID, 1e-3))
     assert [(row.what, row.models) for row in plane] == [
         ("motion across its plane", "small, exact, small-resolved, resolved, small-regularised, regularised"),
         ("motion across its plane, of the bodies", "translational"),
     ]
     twins = tuple(load_scene("fig3-I").with_values({"name": name}) for name in "ab")
-    (row,) = reductions(Study(twins, GRID, 1e-3))
+    (row,) = list_omissions(Study(twins, GRID, 1e-3))
     assert row.scenes == ("a", "b")
 
 
@@ -141,7 +141,7 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
     assert len(odd.solved(odd.scenes[0], EXACT)) == 25, "an odd grid is computed in full"
     few = replace(odd, grid=7, hierarchy=[replace(EXACT, most=4)])
     assert len(few.solved(few.scenes[0], few.hierarchy[0])) == 16, "the last phase and the first are closer"
-    plain = replace(EXACT, symmetric=never)
+    plain = replace(EXACT, symmetric=no_scene)
     assert len(study.solved(load_scene("fig3-I"), plain)) == GRID**2
     uneven = load_scene("fig3-I").with_values({"isolator.supports": 3})
     assert len(replace(study, hierarchy=[SPATIAL]).solved(uneven, SPATIAL)) == GRID**2

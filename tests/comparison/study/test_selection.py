@@ -15,7 +15,7 @@ from comparison.cli.options import parse_options
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, first_tasks, select_analyses
 from comparison.runner.cache import CacheKey
 from comparison.runner.task import Task
-from comparison.study.selection import select, select_names
+from comparison.study.selection import make_selection, select_names
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.surfaces import label_surfaces
@@ -39,7 +39,7 @@ def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
 
     def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[CacheKey]]:
-        part = replace(study, selection=select(SELECTABLE, study.scenes, only, skip))
+        part = replace(study, selection=make_selection(SELECTABLE, study.scenes, only, skip))
         pictures = Pictures().tasks(part, label_surfaces(study, [], []))
         return first_tasks(part, select_analyses(part)), {task.key for task in pictures}
 
@@ -117,10 +117,10 @@ def test_motions_bring_the_surfaces_below_which_they_are_shown() -> None:
 def test_claims_are_of_the_papers_scenes(command: Callable[..., Run], tmp_path: Path) -> None:
     files = scene_file(tmp_path, ""), scene_file(tmp_path, 'only = ["claims", "surfaces"]', "named")
     mine, named, paper = map(load_scene, (*files, "fig3-I"))
-    selection = select(SELECTABLE, [mine, named, paper], None, None)
+    selection = make_selection(SELECTABLE, [mine, named, paper], None, None)
     assert [selection.has("claims", scene.name) for scene in (mine, named, paper)] == [False, True, True]
-    assert select(SELECTABLE, [mine], ["claims"], None).has("claims", "mine")
-    skipped = select(SELECTABLE, [mine], None, ["claims", "demands"])
+    assert make_selection(SELECTABLE, [mine], ["claims"], None).has("claims", "mine")
+    skipped = make_selection(SELECTABLE, [mine], None, ["claims", "demands"])
     assert not skipped.has("claims", "mine")
     assert [skipped.why_absent(key) for key in ("claims", "demands")] == ["not asked for"] * 2
     assert summary_of(command(files[0], *GRID).report)["absent"] == {
@@ -139,7 +139,7 @@ def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., R
         (asking, (None, None), True),
         (asking, (None, None, []), False),
     ):
-        study = Study((of,), 4, 1e-3, selection=select(SELECTABLE, (of,), *asked))
+        study = Study((of,), 4, 1e-3, selection=make_selection(SELECTABLE, (of,), *asked))
         assert ("demands" in {analysis.key for analysis in select_analyses(study)}) == made
     plans = (command("fig3-I", *GRID, *words, "--plan").out for words in ((), ("--also", "demands")))
     usual, also = (" ".join(plan.split()) for plan in plans)

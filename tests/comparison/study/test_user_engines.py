@@ -22,13 +22,13 @@ from studies import difference_rows, solved
 
 import reference
 from comparison.cli.user_models import as_words, look_at, user_models
-from comparison.evidence.extremes.analysis import cells
+from comparison.evidence.extremes.analysis import list_cells
 from comparison.evidence.extremes.columns import user_column
-from comparison.evidence.extremes.rows import rows
+from comparison.evidence.extremes.rows import extreme_cases
 from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
 from comparison.evidence.tradeoff.feature import tradeoff_panels
-from comparison.evidence.tradeoff.settings import QUESTIONS, user_settings
+from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
 from comparison.study.batches import drop_unusable, execute_batch
@@ -36,11 +36,11 @@ from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, amplification, user_model
 from comparison.surfaces.body_comparison import body_comparisons
-from comparison.surfaces.budget import budget
-from comparison.surfaces.headline import headline
+from comparison.surfaces.budget import budget_entries
+from comparison.surfaces.headline import make_headline
 from comparison.surfaces.surfaces import surface_tasks
-from comparison.surfaces.unanswered import study_of_results, unanswered
-from comparison.surfaces.waterfall import waterfall
+from comparison.surfaces.unanswered import list_unanswered, study_of_results
+from comparison.surfaces.waterfall import make_waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
 
@@ -256,13 +256,13 @@ def test_a_user_engine_changes_no_other_number(function: str) -> None:
     study, surfaces = studied(supplied(function))
     others = [model.key for model in alone.hierarchy]
     xr.testing.assert_identical(surfaces.sel(model=others), without)
-    entries = [budget(body_comparisons(*each)) for each in ((study, surfaces), (alone, without))]
+    entries = [budget_entries(body_comparisons(*each)) for each in ((study, surfaces), (alone, without))]
     assert repr(entries[0]) == repr(entries[1])  # repr: NaN is not equal to itself
     theirs = [row for row in difference_rows(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(difference_rows(alone, without))
     keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
     assert keys == [task.key for task in surface_tasks(alone)]
-    assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
+    assert {gap.model for gap in list_unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
 
@@ -274,7 +274,7 @@ def test_an_unknown_error_explains_no_difference_of_a_users_engine() -> None:
         "mine (your engine) differs from the exact equations, v_reg by +2.1 % in the mean over 4 × 4 initial phases, "
         "and by +2.1 % at most, at "
     )
-    sentence = headline(comparison, waterfall(comparison)).sentence.split(": ", 1)[1]
+    sentence = make_headline(comparison, make_waterfall(comparison)).sentence.split(": ", 1)[1]
     assert sentence.startswith(said)
     assert (
         ": agreement within twice the errors not compared, as mine does not state every error. Exudyn (spa" in sentence
@@ -484,8 +484,8 @@ def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]
 
 
 def test_extremes_of_its_law_concern_a_user_engine() -> None:
-    every = list(rows())
-    met = {cell.row.name for cell in cells(every, [user_column(supplied("plain"))])}
+    every = list(extreme_cases())
+    met = {cell.row.name for cell in list_cells(every, [user_column(supplied("plain"))])}
     alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
     assert met == alike
 
@@ -493,7 +493,7 @@ def test_extremes_of_its_law_concern_a_user_engine() -> None:
 def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
         model = user_model("mine", {"function": "user_engines:plain", "names": names}, like)
-        return [(one.question, one.value, one.against is None) for one in user_settings([model])]
+        return [(one.question, one.value, one.against is None) for one in list_user_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
@@ -504,7 +504,7 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
 
 
 def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analysis, "settings", lambda scene, quick: [])
+    monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: [])
     monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})

@@ -13,7 +13,7 @@ from studies import solved
 
 import reference
 from comparison.study.study import Study
-from comparison.surfaces.alerts import alerts
+from comparison.surfaces.alerts import list_alerts
 from comparison.surfaces.unanswered import OutcomeNote, Unanswered
 from reference.problem import Outcome, load_scene
 
@@ -81,7 +81,7 @@ def test_a_far_motion_is_told_with_its_model_share_and_base(share: float, said: 
     place = {"model": "spatial", "alpha1": surfaces["alpha1"][1], "alpha2": surfaces["alpha2"][0]}
     surfaces["cap_share"].loc[place] = share
     surfaces["displacement"].loc[place] = share * scene.radius
-    found = alerts(study, surfaces, [], [], [])
+    found = list_alerts(study, surfaces, [], [], [])
     assert [(each.kind, each.text) for each in found] == [
         (kind, f"spatial engine: the platform {text}") for kind, text in said
     ]
@@ -104,6 +104,6 @@ def test_a_gap_is_told_with_its_counts_and_outcomes(
     notes = tuple(OutcomeNote(outcome, count, f"help for {outcome}") for outcome, count in outcomes.items())
     lacking = Unanswered("fig3-I", "spatial", "spatial engine", points, unusable, 4, used, notes)
     study = Study((load_scene("fig3-I"),), 2, 1e-3, errors_in({}))
-    (found,) = alerts(study, solved(study), [lacking], [], [])
+    (found,) = list_alerts(study, solved(study), [lacking], [], [])
     assert f"{found.level} {found.kind}: {found.text}" == said.replace(": ", ": spatial engine: ", 1)
     assert found.help == "; ".join(f"help for {outcome}" for outcome in outcomes)

@@ -17,15 +17,15 @@ from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
-from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure
+from comparison.surfaces.budget import TOTAL, BudgetEntry, budget_entries, closure_error
 from comparison.surfaces.differences import Difference
 from comparison.surfaces.model_difference import RESOLVED, ModelDifference
-from comparison.surfaces.unanswered import unanswered
+from comparison.surfaces.unanswered import list_unanswered
 from reference.problem import builtin_scenes, load_scene
 
 
 def _table(study: Study, surfaces: xr.Dataset) -> dict[str, BudgetEntry]:
-    return {entry.step: entry for entry in budget(body_comparisons(study, surfaces)) if entry.body == 1}
+    return {entry.step: entry for entry in budget_entries(body_comparisons(study, surfaces)) if entry.body == 1}
 
 
 def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
@@ -47,13 +47,13 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
 def test_a_budget_without_a_step_does_not_close() -> None:
     study, surfaces = planted_study({"resolved": 0.02})
     comparison = BodyComparison(study, surfaces, study.scenes[0], 1)
-    assert closure(comparison) < 1e-14
+    assert closure_error(comparison) < 1e-14
     comparison.__dict__["chain_pairs"] = comparison.chain_pairs[1:]
-    assert closure(comparison) == pytest.approx(0.02)
+    assert closure_error(comparison) == pytest.approx(0.02)
     surfaces["mu"].loc[{"model": "resolved", "alpha1": 0.0, "alpha2": np.pi}] *= 1.32 / 1.02
     broken = BodyComparison(study, surfaces, study.scenes[0], 1)
     broken.__dict__["chain_pairs"] = broken.chain_pairs[1:]
-    assert closure(broken) == pytest.approx(0.32), "the largest of all phase pairs"
+    assert closure_error(broken) == pytest.approx(0.32), "the largest of all phase pairs"
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
@@ -62,7 +62,9 @@ def test_mirrored_phases_are_pi_away_from_computed_ones(name: str) -> None:
     studies = [Study((load_scene(name),), grid, 1e-3) for grid in (12, 34, 48, 50)]
     for study, model in [(each, model) for each in studies for model in each.hierarchy]:
         scene, grid = study.scenes[0], study.grid
-        apart = np.subtract(np.divmod(study.places(model), grid), np.divmod(study.sources(scene, model), grid))
+        apart = np.subtract(
+            np.divmod(study.places(model), grid), np.divmod(study.symmetric_sources(scene, model), grid)
+        )
         assert (2 * apart % grid == 0).all(), model.key
 
 
@@ -84,10 +86,12 @@ def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
 def test_of_two_models_the_coarser_grid_is_part_of_the_finer() -> None:
     for grid in range(2, 65):
         study = Study((), grid, 1e-3)
-        axes = [set(study.axis(model)) for model in sorted(study.hierarchy, key=lambda model: model.most or 1000)]
+        axes = [
+            set(study.phase_indices(model)) for model in sorted(study.hierarchy, key=lambda model: model.most or 1000)
+        ]
         assert all(coarse <= fine for coarse, fine in pairwise(axes))
         for model in study.hierarchy:
-            assert min(model.most or grid, grid) / 3 < len(study.axis(model)) <= (model.most or grid), grid
+            assert min(model.most or grid, grid) / 3 < len(study.phase_indices(model)) <= (model.most or grid), grid
 
 
 def test_the_peak_moves_the_short_way_round_the_torus_to_the_nearest_of_equals() -> None:
@@ -146,7 +150,7 @@ def _with(sound: Solved, mistake: Mistake) -> Solved:
 
 
 def _broken(found: Solved) -> list[str]:
-    return [line for limit in check_limits(body_comparisons(*found), unanswered(*found)) for line in limit.broken]
+    return [line for limit in check_limits(body_comparisons(*found), list_unanswered(*found)) for line in limit.broken]
 
 
 def _steps(found: Solved, body: int) -> list[tuple[str, ModelDifference]]:
@@ -187,7 +191,7 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
     if mistake.model == "small-resolved":  # the scale of every step moves with it, by less than a hundredth of each
         moved = {key: change for key, change in moved.items() if abs(change) > 1e-3}
     assert list(moved) == blamed, moved
-    assert closure(BodyComparison(*wrong, wrong[0].scenes[0], mistake.body)) < 1e-14
+    assert closure_error(BodyComparison(*wrong, wrong[0].scenes[0], mistake.body)) < 1e-14
     if TOTAL not in blamed:
         supplied, left = moved.values()
         assert left == pytest.approx(-supplied, rel=1e-9), "it cancels in the total"

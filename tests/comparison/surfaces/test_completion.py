@@ -19,7 +19,7 @@ from comparison.surfaces.completion import (
     Completion,
     HeldOut,
     choose_held_out,
-    completions,
+    complete_surfaces,
 )
 from reference.problem import load_scene
 
@@ -83,7 +83,7 @@ def completed(
     sparse[every, every] = (base + difference)[every, every]
     mu.loc[{"model": "translational", "body": 1}] = sparse
     known = {("fig3-I", "translational"): held_out or unused(study, base + difference)}
-    listed = completions(study, surfaces.assign(mu=mu, error=0.0 * mu), study.scenes[0], known)
+    listed = complete_surfaces(study, surfaces.assign(mu=mu, error=0.0 * mu), study.scenes[0], known)
     return next(surface for surface in listed if (surface.model, surface.body) == ("translational", 1))
 
 
@@ -123,14 +123,16 @@ def test_a_difference_that_is_not_smooth_is_refused(blank: tuple[Study, xr.Datas
 def test_a_spatial_model_on_few_phases_is_no_surface(blank: tuple[Study, xr.Dataset]) -> None:
     study, surfaces = blank
     small = Study(study.scenes, 4, 1e-3, study.hierarchy)
-    assert completions(small, solved(small), small.scenes[0], {}) == [], "fake models do not say that they are spatial"
+    assert complete_surfaces(small, solved(small), small.scenes[0], {}) == [], (
+        "fake models do not say that they are spatial"
+    )
     for most, reason in ((8, "8 × 8 phases are too few for a surface"), (16, "its supports stop one by one")):
         hierarchy = [
             replace(model, settings={"model": "spatial"}, most=most) if model.key == "spatial" else model
             for model in study.hierarchy
         ]
         spatial = replace(study, hierarchy=hierarchy)
-        found = completions(spatial, surfaces, study.scenes[0], {})
+        found = complete_surfaces(spatial, surfaces, study.scenes[0], {})
         assert [each.reason.split(":")[0] for each in found if each.model == "spatial"] == [reason] * 2
         assert {task.argument[1].key for task in CompletedSurfaces().tasks(spatial)} == {"translational"}
 
@@ -156,7 +158,7 @@ def test_held_out_phases_without_a_value_weaken_the_statement(blank: tuple[Study
 def test_records_and_models_with_all_phases_are_not_completed(blank: tuple[Study, xr.Dataset]) -> None:
     study, surfaces = blank
     record = Study((load_scene("synthetic-pair"),), 4, 1e-3, errors_in({}))
-    assert completions(record, surfaces, record.scenes[0], {}) == []
+    assert complete_surfaces(record, surfaces, record.scenes[0], {}) == []
     assert CompletedSurfaces().tasks(record) == []
     level = CompletedSurfaces().tasks(replace(study, grid=COARSE))
     assert {task.argument[1].key for task in level} == {"spatial"}, "a level that has all phases holds none of them out"
@@ -190,9 +192,9 @@ def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset])
     place = choose_held_out(study, scene, ENGINE)
     truth = surfaces["mu"].sel(scene=scene.name, model="exact").values.reshape(2, -1)[:, place]
     np.testing.assert_allclose(found[scene.name, "translational"].mu.T, truth, rtol=1e-12)
-    assert all(surface.accepted for surface in completions(study, surfaces, scene, found))
+    assert all(surface.accepted for surface in complete_surfaces(study, surfaces, scene, found))
     assert CompletedSurfaces().collect(study, surfaces, TaskResults()) is None, "where the time ended before them"
-    reasons = {surface.reason for surface in completions(study, surfaces, scene, None)}
+    reasons = {surface.reason for surface in complete_surfaces(study, surfaces, scene, None)}
     assert reasons == {"no phase pairs were held out to check an interpolation"}
 
 
@@ -220,7 +222,7 @@ def test_a_certificate_holds_as_often_as_its_confidence() -> None:
         mu = blank["mu"].copy(data=np.stack([np.stack([base, base]), sparse.reshape(truth.shape)])[None])
         values = truth.reshape(2, -1)[:, choose_held_out(study, scene, models[1])].T
         known, held_out = blank.assign(mu=mu, error=0.0 * mu), {(scene.name, ENGINE.key): HeldOut(values, 0.0 * values)}
-        for surface in completions(study, known, scene, held_out):
+        for surface in complete_surfaces(study, known, scene, held_out):
             missed = np.abs(surface.mu / truth[surface.body - 1] - 1.0).ravel()
             between = np.delete(missed, every)
             kept += (between > surface.error * (1.0 + 1e-9)).mean() <= surface.share

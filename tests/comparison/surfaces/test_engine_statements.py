@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from comparison.surfaces.acceptance import Breach, Limit, _beyond
+from comparison.surfaces.acceptance import Breach, Limit, _breaches_beyond
 from comparison.surfaces.differences import Difference, GridMean
 from comparison.surfaces.statements import (
     word_breach,
@@ -125,8 +125,8 @@ def test_of_many_scenes_without_limits_some_are_named() -> None:
 
 
 def test_a_value_that_is_missing_is_within_no_limit() -> None:
-    assert _beyond([(1, 0.3, None), (2, 0.2, None), (3, NAN, None)], 0.2) == (
+    assert _breaches_beyond([(1, 0.3, None), (2, 0.2, None), (3, NAN, None)], 0.2) == (
         Breach(1, 0.3),
         Breach(3, NAN, "no phase pair to compare"),
     ), "what equals its limit holds it"
-    assert [(each.found, each.largest) for each in _beyond([(1, 3.0, ROW)], 2.0)] == [(3.0, -0.041)]
+    assert [(each.found, each.largest) for each in _breaches_beyond([(1, 3.0, ROW)], 2.0)] == [(3.0, -0.041)]

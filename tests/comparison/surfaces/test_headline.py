@@ -12,9 +12,9 @@ from studies import GRID, KEYS, planted_study, solved
 
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.headline import Headline, headline
+from comparison.surfaces.headline import Headline, make_headline
 from comparison.surfaces.unanswered import study_of_results
-from comparison.surfaces.waterfall import waterfall
+from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Scene, load_scene
 
 GEOMETRY, FRICTION, TURNING = "geometry", "regularized friction", "turning of the bodies"
@@ -24,7 +24,7 @@ MEAN = "Exudyn (spatial) gives {} than the paper's equations in the mean over 4 
 def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
     study = study_of_results(study, surfaces)
     comparison = BodyComparison(study, surfaces, study.scenes[0], body)
-    return headline(comparison, waterfall(comparison))
+    return make_headline(comparison, make_waterfall(comparison))
 
 
 def gaps(*sizes: float) -> dict[str, float]:

@@ -17,8 +17,8 @@ from comparison.analyses.motions.analysis import compute_motion
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import body_comparisons
-from comparison.surfaces.budget import closure
-from comparison.surfaces.unanswered import study_of_results, unanswered
+from comparison.surfaces.budget import closure_error
+from comparison.surfaces.unanswered import list_unanswered, study_of_results
 from reference.problem import load_scene
 
 GRID = ["--grid", "4", "--only", "differences"]
@@ -69,8 +69,8 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
         assert [pair.second.key for pair in comparison.chain_pairs] == left[1:]
         assert (comparison.total.first, comparison.total.second) == (left[0], left[-1])
         assert comparison.total.unanswered == 0
-        assert closure(comparison) < 1e-14
-    (lacking,) = unanswered(study, surfaces)
+        assert closure_error(comparison) < 1e-14
+    (lacking,) = list_unanswered(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == f"step limit: {why_refused(scene, 1e-3)}"
     alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
@@ -78,7 +78,7 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     surfaces["mu"].loc[{"model": [*left[1:]]}] = np.nan
     alone = study_of_results(study, surfaces)
     assert alone.left_out(scene) == (), "nothing would be left to compare"
-    assert not any(lacking.used for lacking in unanswered(alone, surfaces))
+    assert not any(lacking.used for lacking in list_unanswered(alone, surfaces))
 
 
 def test_the_translational_limit_may_be_of_the_total(command: Callable[..., Run], tmp_path: Path) -> None:

@@ -8,17 +8,17 @@ import pytest
 import xarray as xr
 from studies import GRID, KEYS, planted_study
 
-from comparison.report.page_data import crossings
+from comparison.report.page_data import find_crossings
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison, independent_phases
-from comparison.surfaces.waterfall import Waterfall, WaterfallBar, waterfall
+from comparison.surfaces.waterfall import Waterfall, WaterfallBar, make_waterfall
 from comparison.surfaces.waterfall_chart import bars_of, scale_of
 from reference.problem import load_scene
 
 
 def bars_of_body(study: Study, surfaces: xr.Dataset, body: int) -> Waterfall:
-    return waterfall(BodyComparison(study, surfaces, study.scenes[0], body))
+    return make_waterfall(BodyComparison(study, surfaces, study.scenes[0], body))
 
 
 def test_the_bars_of_the_largest_difference_add_up_to_it() -> None:
@@ -140,11 +140,11 @@ def test_the_line_of_the_uncertainty_is_where_it_is_crossed() -> None:
     """|D| = |cos alpha1| crosses 0.5 at pi/3 and its mirror images, whatever alpha2; lines between 48 points: 2e-3."""
     phase = 2.0 * np.pi * np.arange(48) / 48
     size = np.cos(phase)[:, None].repeat(48, axis=1)
-    lines = crossings(size, np.full_like(size, 0.5), phase)
+    lines = find_crossings(size, np.full_like(size, 0.5), phase)
     where = sorted(float(np.mean([point[0] for point in line])) for line in lines)
     assert where == pytest.approx([np.pi / 3 * k for k in (1, 2, 4, 5)], abs=3e-3)
     assert all(np.ptp([point[1] for point in line]) == pytest.approx(2.0 * np.pi, abs=1e-3) for line in lines)
-    assert crossings(size, np.zeros_like(size) - 1.0, phase) == [], "beyond everywhere: no line"
+    assert find_crossings(size, np.zeros_like(size) - 1.0, phase) == [], "beyond everywhere: no line"
 
 
 def test_a_bar_at_the_largest_difference_is_resolved_beyond_five_errors() -> None:

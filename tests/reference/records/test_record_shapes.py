@@ -5,7 +5,7 @@ import pytest
 from chains import refusal
 
 from reference.problem import GRAVITY
-from reference.records.formats import READERS, read_record
+from reference.records.formats import READERS, at2, csv_table, read_record, recognize_format
 from reference.records.samples import RecordError, join_directions
 
 PEER = "PEER NGA STRONG MOTION DATABASE RECORD\nInvented, 1/1/2000, Nowhere, 000\n"
@@ -348,3 +348,9 @@ def test_readers_have_names_of_their_own_and_one_recognizes_each_shape():
     assert len({reader.name for reader in READERS}) == len(READERS)
     for text in (IN_G + FIELDS, KNET.format("1"), ESM.format("E"), COSMOS, CSMIP, JMA, "time [s],ax [g]\n0,1\n1,2\n"):
         assert sum(reader.recognizes(text.splitlines()) for reader in READERS) == 1
+
+
+def test_the_suffix_of_a_file_names_its_reader_where_its_content_does_not():
+    unlike = "no header of any format\nand no number"
+    names = {suffix: getattr(recognize_format(unlike, suffix), "name", None) for suffix in (".AT2", ".csv", ".txt")}
+    assert names == {".AT2": at2.FORMAT, ".csv": csv_table.FORMAT, ".txt": None}
