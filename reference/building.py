@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from reference.measures.story_forces import heights_above_contact
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
 from reference.problem.chain_modes import solve_chain
@@ -46,6 +48,17 @@ class Building:
     ground_peak : float, m/s^2
         Largest horizontal acceleration of the ground, the resultant of x and y; of two frequencies the largest over
         all phases; 0 without a loading.
+    radius : float, m
+        Effective radius of the isolator; inf for a flat slider.
+    friction : tuple of float
+        Coefficients at rest and at high speed, under the weight, and the rate between them, s/m; the coefficient of
+        lubrication, s/m, alone where the isolator is lubricated.
+    travel : float or None, m
+        None where the scene states none.
+    support_extent : ndarray or None, (2,), m
+        Distance of the outermost supports along x and y; None where the scene states no places.
+    heights : ndarray or None, (N,), m
+        Heights of the centers of mass above the sliding contact; None unless the scene states all.
     """
 
     name: str
@@ -57,6 +70,11 @@ class Building:
     fixed_base_period: Array
     modal_damping: Array
     ground_peak: float
+    radius: float
+    friction: tuple[float, ...]
+    travel: float | None
+    support_extent: Array | None
+    heights: Array | None
 
     @property
     def lines(self) -> list[str]:
@@ -79,7 +97,8 @@ def describe_building(scene: Scene) -> Building:
     Returns
     -------
     Building
-        Weight, load of a support, natural periods, modal damping and peak of the ground. `lines` has it as text.
+        Weight, load of a support, isolator, heights, natural periods, modal damping and peak of the ground. `lines` has
+        it as text.
 
     Notes
     -----
@@ -97,6 +116,7 @@ def describe_building(scene: Scene) -> Building:
     4.91
     """
     weight, supports = scene.total_mass * GRAVITY, scene.isolator.support_count
+    places, law = scene.support_places, scene.dry_friction
     isolated = [solve_chain(scene.masses, stiffness, DESCRIBED)[0] for stiffness in linear_stiffness(scene).T]
     fixed = [_solve_fixed_base(scene, axis) for axis in range(2)]
     with np.errstate(divide="ignore"):
@@ -110,6 +130,11 @@ def describe_building(scene: Scene) -> Building:
             2.0 * np.pi / np.array([frequency for frequency, _ in fixed]),
             np.array([ratio for _, ratio in fixed]),
             horizontal_peak(scene),
+            scene.radius,
+            (scene.friction_coefficient,) if scene.lubricated else (law.slow, law.fast, law.rate),
+            scene.isolator.travel,
+            None if places is None else np.ptp(places, axis=0),
+            heights_above_contact(scene),
         )
 
 
@@ -144,6 +169,7 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
         names = [*dict.fromkeys(building.name for building in own)]
         more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
         lines.append(f"Building {', '.join(names[:NAMED])}{more}: {text}")
+        lines += _word_frictions(own)
         lines.append(f"  peak of the ground: {_word_peaks([building.ground_peak for building in own])}")
     if len(alike) > SHOWN:
         lines.append(f"and {len(alike) - SHOWN} more buildings")
@@ -156,11 +182,56 @@ def _word_structure(building: Building) -> list[str]:
     load = building.load_per_support
     each = "" if load is None else f", {word_force(load)} on each of {building.supports} supports (equal dead load)"
     lines = [f"{bodies}, weight {word_force(building.weight)}{each}"]
+    travel = "no travel stated" if building.travel is None else f"travel {building.travel:.4g} m"
+    lines.append(f"  isolator: {_word_radius(building.radius)}, {travel}{_word_extent(building.support_extent)}")
+    if building.heights is not None:
+        lines.append(f"  heights above the sliding contact: {_word_values(building.heights, 'm')}")
     lines.append(f"  periods on the isolator, without friction: {_word_axes(building.isolated_period, 's')}")
     if building.bodies > 1:
         lines.append(f"  periods above a fixed base: {_word_axes(building.fixed_base_period, 's')}")
         lines.append(f"  damping of these modes: {_word_axes(100.0 * building.modal_damping, '%')}")
     return lines
+
+
+def _word_radius(radius: float) -> str:
+    return "plane" if math.isinf(radius) else f"radius {radius:.4g} m"
+
+
+def _word_extent(extent: Array | None) -> str:
+    return "" if extent is None else f", supports over {extent[0]:.4g} m along x and {extent[1]:.4g} m along y"
+
+
+def _word_frictions(buildings: Sequence[Building]) -> list[str]:
+    """Return the friction of buildings: a line for each of a few kinds with the names that have it, or their ranges."""
+    alike: dict[tuple[float, ...], list[str]] = {}
+    for building in buildings:
+        alike.setdefault(building.friction, []).append(building.name)
+    if len(alike) == 1 or len(alike) > SHOWN:
+        return [f"  {_word_friction([*alike])}"]
+    lines = []
+    for friction, own in alike.items():
+        names = [*dict.fromkeys(own)]
+        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+        lines.append(f"  {_word_friction([friction])} ({', '.join(names[:SHOWN])}{more})")
+    return lines
+
+
+def _word_friction(kinds: Sequence[tuple[float, ...]]) -> str:
+    """Return the coefficients of one kind of friction, or their ranges over several."""
+    dry = [kind for kind in kinds if len(kind) > 1]
+    lubricated = [kind[0] for kind in kinds if len(kind) == 1]
+    words = [f"lubrication: {_word_range(lubricated)} s/m"] if lubricated else []
+    if any(slow != fast and rate for slow, fast, rate in dry):
+        slow, fast, rate = map(_word_range, zip(*dry))
+        words.insert(0, f"friction: {slow} at rest, {fast} at high speed, rate {rate} s/m")
+    elif dry:
+        words.insert(0, f"friction: {_word_range([kind[0] for kind in dry])} at every speed")
+    return "; ".join(words)
+
+
+def _word_range(values: Sequence[float]) -> str:
+    """Return one value, or the least and the most of several."""
+    return " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(values), max(values))))
 
 
 def _word_peaks(peaks: Sequence[float]) -> str:

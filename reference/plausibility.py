@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+
+import numpy as np
 
 from reference.building import Building, describe_building, word_force
 from reference.problem import GRAVITY, Scene
@@ -11,31 +13,29 @@ from reference.support.arguments import Range
 
 LOAD_PER_SUPPORT = Range(1e3, 1e8, "N")
 NORMALIZED = 10.0  # kg: a scene of unit masses, as those of the paper, is meant as no building
+LEAST_RATE = 1.0  # s/m, of the growth of friction with the speed
+LARGEST_EXTENT = 300.0  # m, of the places of the supports
+EXTENT_OVER_SIZE = 2.0  # of the places of the supports, over the size of the platform
 FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # period of the first mode along either axis
 LARGEST_RADIUS = 50.0  # m
 LARGEST_FRICTION = 1.0
 LARGEST_DAMPING = 0.2  # damping ratio of the first fixed-base mode
 LARGEST_PEAK = 3.0  # g
 LARGEST_DRIFT_RATIO = 0.1
-MASS_RATIO = 1e6
+MASS_SHARE = Range(0.01, 100.0)  # mass of a body over the mean of the others
 
 
 def implausible_values(scene: Scene) -> list[str]:
     """Return one line for every kind of value that is hardly meant."""
     building = describe_building(scene)
-    lines = [*_implausible_modes(building)]
-    load = building.load_per_support
-    if load is not None and load not in LOAD_PER_SUPPORT and scene.total_mass > NORMALIZED:
-        limit = _word_end_beyond(load, LOAD_PER_SUPPORT, word_force)
-        lines.append(f"the weight on each support is {word_force(load)}, {limit}: is mass in kg?")
+    lines = _implausible_modes(building)
+    if scene.total_mass > NORMALIZED:
+        lines += [*_implausible_masses(scene, building), *_implausible_supports(scene, building)]
     if LARGEST_RADIUS < scene.radius < math.inf:
         unit = "mm" if scene.isolator.period is None else "is period in s"
         lines.append(f"the radius of the isolator is {scene.radius:.4g} m, above {LARGEST_RADIUS:g} m: {unit}?")
     if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > LARGEST_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
-    spread = float(scene.masses.max() / scene.masses.min())
-    if spread >= MASS_RATIO:
-        lines.append(f"masses differ by a factor of {spread:.2g}: kg in one place and t in another?")
     # What a record has by itself is said where it is described.
     as_read = scene.largest_acceleration / (scene.excitation.scale or 1.0) if scene.recorded else 0.0
     if (peak := building.ground_peak / GRAVITY) > LARGEST_PEAK and as_read <= LARGEST_PEAK * GRAVITY:
@@ -64,6 +64,51 @@ def _implausible_modes(building: Building) -> list[str]:
         share = f"{100.0 * ratio:.4g} % of critical, above {100.0 * LARGEST_DAMPING:g} %"
         lines.append(f"the damping of the first mode above a fixed base is {share}: percent?")
     return lines
+
+
+def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
+    """Yield the lines for the weight of a support, and for the mass that is farthest from the others."""
+    load = building.load_per_support
+    if load is not None and load not in LOAD_PER_SUPPORT:
+        limit = _word_end_beyond(load, LOAD_PER_SUPPORT, word_force)
+        yield f"the weight on each support is {word_force(load)}, {limit}: is mass in kg?"
+    if len(scene.bodies) == 1:
+        return
+    with np.errstate(divide="ignore"):  # beside a mass in which all others vanish
+        shares = scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)
+    place = int(np.argmax(np.abs(np.log(shares))))
+    if (share := float(shares[place])) not in MASS_SHARE:
+        limit = _word_end_beyond(share, MASS_SHARE, lambda value: f"{value:g}")
+        mass = f"the mass of {_name_body(scene, place)} is {scene.masses[place]:.4g} kg"
+        yield f"{mass}, {share:.2g} times the mean of the others, {limit}: kg in one place and t in another?"
+
+
+def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
+    """Yield the lines for the rate of friction, and for places of supports and heights of bodies."""
+    law = scene.dry_friction
+    if not scene.lubricated and law.varies and law.rate < LEAST_RATE:
+        yield f"the rate of friction is {law.rate:.4g} s/m, below {LEAST_RATE:g} s/m: s/mm?"
+    if building.support_extent is not None:
+        extent, size = float(building.support_extent.max()), scene.bodies[0].size
+        if extent > LARGEST_EXTENT:
+            yield f"the supports stand {extent:.4g} m apart, above {LARGEST_EXTENT:g} m: mm?"
+        elif size is not None and extent > EXTENT_OVER_SIZE * max(size[:2]):
+            largest = f"more than twice the platform of {max(size[:2]):.4g} m"
+            yield f"the supports stand {extent:.4g} m apart, {largest}: are places and size both in m?"
+    if building.heights is None or building.supports is None or scene.flat or building.heights[0] >= 0.0:
+        return
+    stated = [float(body.height or 0.0) for body in scene.bodies]
+    depression = stated[0] - float(building.heights[0])
+    yield (
+        f"the center of mass of {_name_body(scene, 0)} lies {-float(building.heights[0]):.3g} m below the sliding "
+        "contact: height counts from the centers of the depressions. Where yours count from the contact, add "
+        f"R = {depression:.4g} m to every height: {stated[0] + depression:.4g} for {stated[0]:.4g} m above the contact"
+    )
+
+
+def _name_body(scene: Scene, place: int) -> str:
+    """Return a body in words: its floor where the scene names it, or its number."""
+    return f'"{floor}"' if (floor := scene.bodies[place].floor) else f"body {place + 1}"
 
 
 def _word_end_beyond(value: float, allowed: Range, word: Callable[[float], str]) -> str:

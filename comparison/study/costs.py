@@ -5,6 +5,8 @@ Recorded on one core of a 2-core AMD EPYC virtual machine. Those of a surface ar
 of a motion mostly within 1.5.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from comparison.study.models import Model
@@ -29,6 +31,11 @@ def seconds_per_motion(scene: Scene, model: Model) -> float:
     softness = 1.0 / scene.masses[:-1, None] + 1.0 / scene.masses[1:, None]
     radians = scene.duration * max(SLOWEST, float(np.sqrt(scene.stiffness * softness).max(initial=0.0)))
     return radians * (SPATIAL_RADIAN * bodies if model.is_spatial else MOTION_RADIAN)
+
+
+def wall_seconds(seconds: Sequence[float], jobs: int) -> float:
+    """Rough time of tasks of so much processor time on idle cores, s: one task is not shared by workers."""
+    return max(sum(seconds) / jobs, max(seconds, default=0.0))
 
 
 def seconds_per_point(scene: Scene, model: Model) -> float:

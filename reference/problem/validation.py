@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from reference.support.scene_error import ONE_SURFACE, MisfitError, SceneError, keys_of_table, unknown_key
+from reference.support.scene_error import IS_REQUIRED, ONE_SURFACE, MisfitError, SceneError, keys_of_table, unknown_key
 
 # Forms of a table or key with several: pydantic puts the one that was meant into the place of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
@@ -18,7 +18,8 @@ FRICTIONS = ("constant friction", "velocity-dependent friction")
 ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # form of the keys of a link
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list here means several surfaces
 MISSING = {
-    "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"'
+    "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
+    "phase-resonance ensemble --suite brings it along"
 }
 DAMPINGS = ("damping ratio", "damping coefficients")
 
@@ -88,7 +89,7 @@ def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) 
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
         return unknown_key(file, key, error["input"], keys_of_table(table, keys))
     if error["type"] == "missing":
-        return SceneError(file, key, None, MISSING.get(key, "this key is required"))
+        return SceneError(file, key, None, MISSING.get(key, IS_REQUIRED))
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     if error["type"] == "dataclass_type" or error["type"] == "model_type":
         rule = "must be a table of keys"

@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from reference.records.numerals import decode_text
 from reference.records.samples import AXES, RecordError
@@ -17,9 +18,13 @@ from reference.support.scene_error import one_line
 
 FILE = "motions.csv"
 COLUMNS = ("name", *AXES, "factor")
+STATED = ("step", "unit", "skip", "column")  # columns that a list may have, of plain texts
 MAGNITUDE = "magnitude"  # column that a list may have, too
 LARGEST = 2**20  # bytes
+IGNORED = 3  # files of a kind that are named
 MAX_FACTOR = 1e6
+MAX_STEP = 1e3  # s
+MAX_NUMBER = 10_000  # skipped lines, or a column
 MAX_MAGNITUDE = 10.0
 NAMED = 10  # lines whose faults are said
 
@@ -29,21 +34,29 @@ class Motion:
     """
     One motion of a suite: its name, its files by axis, "" where one file holds all directions, and its factor.
 
-    magnitude: of the earthquake, None where the list does not state it.
+    magnitude: of the earthquake, None where the list does not state it. options: what the list states of the plain
+    texts, by axis.
     """
 
     name: str
     files: Mapping[str, Path]
     factor: float = 1.0
     magnitude: float | None = None
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class MotionList:
-    """The motions of a folder in their order, and how many other files of which kind it has."""
+    """
+    The motions of a folder in their order, and how many other files of which kind it has.
+
+    names: of ignored files that may be meant as records, by kind. proposal: what to write to take one of them.
+    """
 
     motions: tuple[Motion, ...]
     ignored: Mapping[str, int] = field(default_factory=dict)
+    names: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    proposal: str = ""
     listed: bool = False  # in motions.csv
 
     @property
@@ -56,16 +69,25 @@ class MotionList:
         example = ", ".join(f"{axis} = {one_line(file.name)}" for axis, file in first.items() if axis)
         upright = sum("z" in motion.files for motion in self.motions)
         parts = [
-            f"{len(self.motions)} motions",
+            f"{len(self.motions)} motion{'' if len(self.motions) == 1 else 's'}",
             *([how] if how else []),
             *([f"{upright} with a vertical one"] if "y" in first else []),
         ]
-        others = ", ".join(f"{count} {kind}" for kind, count in self.ignored.items())
+        others = ", ".join(f"{self._count_ignored(kind)}{self._name_ignored(kind)}" for kind in self.ignored)
         return (
             ", ".join(parts)
             + (f": {example}{', and so on' if len(self.motions) > 1 else ''}" if example else "")
             + (f". Ignored: {others}." if others else ".")
+            + (f" {self.proposal}" if self.proposal else "")
         )
+
+    def _count_ignored(self, kind: str) -> str:
+        return f"1 {kind.removesuffix('s')}" if self.ignored[kind] == 1 else f"{self.ignored[kind]} {kind}"
+
+    def _name_ignored(self, kind: str) -> str:
+        names = self.names.get(kind, ())
+        more = f" and {len(names) - IGNORED} more" if len(names) > IGNORED else ""
+        return f" ({', '.join(map(one_line, names[:IGNORED]))}{more})" if names else ""
 
 
 def read_motion_list(folder: Path) -> MotionList | None:
@@ -84,8 +106,9 @@ def read_motion_list(folder: Path) -> MotionList | None:
     rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
     heads = [head.lower() for head in rows[0]]
     twice = any(heads.count(head) > 1 for head in heads if head)
-    if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, MAGNITUDE, ""}:
-        rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {MAGNITUDE}"
+    if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, *STATED, MAGNITUDE, ""}:
+        optional = ", ".join((*STATED, MAGNITUDE))
+        rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {optional}"
         raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
     if not rows[1:]:
         raise RecordError(f"{FILE}: no motions: must have a line for each")
@@ -112,12 +135,33 @@ def _motion(row: Mapping[str, str], folder: Path) -> Motion:
     files = {axis: folder / row[axis] for axis in AXES if row.get(axis)}
     if not row.get("name") or not files:
         raise RecordError("must have a name, and a file along x, y or z")
+    columns = [_whole_number("column", word) for word in (row.get("column") or "").split()]
+    if list(files) == ["x"] and len(columns) > 1:  # all directions stand in one file
+        files = dict.fromkeys(AXES[: len(columns)], files["x"])
+    if len(columns) > 1 and len(columns) != len(files):
+        rule = f"must be one column, or one for each of {', '.join(files)}"
+        raise RecordError(f"column = {brief(row['column'])}: {rule}")
     for file in files.values():
         if not _is_file(file):
             raise RecordError(f"{brief(file.name)}: no such file in the folder")
     factor = _number(row, "factor", MAX_FACTOR) or 1.0
     magnitude = _number(row, MAGNITUDE, MAX_MAGNITUDE)
-    return Motion(row["name"], {"": files["x"]} if list(files) == ["x"] else files, factor, magnitude)
+    stated: dict[str, Any] = {} if (step := _number(row, "step", MAX_STEP)) is None else {"step": step}
+    stated |= {"unit": row["unit"]} if row.get("unit") else {}
+    stated |= {"skip": _whole_number("skip", row["skip"])} if row.get("skip") else {}
+    axes = [""] if list(files) == ["x"] else list(files)
+    options = {
+        axis: stated | ({"column": columns[min(place, len(columns) - 1)]} if columns else {})
+        for place, axis in enumerate(axes)
+    }
+    known = {axis: given for axis, given in options.items() if given}
+    return Motion(row["name"], dict(zip(axes, files.values())), factor, magnitude, known)
+
+
+def _whole_number(name: str, text: str) -> int:
+    if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
+        raise RecordError(f"{name} = {brief(text)}: must be a whole number up to {MAX_NUMBER}")
+    return int(text)
 
 
 def _is_file(file: Path) -> bool:
@@ -143,10 +187,17 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
 
 def motion_list_text(motions: Iterable[Motion]) -> str:
     """Return motions.csv with these motions: a file that holds all directions stands under x."""
+    motions = list(motions)
+    stating = any(motion.options for motion in motions)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow([*COLUMNS, *(STATED if stating else ())])
     for motion in motions:
         names = {axis or "x": file.name for axis, file in motion.files.items()}
-        writer.writerow([motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:g}"])
+        row = [motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:g}"]
+        stated = next(iter(motion.options.values()), {})
+        columns = " ".join(str(each["column"]) for each in motion.options.values() if "column" in each)
+        step = f"{stated['step']:g}" if "step" in stated else ""
+        row += [step, str(stated.get("unit", "")), str(stated.get("skip", "")), columns] if stating else []
+        writer.writerow(row)
     return stream.getvalue()

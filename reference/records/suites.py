@@ -20,10 +20,12 @@ import numpy as np
 
 from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
-from reference.records.motion_lists import FILE, Motion, MotionList, read_motion_list
+from reference.records.formats.plain_text import propose_options, word_guess
+from reference.records.motion_lists import FILE, Motion, MotionList, motion_list_text, read_motion_list
 from reference.records.numerals import decode_text
 from reference.records.pairing import SuiteError, find_vertical_components, pair_files
 from reference.records.samples import (
+    AXES,
     LARGEST,
     Array,
     RecordError,
@@ -44,6 +46,7 @@ SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)},
 RECORDS = (".csv", ".at2")  # suffixes of files that are records, whatever is in them
 NO_RECORDS = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)
+MAYBE_RECORDS = ("texts", "other files")  # kinds of files whose names are said
 TEXTS = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
 MAX_FILES = 10_000  # in a folder
 
@@ -92,7 +95,7 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
     readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
-            readings[axis] = read_record(read_file(file, LARGEST), file.name)
+            readings[axis] = read_record(read_file(file, LARGEST), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
             shown = f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
             raise SuiteError("motion", f"{shown}: {getattr(error, 'strerror', None) or error}") from None
@@ -137,21 +140,45 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     kinds = {file: _kind_of_other_file(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
     ignored = Counter(kind for kind in kinds.values() if kind)
+    names = {kind: [file.name for file, own in kinds.items() if own == kind] for kind in MAYBE_RECORDS}
+    proposal = propose_motion([file for file, kind in kinds.items() if kind in MAYBE_RECORDS])
     if not records:
-        raise SuiteError("suite", f"has no CSV or .AT2 files: {SUITE_RULE}")
+        raise SuiteError("suite", f"has no CSV or .AT2 files: {proposal or SUITE_RULE}")
+    proposal += "; --write-motions writes the lines of the other motions." if proposal else ""
     if components == 1:
         upright = find_vertical_components(records)
         if upright:
             ignored["vertical components"] = len(upright)
         single = [Motion(file.stem, {"x": file}) for file in records if file not in upright]
-        return MotionList(_with_own_names(single), ignored)
+        return MotionList(_with_own_names(single), ignored, names, proposal)
     whole = [file for file in records if _holds_directions(file)]
     parts = [file for file in records if file not in whole]
     if whole and parts:
         shown = f"{brief(whole[0].name)} holds whole motions, {brief(parts[0].name)} a component"
         raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE}")
     motions = pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
-    return MotionList(_with_own_names(motions), ignored)
+    return MotionList(_with_own_names(motions), ignored, names, proposal)
+
+
+def propose_motion(files: Sequence[Path]) -> str:
+    """Return the lines of motions.csv that take the first file that is a plain text of numbers; "" for none."""
+    for file in files:
+        try:
+            proposal = propose_options(decode_text(read_file(file, LARGEST)))
+        except (OSError, RecordError):
+            continue
+        if not isinstance(proposal, str):
+            stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
+            axes = AXES[: len(proposal.columns)] or ("x",)
+            columns = proposal.columns or (0,)
+            options = {axis: {**stated, "column": column} for axis, column in zip(axes, columns)}
+            head, line = motion_list_text([Motion(file.stem, {"x": file}, options=options)]).splitlines()
+            return (
+                f"{one_line(file.name)} has numbers whose step and unit must be stated: write {FILE} into the folder, "
+                f'first line "{head}", and for this file "{line}"{word_guess(proposal.missing)}; --write-motions '
+                f"writes the lines of motions that are read without it."
+            )
+    return ""
 
 
 def _read_directory(place: Path) -> MotionList | list[Path]:

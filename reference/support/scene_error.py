@@ -10,6 +10,7 @@ from reference.support.arguments import brief
 
 MAX_LETTERS = 300  # longest path or key that an error shows
 NEAR = 0.7  # ratio of letters that two spellings of one word share: words of other meanings share less
+IS_REQUIRED, IS_MISSING = "this key is required", "the table ["  # rules of what the file does not have
 YIELDS = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
     "or yield_displacement = 0.001, m"
@@ -42,6 +43,7 @@ HINTS = {  # what a key of other programs is here, by its letters and digits, in
         ("dampingratio", "modaldamping", "superstructuredamping", "structuraldamping", "rayleigh"),
         "write [superstructure] damping = 0.05, the ratio of critical of the first fixed-base mode",
     ),
+    **dict.fromkeys(("bodies.name", "bodies.label", "bodies.title", "bodies.level"), "write floor, its name"),
     "bodies.weight": "write mass, kg: the weight in N over 9.81",
     **dict.fromkeys(("excitation.file", "excitation.accelerogram", "excitation.csv"), 'write record = "motion.csv"'),
     **dict.fromkeys(("excitation.factor", "excitation.scalefactor", "excitation.pga"), "write scale, a factor"),
@@ -72,8 +74,13 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
-        said = (f"{one_line(error.key)} = {brief(error.value)}: {error.rule}" for error in (self, *self.others))
-        super().__init__(f"{one_line(file)}: {'; also '.join(said)}")
+        super().__init__(f"{one_line(file)}: {'; also '.join(error._said for error in (self, *self.others))}")
+
+    @property
+    def _said(self) -> str:
+        absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
+        value = "" if absent else f" = {brief(self.value)}"
+        return f"{one_line(self.key)}{value}: {self.rule}"
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
         return SceneError, (self.file, self.key, self.value, self.rule, self.others)  # worker processes send it home

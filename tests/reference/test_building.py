@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -77,11 +79,13 @@ def test_the_lines_of_a_building_have_its_numbers_with_their_units() -> None:
     assert describe_building(shear_building()).lines == [
         "Building fig3-I[bodies changed, isolator changed]: 6 bodies, weight 16.68 MN, "
         "1.39 MN on each of 12 supports (equal dead load)",
+        "  isolator: radius 2.2 m, no travel stated, supports over 19.32 m along x and 19.32 m along y",
         "  periods on the isolator, without friction: 3.02, 0.311, 0.163, 0.117, 0.0969, 0.0883 s along x; "
         "2.99, 0.157, 0.0819, 0.0585, 0.0485, 0.0442 s along y",
         "  periods above a fixed base: 0.605, 0.207, 0.131, 0.102, 0.0897 s along x; "
         "0.302, 0.104, 0.0657, 0.0511, 0.0448 s along y",
         "  damping of these modes: 1.42, 4.15, 6.55, 8.41, 9.59 % along x and y",
+        "  friction: 0.05 at every speed",
         "  peak of the ground: 1.41 m/s^2 = 0.144 g",
     ]
 
@@ -92,6 +96,40 @@ def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
     stiffer = scene.with_values({"bodies.1.stiffness": [1e9, 1e9], "name": "other"})
     lines = word_buildings([describe_building(each) for each in (*scenes, stiffer)])
     assert lines[0].startswith("Building job 2, job 4, job 1: 6 bodies")
-    assert lines[4] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
-    assert lines[5].startswith("Building other: 6 bodies")
-    assert len(lines) == 10
+    assert lines[6] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
+    assert lines[7].startswith("Building other: 6 bodies")
+    assert len(lines) == 14
+
+
+def test_buildings_that_differ_in_friction_alone_have_a_line_of_it_for_each() -> None:
+    scene = shear_building()
+    laws = {
+        "lower bound": {"slow": 0.03, "fast": 0.06, "rate": 50.0},
+        "upper bound": {"slow": 0.045, "fast": 0.09, "rate": 50.0},
+    }
+    scenes = [scene.with_values({"isolator.friction": law, "name": name}) for name, law in laws.items()]
+    lines = word_buildings([describe_building(each) for each in (*scenes, scenes[0])])
+    assert lines[0].startswith("Building lower bound, upper bound: 6 bodies")
+    assert lines[5:7] == [
+        "  friction: 0.03 at rest, 0.06 at high speed, rate 50 s/m (lower bound)",
+        "  friction: 0.045 at rest, 0.09 at high speed, rate 50 s/m (upper bound)",
+    ]
+    many = [scene.with_values({"isolator.friction": value}) for value in (0.05, 0.02, 0.07, 0.03)]
+    assert word_buildings([replace(describe_building(each), name="one") for each in many])[5:6] == [
+        "  friction: 0.02 to 0.07 at every speed"
+    ]
+
+
+def test_a_building_is_said_with_what_may_be_mistyped() -> None:
+    heights = {f"bodies.{number}.height": 3.0 * number + 2.85 for number in range(FLOORS + 1)}
+    places = [[-14.0, -8.0], [14.0, -8.0], [0.0, 8.0]]
+    isolator = {"isolator.travel": 0.4, "isolator.supports": places, "isolator.ring": None}
+    building = describe_building(shear_building().with_values({**heights, **isolator}))
+    assert building.lines[1:3] == [
+        "  isolator: radius 2.2 m, travel 0.4 m, supports over 28 m along x and 16 m along y",
+        "  heights above the sliding contact: 0.5, 3.5, 6.5, 9.5, 12.5, 15.5 m",
+    ]
+    lubricated = {"isolator.friction": None, "isolator.lubrication": 0.5, "isolator.radius": np.inf}
+    lines = describe_building(shear_building().with_values(lubricated)).lines
+    assert "  lubrication: 0.5 s/m" in lines
+    assert lines[1].startswith("  isolator: plane, no travel stated")

@@ -24,6 +24,7 @@ from comparison.analyses.ensemble.governing import (
     Choice,
     choose_motions,
     expected_count,
+    largest_count,
     parse_engine_option,
 )
 from comparison.analyses.ensemble.limits import (
@@ -63,7 +64,7 @@ from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.costs import STARTING, WRITING
+from comparison.study.costs import STARTING, WRITING, wall_seconds
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
 from comparison.verdicts import MET
 from reference.problem import Family, SceneError
@@ -109,12 +110,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks = ensemble.equation_tasks()
     first = expected_choices(members, asked)
-    later = sum(task.seconds for task in ensemble.engine_tasks([Choice(member, ()) for member in first]))
-    seconds = sum(task.seconds for task in tasks) + later
-    count = f"{len(members)} motions by the equations, about {len(first)} by the engine"
+    later = ensemble.engine_tasks([Choice(member, ()) for member in first])
     jobs = number_of_jobs(options)
-    wall = f"about {STARTING + seconds / jobs + WRITING:.0f} s with {jobs} worker{'' if jobs == 1 else 's'}"
-    console.print(f"{count}: {wall}.")
+    seconds = sum(wall_seconds([task.seconds for task in each], jobs) for each in (tasks, later))
+    engine = f"at most {most}" if (most := largest_choices(members, asked)) > len(first) else f"{len(first)}"
+    workers = f"{jobs} worker{'' if jobs == 1 else 's'}"
+    wall = f"about {STARTING + seconds + WRITING:.0f} s on idle cores with {workers}"
+    console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
     if ensemble.spatial and asked != 0:
         for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
             console.print(f"{line}.", soft_wrap=True, markup=False)
@@ -134,7 +136,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
             count = f"{len(chosen)} of {len(members)} motions"
-            console.print(f"Next: {count} by the {engine.title}, about {display.seconds_left:.0f} s.")
+            wall = wall_seconds([task.seconds for task in further], jobs) + WRITING
+            console.print(f"Next: {count} by the {engine.title}, about {wall:.0f} s on idle cores.")
         shown.append((chosen, bool(further)))
         return further
 
@@ -242,6 +245,15 @@ def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
     for own in group_by([member for member in members if member.scale == top], "structure").values():
         chosen += own[: expected_count(asked, len(own))]
     return chosen
+
+
+def largest_choices(members: Sequence[Member], asked: Asked) -> int:
+    """Return the most motions that the engine may compute."""
+    if asked == MOST:
+        return len(members)
+    top = max(member.scale for member in members)
+    groups = group_by([member for member in members if member.scale == top], "structure").values()
+    return sum(largest_count(asked, own[0].scene, len(own)) for own in groups)
 
 
 def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:

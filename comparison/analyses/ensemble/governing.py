@@ -11,10 +11,12 @@ import numpy as np
 
 from comparison.analyses.ensemble.members import Member, group_by
 from comparison.cli.arguments import read_whole_number
-from reference.problem import SceneError
+from comparison.study.models import EXACT
+from reference.problem import Scene, SceneError
 
 if TYPE_CHECKING:
     from comparison.analyses.ensemble.analysis import Point
+    from comparison.analyses.ensemble.result import EnsembleResult
 
 ALL = "all"
 GOVERNING = {  # demands whose largest value chooses a motion, and the words for it; of a demand of bodies the largest
@@ -61,6 +63,14 @@ def expected_count(asked: Asked, motions: int) -> int:
     return min(count, motions)
 
 
+def largest_count(asked: Asked, scene: Scene, motions: int) -> int:
+    """Return the most motions of a structure that the engine may compute: every demand may choose another one."""
+    if asked is not None:
+        return expected_count(asked, motions)
+    absent = (len(scene.bodies) == 1) + (scene.support_places is None)  # no drift, no support forces
+    return min(len(GOVERNING) + 1 - absent, motions)
+
+
 def choose_motions(points: Sequence[Point], asked: Asked) -> list[Choice]:
     """The motions of the engine by the demands of the equations; with `all` at every scale, else at the largest."""
     if asked == MOST:
@@ -92,6 +102,22 @@ def _find_governing(points: Sequence[Point]) -> Iterator[tuple[int, str]]:
     known = moved[moved > -math.inf]
     if len(known):
         yield int(np.argmin(np.abs(moved - np.median(known)))), MEDIAN
+
+
+def governing_motions(ensemble: EnsembleResult, structure: str) -> list[str]:
+    """Return the motions of a structure that govern by the equations at the largest scale, each once."""
+    found: dict[str, None] = {}
+    for quantity in GOVERNING:
+        bodies = {each.body for each in ensemble.curves if (each.structure, each.quantity) == (structure, quantity)}
+        values = [
+            (number.value, motion)
+            for body in bodies
+            for motion, number in ensemble.values_at_top(structure, quantity, body, EXACT.key).items()
+            if number.value is not None
+        ]
+        if values:
+            found[max(values)[1]] = None
+    return list(found)
 
 
 def _largest_demand(point: Point, quantity: str) -> float:

@@ -2,13 +2,16 @@
 Limits on the demands of an ensemble, and its demands against those of a stored ensemble.
 
 A limit is met where the demand is not beyond it by more than its numerical error. A demand is that of the stored
-ensemble where it differs by no more than a tolerance and both numerical errors.
+ensemble where it differs by no more than a tolerance and both numerical errors. A demand that the engine alone has is
+judged over the motions that it computed, where those that govern by the equations are among them. A motion that
+reached the travel has a displacement of at least the travel.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from comparison.analyses.ensemble.governing import governing_motions
 from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
 from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.rows import labels, place_of
@@ -24,7 +27,7 @@ from comparison.verdicts import (
     word_counts,
     word_verdict,
 )
-from reference.problem import Scene
+from reference.problem import Outcome, Scene
 from reference.problem.acceptance import DemandLimits
 from reference.support.arguments import Range
 from reference.support.scene_error import printable
@@ -32,10 +35,14 @@ from reference.support.scene_error import printable
 KEY = "acceptance.demands."
 MEAN, LARGEST = "mean", "largest"
 UNITS = {"displacement": "m", "uplift": "m"}  # of the limits; those of the others are pure numbers
+NAMED = 3  # motions that a reason names
 COUNTED = "stops"  # a number of events, of which a tolerance says nothing
 WITHIN = Range(0.0, 10.0)  # tolerance of a comparison with a stored ensemble
 WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)
-NOT_COMPUTED = "no model that was computed has it; the spatial engine needs supports, heights and sizes of bodies"
+NOT_COMPUTED = (
+    "no model that was computed has it; the spatial engine has it without --engine 0, and needs supports, heights and "
+    "sizes of bodies"
+)
 NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"
 
 
@@ -47,7 +54,7 @@ class DemandCheck:
     key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words, with the
     statistic and the motions. found, stated: in `unit`; None without a number. excess: found less stated; of a limit 0
     below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
-    compared, "" otherwise.
+    compared, "" otherwise. is_least: whether the demand is larger than `found` by an unknown amount.
     """
 
     key: str
@@ -60,10 +67,13 @@ class DemandCheck:
     unit: str = ""
     motion: str = ""
     reason: str = ""
+    is_least: bool = False
 
     @property
     def verdict(self) -> Verdict:
         """Met, not met or not compared."""
+        if self.is_least and not self.reason:
+            return NOT_MET
         return NOT_COMPARED if self.reason else judge_error(self.excess, self.allowed)
 
 
@@ -75,7 +85,9 @@ def word_check(check: DemandCheck) -> str:
     under = f" ({check.motion})" if check.motion else ""
     verdict = word_verdict(check.verdict, check.excess, check.stated, check.unit)
     verdict += f" ({check.reason})" if check.reason else ""
-    return f"{check.bound}: {check.what}: {found}{under}, {_stated_in_words(check)} {stated}: {verdict}"
+    least = "at least " if check.is_least else ""
+    verdict = verdict.replace("(by ", "(by more than ") if check.is_least else verdict
+    return f"{check.bound}: {check.what}: {least}{found}{under}, {_stated_in_words(check)} {stated}: {verdict}"
 
 
 def _stated_in_words(check: DemandCheck) -> str:
@@ -133,27 +145,84 @@ def _check_body(
         (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
     ]
     per = structure.weight if key == "base_shear" else 1.0
-    by = "" if model in ("", EXACT.key) else f" by the {model} engine"
-    count = f"{len(known)} of " if len(known) < ensemble.motions else ""
+    of_engine = model not in ("", EXACT.key)
+    governing = of_engine and len(values) < ensemble.motions
+    lacking = _lacking_governing(ensemble, structure, {motion for *_, motion in known}) if governing else ""
+    least, least_motion = _least_by_travel(ensemble, structure, key, statistic, values)
+    is_least, count = least >= limit, len(values) if least >= limit else len(known)
     what = "base shear over the weight" if key == "base_shear" else title_of(key)
     what += f" {place}" if (place := place_of(structure, key, body)) else ""
-    what += f", {statistic} of {count}{motions_in_words(ensemble.motions)}{by}"
+    what += f", {_statistic_in_words(ensemble, statistic, count, model if of_engine else '', governing, not lacking)}"
     what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
-    lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)
-    reason = f"{lacking} {'motion has' if lacking == 1 else 'motions have'} no value" if lacking else ""
+    unit, ended = UNITS.get(key, ""), len(values) - len(known)
+    reason = f"{ended} {'motion has' if ended == 1 else 'motions have'} no value" if ended else lacking
+    if is_least:
+        return DemandCheck(*about, least, limit, least - limit, 0.0, unit, least_motion, is_least=True)
+    reason += f"; with the travel there at least {least:.4g} m" if statistic == MEAN and least > -math.inf else ""
     if not known:
         reason = reason if values else "heights of the bodies are needed" if key == "drift_ratio" else NOT_COMPUTED
-        return DemandCheck(*about, None, limit, unit=UNITS.get(key, ""), reason=reason)
-    if statistic == MEAN:
+        return DemandCheck(*about, None, limit, unit=unit, reason=reason)
+    if statistic == MEAN and not governing:
         found, error, motion = *(sum(part) / len(known) / per for part in list(zip(*known))[:2]), ""
     else:
         value, error, motion = max(known)
         found, error = value / per, error / per
     excess = max(found - limit, 0.0)
-    if statistic == LARGEST and excess > error:  # whatever the others have
+    if excess > error and statistic == LARGEST:  # whatever the others have
         reason = ""
-    return DemandCheck(*about, found, limit, excess, error, UNITS.get(key, ""), motion, reason)
+    elif excess > error and governing and not reason:  # the others can make the mean smaller
+        reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
+    return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
+
+
+def _statistic_in_words(
+    ensemble: EnsembleResult, statistic: str, known: int, model: str, part: bool, governing: bool
+) -> str:
+    """
+    Return the statistic and the motions that a limit is on.
+
+    model: of the engine, where it alone has the demand. part: whether it computed a part of the motions; governing:
+    those that govern among them.
+    """
+    whole = motions_in_words(ensemble.motions)
+    if part:
+        which = " (those that govern among them)" if governing else ""
+        on = ", for the mean" if statistic == MEAN else ""
+        return f"largest in the {known} of {whole} that the {model} engine computed{which}{on}"
+    count = f"{known} of " if known < ensemble.motions else ""
+    return f"{statistic} of {count}{whole}" + (f" by the {model} engine" if model else "")
+
+
+def _lacking_governing(ensemble: EnsembleResult, structure: Structure, computed: set[str]) -> str:
+    """Return why motions that the engine computed say nothing of the others; "" where those that govern are there."""
+    moved = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+    if ended := [motion for motion, number in moved.items() if number.value is None]:
+        return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
+    if lacking := [motion for motion in governing_motions(ensemble, structure.name) if motion not in computed]:
+        return f"{_name_motions(lacking)} govern{'s' * (len(lacking) == 1)} by the equations: --engine all"
+    return ""
+
+
+def _name_motions(motions: Sequence[str]) -> str:
+    return ", ".join(motions) if len(motions) <= NAMED else f"{len(motions)} motions"
+
+
+def _least_by_travel(
+    ensemble: EnsembleResult, structure: Structure, key: str, statistic: str, values: Mapping[str, Statistic]
+) -> tuple[float, str]:
+    """Return the least that a displacement is as motions reached the travel, -inf if none did, and their names."""
+    travel = structure.building.travel if structure.building else None
+    stripe = ensemble.stripe(structure.name, "displacement")
+    ended = [motion for motion, number in values.items() if number.value is None]
+    if key != "displacement" or travel is None or stripe is None or Outcome.TRAVEL_REACHED not in stripe.reasons:
+        return -math.inf, ""
+    alone = len(stripe.reasons) == 1
+    if statistic == LARGEST:
+        return travel, _name_motions(ended) if alone else ""
+    if not alone:
+        return -math.inf, ""
+    return sum(travel if each.value is None else each.value for each in values.values()) / len(values), ""
 
 
 def _values_at_top(

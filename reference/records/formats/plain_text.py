@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -82,8 +82,18 @@ def read_plain_text(
     return evenly_spaced(FORMAT, spacing, factor * np.array(values), notes=tuple(notes))
 
 
-def propose_line(text: str, name: str) -> str:
-    """Return what to write for a plain text, with what its header states of step and unit; "" for no numbers."""
+class Proposal(NamedTuple):
+    """What to state of a plain text: step, unit, skip, columns from 1, and which of them the file does not say."""
+
+    step: float
+    unit: str
+    skip: int
+    columns: tuple[int, ...]  # () for all values of a line in their order
+    missing: tuple[str, ...]
+
+
+def propose_options(text: str) -> Proposal | str:
+    """Return what to state of a plain text, with what its header states of step and unit; a sentence for no record."""
     lines = text.splitlines()
     start = _first_data_line(lines)
     if start is None:
@@ -99,14 +109,28 @@ def propose_line(text: str, name: str) -> str:
     step, unit = _read_step(header), NAMED_UNIT.search(header)
     known = step if step is not None else time
     stated = unit[0].strip("()[]") if unit else None
-    parts = [f"file = {quote_name(name)}", f"step = {0.01 if known is None else known:g}", f'unit = "{stated or "g"}"']
-    parts += [f"skip = {start}"] if start else []
     side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MOST_COLUMNS
     alone = side_by_side and not any(map(COUNT_AND_STEP.fullmatch, lines[:start]))
-    parts += ["column = 2"] if time is not None else ["column = 1"] if alone else []
-    missing = [word for word, value in (("step", known), ("unit", stated)) if value is None]
-    guess = f", with the {' and the '.join(missing)} of your source, which the file does not state" if missing else ""
-    return f"write record = {{{', '.join(parts)}}}{guess}"
+    first = 2 if time is not None else 1
+    columns = tuple(range(first, min(len(rows[0]), first + 2) + 1)) if time is not None or alone else ()
+    missing = tuple(word for word, value in (("step", known), ("unit", stated)) if value is None)
+    return Proposal(0.01 if known is None else known, stated or "g", start, columns, missing)
+
+
+def propose_line(text: str, name: str) -> str:
+    """Return what to write for a plain text in a scene; for no record why it is none."""
+    proposal = propose_options(text)
+    if isinstance(proposal, str):
+        return proposal
+    parts = [f"file = {quote_name(name)}", f"step = {proposal.step:g}", f'unit = "{proposal.unit}"']
+    parts += [f"skip = {proposal.skip}"] if proposal.skip else []
+    parts += [f"column = {proposal.columns[0]}"] if proposal.columns else []
+    return f"write record = {{{', '.join(parts)}}}{word_guess(proposal.missing)}"
+
+
+def word_guess(missing: Sequence[str]) -> str:
+    """Return which numbers of a proposal are not those of the file; "" for none."""
+    return f", with the {' and the '.join(missing)} of your source, which the file does not state" if missing else ""
 
 
 def _first_data_line(lines: Sequence[str]) -> int | None:

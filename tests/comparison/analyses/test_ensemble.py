@@ -17,7 +17,8 @@ from terminal_tables import rows_under
 
 import reference
 from comparison.analyses.ensemble import analysis, governing, quantities, statistics
-from comparison.analyses.ensemble.command import CHECKED, FILES, main
+from comparison.analyses.ensemble.command import CHECKED, FILES, largest_choices, main
+from comparison.analyses.ensemble.governing import largest_count
 from comparison.analyses.ensemble.members import SCALE, Member, members_of
 from comparison.analyses.ensemble.rows import labels
 from comparison.analyses.ensemble.table import table_text
@@ -357,7 +358,7 @@ def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest
     assert run("mine.toml", "--suite", "peer", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
     said = capsys.readouterr().out
     assert "2 motions, paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
-    assert "4 motions by the equations, about 1 by the engine" in said
+    assert "4 motions by the equations, 1 by the engine: about" in said
     assert "The motions last 1.95 to 1.95 s. Nothing was computed." in said
     assert not list(Path().glob("out*"))
 
@@ -445,6 +446,30 @@ def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypa
         assert (said.count("two bodies: 3 motions."), said.count("Next: 1 of 3")) == (1, following)
         assert said.count("The translational engine computed: m2 (largest displacement") == 1
         assert (len(content()["engine"]["motions"]), content()["engine"]["tolerance"]) == (1, 0.01)
+
+
+def test_the_plan_and_the_line_before_the_engine_count_the_same_seconds(folder, capsys, monkeypatch):
+    """On idle cores, whatever the equations took on this machine: a task of 100 s is not shared by two workers."""
+    monkeypatch.setattr(
+        "comparison.analyses.ensemble.analysis.seconds_per_motion",
+        lambda scene, model: 10.0 if model.side == "reference" else 100.0,
+    )
+    words = ("mine.toml", "--suite", "suite", "--jobs", "2")
+    assert run(*words, "--plan") == 0
+    said = capsys.readouterr().out
+    assert "3 motions by the equations, 3 by the engine: about 214 s on idle cores with 2 workers.\n" in said
+    assert run(*words, "--engine", "1") == 0
+    assert "Next: 1 of 3 motions by the translational engine, about 104 s on idle cores.\n" in capsys.readouterr().out
+
+
+def test_the_plan_says_how_many_motions_the_engine_computes_at_most() -> None:
+    scene = load_scene("synthetic-pair")
+    assert largest_count(None, scene, 22) == 5
+    assert largest_count(None, scene.with_values({"isolator.supports": None}), 22) == 4
+    assert largest_count(None, scene, 3) == 3
+    assert [largest_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
+    members = [Member(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
+    assert largest_choices(members, None) == 10
 
 
 def test_structures_are_told_apart_by_the_values_that_differ() -> None:

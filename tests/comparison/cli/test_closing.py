@@ -100,7 +100,7 @@ def test_a_value_hardly_meant_is_named_once_with_its_first_scene(
     *building, warning = capsys.readouterr().out.splitlines()
     assert warning == "Warning: a: mass = 1e9: hardly meant"
     assert building[0].startswith("Building a, b: 2 bodies, weight 19.62 N"), "once what is alike"
-    assert len(building) == 5
+    assert len(building) == 8
 
 
 def test_the_warning_of_a_building_is_that_of_its_strongest_motion(capsys: pytest.CaptureFixture[str]) -> None:

@@ -55,6 +55,7 @@ def test_a_hint_has_the_meaning_of_the_key_and_not_only_its_letters(tmp_path):
     superstructure = "write [superstructure] damping = 0.05"
     assert superstructure in said_of(tmp_path, loading=f"{LOADING}[superstructure]\ndamping_ratio = 0.05\n").rule
     assert superstructure in said_of(tmp_path, body="modal_damping = 0.05\n").rule
+    assert said_of(tmp_path, body='name = "roof"\n').rule == "unknown key; write floor, its name"
     assert "write mass, kg" in said_of(tmp_path, body="weight = 0.05\n").rule
     assert (
         "support_"
@@ -93,5 +94,7 @@ def test_a_missing_loading_is_named(tmp_path):
     error = said_of(tmp_path, loading="")
     assert (error.key, error.value, error.others) == ("excitation", None, ())
     assert error.rule == (
-        'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"'
+        'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
+        "phase-resonance ensemble --suite brings it along"
     )
+    assert ": excitation: the table [excitation] is missing" in str(error), "no value is shown where there is none"

@@ -19,7 +19,7 @@ def test_what_is_no_file_or_text_of_a_scene_is_one_line():
         TEXT.replace("[isolator]", "[isolator"): "file = ",
         TEXT.replace("20.0", f"{11 * '['}2.0{11 * ']'}"): "file = ",
         TEXT.replace("20.0", f"{9 * '['}2.0{9 * ']'}"): "duration = ",
-        BODILESS: "bodies = None: this key is required",
+        BODILESS: "bodies: this key is required",
         TEXT.replace("periods =", "period ="): "excitation.period = [0.9, 1.1]: unknown key; did you mean periods?",
         "bodies = []\n" + BODILESS: "bodies = []: List should have at least 1 item",
         b"\xff\xfe title": "file = ",

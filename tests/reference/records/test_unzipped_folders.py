@@ -91,6 +91,10 @@ def test_what_is_no_record_is_ignored_and_counted(tmp_path):
         "folders": 1,
     }
     assert "Ignored: 2 hidden files, 2 velocity" in listed.sentence
+    assert (
+        "1 search result, 2 texts (licence.pdf, readme.txt), 1 folder, 1 other file (picture.png)." in listed.sentence
+    )
+    assert FILE not in listed.sentence, "no line is proposed for words"
     assert "x = A_H1.AT2, y = A_H2.AT2" in listed.sentence
 
 
@@ -139,6 +143,52 @@ def test_a_list_of_motions_overrides_names(tmp_path):
     assert "times 2.5, the factor of motions.csv" in family.scenes[0].excitation.origin
 
 
+TWO_COLUMNS = "0.5 -1.0\n1.5 2.0\n-0.5 1.0\n0.1 0.2\n"
+
+
+def test_a_plain_text_in_a_folder_is_named_with_the_line_that_takes_it(tmp_path):
+    place = make_folder(tmp_path / "suite", "A_H1.AT2", "A_H2.AT2")
+    (place / "Hollin.txt").write_text(TWO_COLUMNS)
+    (place / "readme.txt").write_text("words alone")
+    said = list_motions(str(place), place).sentence
+    assert (
+        "Ignored: 2 texts (Hollin.txt, readme.txt). Hollin.txt has numbers whose step and unit must be stated" in said
+    )
+    head, line = (said.partition(before)[2].partition('"')[0] for before in ('first line "', 'for this file "'))
+    assert (head, line) == ("name,x,y,z,factor,step,unit,skip,column", "Hollin,Hollin.txt,,,1,0.01,g,0,1 2")
+    assert "with the step and the unit of your source, which the file does not state; --write-motions" in said
+    (place / FILE).write_text(f"{head}\nA,A_H1.AT2,A_H2.AT2,,1\n{line}\n")
+    family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
+    assert family.labels == {"excitation.record.motion": ("A", "Hollin")}
+    np.testing.assert_allclose(family.scenes[1].record[:2, 1:], GRAVITY * np.array([[0.5, -1.0, 0.0], [1.5, 2.0, 0.0]]))
+    assert family.scenes[1].record[1, 0] == 0.01
+    (place / FILE).unlink()
+    for name in ("A_H1.AT2", "A_H2.AT2"):
+        (place / name).unlink()
+    assert f'for this file "{line}"' in str(refusal(list_motions, str(place), place, kind=SuiteError))
+
+
+def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
+    place = make_folder(tmp_path / "suite", "GM001.AT2")
+    (place / "two.txt").write_text(f"a header\n{TWO_COLUMNS}")
+    (place / "one.acc").write_text("1\n2\n3\n")
+    (place / "other.acc").write_text("4\n5\n6\n")
+    text = (
+        "name,x,y,z,factor,step,unit,skip,column\nfirst,two.txt,,,2,0.02,m/s^2,1,2 1\n"
+        "second,one.acc,other.acc,,1,0.01,gal,,\n"
+        "third,one.acc,,,1,0.01,gal,,1\nfourth,GM001.AT2,,,1,,,,\n"
+    )
+    (place / FILE).write_text(text)
+    family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
+    first, second, third, fourth = (scene.record[1, 1:].tolist() for scene in family.scenes)
+    np.testing.assert_allclose([first, second], [[4.0, 3.0, 0.0], [0.02, 0.05, 0.0]])
+    assert (third, fourth) == ([0.02, 0.0, 0.0], [0.2 * GRAVITY, 0.0, 0.0])
+    assert family.scenes[0].record[1, 0] == 0.02
+    listed = list_motions(str(place), place)
+    (place / FILE).write_text(motion_list_text(listed.motions))
+    assert list_motions(str(place), place) == listed, "what is written says the same"
+
+
 def test_a_written_list_says_what_was_paired(tmp_path):
     place = make_folder(tmp_path / "suite", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2", "B000.AT2", "B090.AT2")
     before = list_motions(str(place), place)
@@ -159,6 +209,13 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         ("name,x\n,A.AT2\n", "motions.csv: line 2: must have a name, and a file"),
         ("name,x,factor\na,A.AT2,0\n", "motions.csv: line 2: factor = '0': must be a number up to 1e+06, not 0"),
         ("name,x,factor\na,A.AT2,two\n", "motions.csv: line 2: factor = 'two'"),
+        ("name,x,column\na,A.AT2,one\n", "motions.csv: line 2: column = 'one': must be a whole number up to 10000"),
+        (
+            "name,x,y,column\na,A.AT2,A.AT2,1 2 3\n",
+            "line 2: column = '1 2 3': must be one column, or one for each of x, y",
+        ),
+        ("name,x,step\na,A.AT2,-\n", "motions.csv: line 2: step = '-': must be a number up to 1000, not 0"),
+        ("name,x,skip\na,A.AT2,-1\n", "motions.csv: line 2: skip = '-1': must be a whole number"),
         ("name,x\na,A.AT2\na,A.AT2\n", "motions.csv: line 3: 'a': two motions have one name"),
         ("name,x,x\na,A.AT2,A.AT2\n", "line 1: 'name,x,x': must have the columns name, x, y, z, factor, each once"),
         ("name,x,factor\na,A.AT2,1,5\n", "line 2: 4 cells, and 3 columns: a decimal comma needs quotes"),
