@@ -3,15 +3,18 @@
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
+from comparison.analyses.ensemble.statistics import stripe_over
 from comparison.study.models import EXACT, SPATIAL
+from reference.measures import Estimate
 from reference.problem import GRAVITY
 
 ENVELOPE = "envelope"
+NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over the bodies
 NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
 HEIGHTS = ("acceleration", "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
 PLATFORM = 1
@@ -20,7 +23,7 @@ WORST = 4  # column of the worst value, behind mean and fractiles
 
 @dataclass(frozen=True)
 class Shown:
-    """A demand of the table. bodies: of these the governing one; none for a demand of the isolator."""
+    """A demand of the table. bodies: of every motion the largest over these; none for a demand of the isolator."""
 
     name: str
     quantity: str
@@ -52,7 +55,7 @@ class DemandRow:
     name: str
     unit: str
     bound: str
-    where: str
+    where: str  # of the worst value
     cells: tuple[str, ...]  # mean, fractiles, the worst value
     motion: str  # of the worst value
     motions: str  # how many have the demand, and why others do not
@@ -85,14 +88,44 @@ def place_of(structure: Structure, quantity: str, body: int | None) -> str:
     return "isolator" if body == PLATFORM else f"below {floor_of(structure, body)}"
 
 
-def governing(rows: Sequence[Stripe]) -> Stripe | None:
-    """Of stripes of several bodies that with the largest mean, or the largest fractile that is known."""
+def largest_of_motions(
+    ensemble: EnsembleResult, structure: str, quantity: str, model: str, scale: float
+) -> dict[str, tuple[Estimate, int | None]]:
+    """
+    The largest value of a demand over the bodies, of every motion by one model, and the body that has it.
 
-    def size(row: Stripe) -> list[float]:
-        values = (each.value for each in (row.mean, *reversed(row.fractiles), row.smallest))
-        return [-math.inf if value is None else value for value in values]
+    NaN where a body has none.
+    """
+    found: dict[str, list[tuple[Estimate, int | None]]] = {}
+    for body, numbers in ensemble.values_by_body(structure, quantity, model, scale).items():
+        for motion, each in numbers.items():
+            value, error = (math.nan if part is None else part for part in (each.value, each.error))
+            found.setdefault(motion, []).append((Estimate(value, error), body))
+    return {motion: _largest_of(places) for motion, places in found.items()}
 
-    return max(rows, key=size, default=None)
+
+def _largest_of(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
+    """The largest of numbers with its place; its error is its largest change within all errors."""
+    if not all(math.isfinite(number.value) for number, _ in places):
+        return Estimate(math.nan, math.nan), None
+    number, body = max(places, key=lambda place: place[0].value)
+    high, low = (max(each.value + side * each.error for each, _ in places) for side in (1.0, -1.0))
+    return Estimate(number.value, max(high - number.value, number.value - low)), body
+
+
+def stripe_over_bodies(ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float) -> Stripe | None:
+    """Statistics of the largest value of every motion over the bodies; the body is that of the largest of all."""
+    own = ensemble.profile(structure.name, quantity, scale)
+    largest = largest_of_motions(ensemble, structure.name, quantity, EXACT.key, scale)
+    if not own or not largest:
+        return None
+    reasons = dict(min(own, key=lambda stripe: stripe.answered).reasons)
+    lost = sum(not math.isfinite(number.value) for number, _ in largest.values())
+    if (more := lost - sum(reasons.values())) > 0:
+        reasons[NOT_EVERYWHERE] = more
+    about = structure.name, quantity, None, EXACT.key, own[0].unit, scale
+    found = stripe_over(about, {motion: number for motion, (number, _) in largest.items()}, reasons)
+    return replace(found, body=largest[found.largest_motion][1]) if found.largest_motion else found
 
 
 def demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
@@ -135,10 +168,12 @@ def _rows_of(
 
 
 def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
-    """The statistics of a demand of a structure; of several bodies those of the governing one."""
+    """The statistics of a demand of a structure; over several bodies those of the largest value of every motion."""
+    if shown.bodies == "floors":
+        return stripe_over_bodies(ensemble, structure, shown.quantity, scale)
     own = ensemble.profile(structure.name, shown.quantity, scale)
     if shown.bodies:
-        return governing([each for each in own if shown.bodies == "floors" or each.body == PLATFORM])
+        return next((each for each in own if each.body == PLATFORM), None)
     if not own and scale == ensemble.top:
         return ensemble.stripe(structure.name, shown.quantity, None, SPATIAL.key)
     return own[0] if own else None
@@ -208,8 +243,8 @@ def _envelope_row(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named
         count = stripe.answered + sum(stripe.reasons.values())
         cells.append(cell_of(number, factor, column, count, shown.quantity))
     structure, stripe = at
-    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
     motion = worst_of(stripe)[1] if cells[-1] != "none" else ""
+    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" and motion else ""
     said = f"{motion}, {named[structure.name]}" if motion else ""
     return DemandRow(
         shown.name, unit_of_row(shown, structure)[0], ENVELOPE, where, tuple(cells), said, "", is_first=False

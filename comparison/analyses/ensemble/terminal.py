@@ -79,8 +79,7 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 def _cells_of_row(row: DemandRow) -> list[str]:
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
-    name = f"{row.name}, {row.where}" if row.where else row.name
-    return [name, row.unit, mean, *values, row.motion]
+    return [row.name, row.unit, mean, *values, f"{row.motion}, {row.where}" if row.where else row.motion]
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
