@@ -2,16 +2,17 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.statistics import stripe_over
+from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL
 from reference.measures import Estimate
-from reference.problem import GRAVITY
+from reference.problem import GRAVITY, Outcome
 
 ENVELOPE = "envelope"
 NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over the bodies
@@ -46,6 +47,10 @@ MAIN = (
     Shown("uplift of a support", "uplift"),
     Shown("residual displacement", "residual"),
 )
+
+
+OF_MOTION = ("displacement", "base_shear", "acceleration", "drift_ratio", "support_force_max", "support_force_min",
+             "residual")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -89,16 +94,21 @@ def place_of(structure: Structure, quantity: str, body: int | None) -> str:
 
 
 def largest_of_motions(
-    ensemble: EnsembleResult, structure: str, quantity: str, model: str, scale: float
+    ensemble: EnsembleResult,
+    structure: str,
+    quantity: str,
+    model: str,
+    scale: float,
+    bodies: Collection[int | None] | None = None,
 ) -> dict[str, tuple[Estimate, int | None]]:
     """
     The largest value of a demand over the bodies, of every motion by one model, and the body that has it.
 
-    NaN where a body has none.
+    NaN where a body has none. bodies: over these; over all without it.
     """
     found: dict[str, list[tuple[Estimate, int | None]]] = {}
     for body, numbers in ensemble.values_by_body(structure, quantity, model, scale).items():
-        for motion, each in numbers.items():
+        for motion, each in numbers.items() if bodies is None or body in bodies else ():
             value, error = (math.nan if part is None else part for part in (each.value, each.error))
             found.setdefault(motion, []).append((Estimate(value, error), body))
     return {motion: _largest_of(places) for motion, places in found.items()}
@@ -151,6 +161,41 @@ def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[
     return rows
 
 
+def _shown_of_motion(ensemble: EnsembleResult) -> list[Shown]:
+    """The demands of single motions that any structure has; base shears in kN, largest of the floors or stories."""
+    known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
+    return [next(each for each in reversed(MAIN) if _is_of_motion(each, name)) for name in OF_MOTION if name in known]
+
+
+def _is_of_motion(shown: Shown, quantity: str) -> bool:
+    return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
+
+
+def motion_heads(ensemble: EnsembleResult) -> list[str]:
+    """Heads of the demands in `motion_rows`, with their units."""
+    first = ensemble.structures[0]
+    return [f"{each.name}, {unit_of_row(each, first)[0]}" for each in _shown_of_motion(ensemble)]
+
+
+def motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
+    """Motion, bound, demands by the equations at the largest scale and outcome, of every motion of every bound."""
+    named, rows = labels(ensemble), []
+    ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
+    for structure in ensemble.structures:
+        columns = []
+        for shown in _shown_of_motion(ensemble):
+            numbers, factor = values_of(ensemble, structure, shown, EXACT.key), unit_of_row(shown, structure)[1]
+            columns.append({
+                motion: text_of(finite_or_none(number.value), number.error, factor)
+                for motion, (number, _) in numbers.items()
+            })  # fmt: skip
+        for motion in dict.fromkeys(motion for column in columns for motion in column):
+            outcome = ended.get((structure.name, motion, ensemble.top), Outcome.OK.value)
+            cells = [column.get(motion, "none") for column in columns]
+            rows.append((motion, named[structure.name], cells, outcome))
+    return rows
+
+
 def _rows_of(
     ensemble: EnsembleResult, shown: Shown, read: Callable[[Structure], Stripe | None], scale: float
 ) -> Iterator[DemandRow]:
@@ -177,6 +222,14 @@ def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: S
     if not own and scale == ensemble.top:
         return ensemble.stripe(structure.name, shown.quantity, None, SPATIAL.key)
     return own[0] if own else None
+
+
+def values_of(
+    ensemble: EnsembleResult, structure: Structure, shown: Shown, model: str
+) -> dict[str, tuple[Estimate, int | None]]:
+    """A demand of the table at the largest scale by motion, by one model, and the body that has it."""
+    bodies = {"": (None,), "platform": (PLATFORM,)}.get(shown.bodies)
+    return largest_of_motions(ensemble, structure.name, shown.quantity, model, ensemble.top, bodies)
 
 
 def unit_of_row(shown: Shown, structure: Structure) -> tuple[str, float]:

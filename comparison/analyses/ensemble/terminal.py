@@ -20,6 +20,7 @@ from comparison.analyses.ensemble.sentences import (
     motions_in_words,
     support_sentences,
     target_sentence,
+    travel_sentence,
 )
 from comparison.analyses.ensemble.trust import COLUMNS, trust_rows, trust_sentence
 from comparison.cli.terminal import new_table
@@ -93,7 +94,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
         ]
         bound = f"{named[structure.name]}: " if len(ensemble.structures) > 1 else ""
         say(console, [f"{bound}{line}" for line in lines if line])
-    say(console, [answer_sentence(ensemble)])
+    say(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
 
 
 def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
