@@ -186,7 +186,7 @@ def motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str
         for shown in _shown_of_motion(ensemble):
             numbers, factor = values_of(ensemble, structure, shown, EXACT.key), unit_of_row(shown, structure)[1]
             columns.append({
-                motion: text_of(finite_or_none(number.value), number.error, factor)
+                motion: text_of(finite_or_none(number.value), None, factor)
                 for motion, (number, _) in numbers.items()
             })  # fmt: skip
         for motion in dict.fromkeys(motion for column in columns for motion in column):
