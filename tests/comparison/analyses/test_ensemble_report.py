@@ -190,6 +190,10 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
         said = f"{effective.period:.3g} s, {100 * effective.damping:.3g} % at the mean displacement"
         assert said in text
     assert "roof" in text
+    for value in ("50", "30 along x, 20 along y; 20 along x, 25 along y", "7 × 5, all"):
+        assert f">{value}<" in text, value
+    assert sentences.plate_sentence(found.structures[0]) in text
+    assert f"phase-resonance {found.run['provenance']['phase-resonance']}" in text
     suite = {each.motion: each for each in found.suite}
     assert (suite["pulse 1"].magnitude, suite["pulse 2"].magnitude) == (6.9, None)
     assert suite["pulse 3"].factor == 1.3
@@ -336,6 +340,62 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
         row for row in rows.demand_rows(replace(found, curves=unknown), 1.0) if row.name == "largest drift ratio"
     )
     assert (row.cells[0], row.cells[4], row.where, row.motions) == ("none", "none", "", "3; 1 not at every place")
+
+
+def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
+    """Bounds whose largest drifts are in different stories; a bound without one leaves no place."""
+    one = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
+    one = with_demand(one, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009))
+    one = with_demand(one, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005))
+    other = replace(planted(), structures=one.structures)
+    other = with_demand(other, "drift_ratio", 2, exact=(0.001, 0.001, 0.002, 0.001))
+    other = with_demand(other, "drift_ratio", 3, exact=(0.006, 0.006, 0.007, 0.006))
+    curves = [*one.curves, *(replace(each, structure="c") for each in other.curves)]
+    stripes = [*one.stripes, *(replace(each, structure="c") for each in other.stripes)]
+    names = [*one.structures, replace(one.structures[0], name="c")]
+    both = replace(one, structures=names, curves=curves, stripes=stripes)
+
+    def envelope(found: EnsembleResult) -> rows.DemandRow:
+        shown = rows.demand_rows(found, 1.0)
+        return next(row for row in shown if (row.name, row.bound) == ("largest drift ratio", "envelope"))
+
+    row = envelope(both)
+    assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4, b", "below body 2")
+    lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
+    row = envelope(replace(both, curves=lost))
+    assert (row.cells[4], row.motion, row.where) == ("none", "", "")
+
+
+def test_a_motion_beyond_the_travel_has_its_instant_in_the_files_and_on_the_page(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "short.toml").write_text(SCENE.replace("travel = 0.5", "travel = 0.04"))
+    assert run("short.toml", "--engine", "0", "--out", "short") == 0
+    said = capsys.readouterr().out
+    stored = STORED.load(folder / "short")
+    assert stored is not None
+    assert {each.status for each in stored.ended} == {"travel reached"}
+    assert stored.outcomes["travel reached"] == len(stored.ended) > 0
+    assert all(each.instant is not None and 0.0 < each.instant < 2.0 for each in stored.ended)
+    line = sentences.travel_sentence(stored)
+    assert f" at {stored.ended[0].instant:.4g} s" in line
+    assert line in said
+    shown = (folder / "short" / "index.html").read_text(encoding="utf-8")
+    assert line in shown
+    assert "at least the travel, 40 mm" in shown
+
+
+@NO_CHROMIUM
+def test_rows_of_one_demand_stay_together_on_paper(folder: Path, browser: Browser) -> None:
+    sheet = as_printed(opened(browser, folder / "out" / "index.html", LAPTOP).page)
+    groups = sheet.evaluate("""[...document.querySelectorAll('.demands tbody')].map(body =>
+      [getComputedStyle(body).breakInside, ...[...body.rows].map(row => row.cells[0].textContent)])""")
+    assert len(groups) > 20
+    for inside, first, *others in groups:
+        assert (inside, bool(first), {*others} <= {""}) == ("avoid", True, True), (first, others)
+    last = sheet.evaluate("getComputedStyle(document.querySelector('#run')).breakBefore")
+    assert last == "avoid", "no last sheet of three lines"
+    sheet.close()
 
 
 def test_an_extended_smallest_force_shows_its_harmful_end() -> None:
