@@ -53,7 +53,7 @@ def build_result(
         target=target,
         suite=suite,
         supports=list(support_extremes(points)),
-        ended=ended_motions(points),
+        ended=list_ended_motions(points),
     )
 
 
@@ -67,7 +67,7 @@ def engine_motions(points: Points) -> list[result.ChosenMotion]:
     return [result.ChosenMotion(*at, each.reasons, statuses[at]) for at, each in zip(places, points.chosen)]
 
 
-def ended_motions(points: Points) -> list[result.EndedMotion]:
+def list_ended_motions(points: Points) -> list[result.EndedMotion]:
     """The motions by the equations with another outcome than ok, and when it arose."""
     return [
         result.EndedMotion(

@@ -8,7 +8,7 @@ from functools import partial
 
 from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
-from comparison.analyses.ensemble.statistics import stripe_over
+from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL
 from reference.measures import Estimate
@@ -93,7 +93,7 @@ def place_of(structure: Structure, quantity: str, body: int | None) -> str:
     return "isolator" if body == PLATFORM else f"below {floor_of(structure, body)}"
 
 
-def largest_of_motions(
+def find_largest_of_motions(
     ensemble: EnsembleResult,
     structure: str,
     quantity: str,
@@ -111,10 +111,10 @@ def largest_of_motions(
         for motion, each in numbers.items() if bodies is None or body in bodies else ():
             value, error = (math.nan if part is None else part for part in (each.value, each.error))
             found.setdefault(motion, []).append((Estimate(value, error), body))
-    return {motion: _largest_of(places) for motion, places in found.items()}
+    return {motion: _find_largest_place(places) for motion, places in found.items()}
 
 
-def _largest_of(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
+def _find_largest_place(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
     """The largest of numbers with its place; its error is its largest change within all errors."""
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
@@ -123,10 +123,10 @@ def _largest_of(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate
     return Estimate(number.value, max(high - number.value, number.value - low)), body
 
 
-def stripe_over_bodies(ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float) -> Stripe | None:
+def summarize_over_bodies(ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float) -> Stripe | None:
     """Statistics of the largest value of every motion over the bodies; the body is that of the largest of all."""
     own = ensemble.profile(structure.name, quantity, scale)
-    largest = largest_of_motions(ensemble, structure.name, quantity, EXACT.key, scale)
+    largest = find_largest_of_motions(ensemble, structure.name, quantity, EXACT.key, scale)
     if not own or not largest:
         return None
     reasons = dict(min(own, key=lambda stripe: stripe.answered).reasons)
@@ -134,7 +134,7 @@ def stripe_over_bodies(ensemble: EnsembleResult, structure: Structure, quantity:
     if (more := lost - sum(reasons.values())) > 0:
         reasons[NOT_EVERYWHERE] = more
     about = structure.name, quantity, None, EXACT.key, own[0].unit, scale
-    found = stripe_over(about, {motion: number for motion, (number, _) in largest.items()}, reasons)
+    found = summarize_motions(about, {motion: number for motion, (number, _) in largest.items()}, reasons)
     return replace(found, body=largest[found.largest_motion][1]) if found.largest_motion else found
 
 
@@ -161,7 +161,7 @@ def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[
     return rows
 
 
-def _shown_of_motion(ensemble: EnsembleResult) -> list[Shown]:
+def _select_of_motion(ensemble: EnsembleResult) -> list[Shown]:
     """The demands of single motions that any structure has; base shears in kN, largest of the floors or stories."""
     known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
     return [next(each for each in reversed(MAIN) if _is_of_motion(each, name)) for name in OF_MOTION if name in known]
@@ -174,7 +174,7 @@ def _is_of_motion(shown: Shown, quantity: str) -> bool:
 def motion_heads(ensemble: EnsembleResult) -> list[str]:
     """Heads of the demands in `motion_rows`, with their units."""
     first = ensemble.structures[0]
-    return [f"{each.name}, {unit_of_row(each, first)[0]}" for each in _shown_of_motion(ensemble)]
+    return [f"{each.name}, {unit_of_row(each, first)[0]}" for each in _select_of_motion(ensemble)]
 
 
 def motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
@@ -183,8 +183,8 @@ def motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str
     ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
     for structure in ensemble.structures:
         columns = []
-        for shown in _shown_of_motion(ensemble):
-            numbers, factor = values_of(ensemble, structure, shown, EXACT.key), unit_of_row(shown, structure)[1]
+        for shown in _select_of_motion(ensemble):
+            numbers, factor = read_values(ensemble, structure, shown, EXACT.key), unit_of_row(shown, structure)[1]
             columns.append({
                 motion: text_of(finite_or_none(number.value), None, factor)
                 for motion, (number, _) in numbers.items()
@@ -215,7 +215,7 @@ def _rows_of(
 def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
     """The statistics of a demand of a structure; over several bodies those of the largest value of every motion."""
     if shown.bodies == "floors":
-        return stripe_over_bodies(ensemble, structure, shown.quantity, scale)
+        return summarize_over_bodies(ensemble, structure, shown.quantity, scale)
     own = ensemble.profile(structure.name, shown.quantity, scale)
     if shown.bodies:
         return next((each for each in own if each.body == PLATFORM), None)
@@ -224,12 +224,12 @@ def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: S
     return own[0] if own else None
 
 
-def values_of(
+def read_values(
     ensemble: EnsembleResult, structure: Structure, shown: Shown, model: str
 ) -> dict[str, tuple[Estimate, int | None]]:
     """A demand of the table at the largest scale by motion, by one model, and the body that has it."""
     bodies = {"": (None,), "platform": (PLATFORM,)}.get(shown.bodies)
-    return largest_of_motions(ensemble, structure.name, shown.quantity, model, ensemble.top, bodies)
+    return find_largest_of_motions(ensemble, structure.name, shown.quantity, model, ensemble.top, bodies)
 
 
 def unit_of_row(shown: Shown, structure: Structure) -> tuple[str, float]:

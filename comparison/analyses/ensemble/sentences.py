@@ -302,11 +302,11 @@ def ground_sentence(ensemble: EnsembleResult) -> str:
         return ""
     return (
         f"Peaks from {peak_in_g(min(peaks))} to {peak_in_g(max(peaks))}, resultant of x and y, with the factors; "
-        f"{_span_of('duration', min(lengths), max(lengths))}."
+        f"{_word_span('duration', min(lengths), max(lengths))}."
     )
 
 
-def _span_of(what: str, low: float, high: float) -> str:
+def _word_span(what: str, low: float, high: float) -> str:
     """A range in seconds, or one value where both ends read alike."""
     ends = f"{low:.3g}", f"{high:.3g}"
     return f"{what} {ends[0]} s" if ends[0] == ends[1] else f"{what}s from {ends[0]} to {ends[1]} s"

@@ -49,10 +49,10 @@ def _stripes_of_points(points: Sequence[Point]) -> Iterator[result.Stripe]:
                 lost = [point for point in at_scale if not math.isfinite(point.estimate(quantity).value)]
                 lacking = Counter(point.estimate(quantity).reason or point.status for point in lost)
                 about = name, *name_points(quantity), own[0].model, unit_of_demand(quantity[0]), scale
-                yield stripe_over(about, numbers, lacking)
+                yield summarize_motions(about, numbers, lacking)
 
 
-def stripe_over(
+def summarize_motions(
     about: tuple[str, str, int | None, str, str, float], numbers: Mapping[str, Estimate], lacking: Mapping[str, int]
 ) -> result.Stripe:
     """

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from comparison.analyses.ensemble.quantities import SMALLEST, text_of
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
-from comparison.analyses.ensemble.rows import MAIN, Shown, labels, stripe_of, unit_of_row, values_of, worst_of
+from comparison.analyses.ensemble.rows import MAIN, Shown, labels, read_values, stripe_of, unit_of_row, worst_of
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 
@@ -107,7 +107,7 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
     quantity = shown.quantity
 
     def values(model: str) -> dict[str, float]:
-        found = values_of(ensemble, structure, shown, model)
+        found = read_values(ensemble, structure, shown, model)
         return {motion: each.value for motion, (each, _) in found.items() if math.isfinite(each.value)}
 
     by_model = {key: values(key) for key in (*COLUMNS, REGULARIZED.key)}

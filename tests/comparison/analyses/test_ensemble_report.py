@@ -36,7 +36,7 @@ from comparison.analyses.ensemble.result import (
     Structure,
     SupportExtremes,
 )  # fmt: skip
-from comparison.analyses.ensemble.statistics import stripe_over
+from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
 from reference.measures import Estimate
 from reference.problem import GRAVITY
@@ -299,7 +299,7 @@ def with_demand(found: EnsembleResult, quantity: str, body: int | None, **models
         for name, value in zip(names, values)
     ]
     numbers = {name: Estimate(value, 0.0) for name, value in zip(names, models["exact"])}
-    stripe = stripe_over(("b", quantity, body, "exact", "", 1.0), numbers, {})
+    stripe = summarize_motions(("b", quantity, body, "exact", "", 1.0), numbers, {})
     return replace(found, curves=[*found.curves, *curves], stripes=[*found.stripes, stripe])
 
 
