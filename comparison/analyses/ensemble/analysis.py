@@ -32,6 +32,7 @@ class Point:
     values: Mapping[Quantity, Estimate] = field(default_factory=dict)
     spectra: FloorSpectra | None = None
     forces: StoryForces | None = None
+    instant: float = math.nan  # when the status arose, s
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
@@ -58,7 +59,7 @@ class Points:
 
 
 Arguments = tuple[Scene, Model, float]
-Answer = tuple[Demands, StoryForces, FloorSpectra | None]  # what is kept of a motion
+Answer = tuple[Demands, StoryForces, FloorSpectra | None, float]  # what is kept of a motion; when it ended early, s
 
 
 def models_beside(member: Member, spatial: bool) -> list[Model]:
@@ -109,9 +110,9 @@ class Ensemble:
         found: Answer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
         if isinstance(found, str):
             return Point(member, model.key, found)
-        numbers, forces, spectra = found
+        numbers, forces, spectra, instant = found
         values = values_of_motion(member.scene, numbers, forces)
-        return Point(member, model.key, numbers.status, values, spectra, forces)
+        return Point(member, model.key, numbers.status, values, spectra, forces, instant)
 
     def _task(self, member: Member, model: Model) -> Task:
         scene = member.scene
@@ -129,4 +130,4 @@ def compute_demands(task: Arguments) -> Answer:
     """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
     motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **model.motion_settings)
-    return demands(motion), story_forces(motion), floor_spectra(motion) if model == EXACT else None
+    return demands(motion), story_forces(motion), floor_spectra(motion) if model == EXACT else None, motion.instant

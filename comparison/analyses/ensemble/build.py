@@ -14,7 +14,7 @@ from reference import describe_building
 from reference.building import horizontal_peak
 from reference.measures import effective_isolator
 from reference.measures.story_forces import heights_above_contact
-from reference.problem import GRAVITY, Scene
+from reference.problem import GRAVITY, Outcome, Scene
 from reference.records.motion_lists import Motion
 
 
@@ -53,6 +53,7 @@ def build_result(
         target=target,
         suite=suite,
         supports=list(support_extremes(points)),
+        ended=list_ended_motions(points),
     )
 
 
@@ -64,6 +65,17 @@ def engine_motions(points: Points) -> list[result.ChosenMotion]:
         statuses.setdefault((member.structure, member.motion, member.scale), {})[point.model] = point.status
     places = [(each.member.structure, each.member.motion, each.member.scale) for each in points.chosen]
     return [result.ChosenMotion(*at, each.reasons, statuses[at]) for at, each in zip(places, points.chosen)]
+
+
+def list_ended_motions(points: Points) -> list[result.EndedMotion]:
+    """The motions by the equations with another outcome than ok, and when it arose."""
+    return [
+        result.EndedMotion(
+            at.member.structure, at.member.motion, at.member.scale, at.status, finite_or_none(at.instant)
+        )
+        for at in points.equations
+        if at.status != Outcome.OK
+    ]
 
 
 def read_suite(members: Sequence[Member], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:
@@ -110,4 +122,7 @@ def read_building(scene: Scene) -> result.BuildingRead:
         travel=scene.isolator.travel,
         heights=None if heights is None else heights.tolist(),
         floors=[body.floor or "" for body in scene.bodies],
+        friction_rate=None if scene.lubricated else scene.dry_friction.rate,
+        stiffness=scene.stiffness.tolist(),
+        sizes=[None if body.size is None else [float(value) for value in body.size] for body in scene.bodies],
     )

@@ -9,7 +9,15 @@ from markupsafe import Markup
 from comparison.analyses.ensemble import panels, sentences
 from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult
-from comparison.analyses.ensemble.rows import HEIGHTS, demand_rows, floor_of, labels, profile_rows
+from comparison.analyses.ensemble.rows import (
+    HEIGHTS,
+    demand_rows,
+    floor_of,
+    labels,
+    motion_heads,
+    motion_rows,
+    profile_rows,
+)
 from comparison.analyses.ensemble.trust import COLUMNS, STATISTICS, extended_rows, trust_rows, trust_sentence
 from comparison.report.building import note_missing_part
 from comparison.report.page import lost_line, render_page, render_template
@@ -31,6 +39,9 @@ def _building_context(ensemble: EnsembleResult, say: Say) -> Context:
         "floor_of": floor_of,
         "isolator_sentence": sentences.isolator_sentence,
         "below_contact_sentence": sentences.below_contact_sentence,
+        "plate_sentence": sentences.plate_sentence(ensemble.structures[0]),
+        "plans_of": sentences.plans_of,
+        "not_modeled": sentences.NOT_MODELED,
     }
 
 
@@ -50,7 +61,10 @@ def _demands_context(ensemble: EnsembleResult, say: Say) -> Context:
         "rows": demand_rows(ensemble, ensemble.top),
         "definitions": sentences.DEFINITIONS,
         "outcomes_sentence": sentences.outcomes_sentence(ensemble),
-        "missing": sentences.all_missing_sentences(ensemble),
+        "missing": [
+            *sentences.all_missing_sentences(ensemble),
+            *filter(None, [sentences.travel_sentence(ensemble)]),
+        ],
         "panels": draw_panels(panels.isolator_panels(ensemble), say),
     }
 
@@ -84,7 +98,12 @@ def _supports_context(ensemble: EnsembleResult, say: Say) -> Context:
         "engine": ensemble.engine.model,
         "exact": EXACT.key,
         "support_sentences": sentences.support_sentences(ensemble),
+        "motions_of": partial(sentences.motions_of, ensemble),
     }
+
+
+def _motions_context(ensemble: EnsembleResult, say: Say) -> Context:
+    return {"heads": motion_heads(ensemble), "rows": motion_rows(ensemble)}
 
 
 def _engine_context(ensemble: EnsembleResult, say: Say) -> Context:
@@ -121,6 +140,7 @@ SECTIONS: tuple[tuple[Section, Callable[[EnsembleResult, Say], Context], Callabl
         _supports_context,
         lambda ensemble: bool(ensemble.supports),
     ),
+    (Section("Demands of every motion", folded=False, name="motions"), _motions_context, lambda ensemble: True),
     (
         Section("How far the simple models can be trusted", folded=False, name="trust"),
         _engine_context,

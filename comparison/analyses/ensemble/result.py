@@ -64,6 +64,9 @@ class BuildingRead:
     heights: Sequence[float] | None
     """heights of the centers of mass above the sliding contact, m; null unless the scene states all"""
     floors: Annotated[Sequence[str], "names of the bodies, empty where the scene gives none"] = ()
+    friction_rate: Annotated[float | None, "rate of the friction law, s/m; null if lubricated"] = None
+    stiffness: Annotated[Sequence[Sequence[float]], "of every story from the lowest, along x and y, N/m"] = ()
+    sizes: Annotated[Sequence[Sequence[float] | None], "of the bodies along x, y and z, m; null if not stated"] = ()
 
 
 @result
@@ -176,6 +179,17 @@ class SupportExtremes:
 
 
 @result
+class EndedMotion:
+    """A motion by the equations with another outcome than ok."""
+
+    structure: Annotated[str, "name"]
+    motion: Annotated[str, "name"]
+    scale: Annotated[float, "factor of the motion"]
+    status: Annotated[str, "outcome"]
+    instant: Annotated[float | None, "when it arose, s; null where it is not known"]
+
+
+@result
 class ChosenMotion:
     """A motion that the engine computed."""
 
@@ -264,6 +278,7 @@ class EnsembleResult:
     suite: Annotated[Sequence[GroundMotion], "the motions in their order"] = ()
     supports: Annotated[Sequence[SupportExtremes], "by model, structure and support"] = ()
     limits: Annotated[Sequence[LimitVerdict], "by structure; empty without [acceptance.demands] and --against"] = ()
+    ended: Annotated[Sequence[EndedMotion], "by structure; empty where all motions are ok"] = ()
 
     def __post_init__(self) -> None:
         require(len(self.structures) > 0, "structures must be at least one")
@@ -307,12 +322,18 @@ class EnsembleResult:
 
     def values_at_top(self, structure: str, quantity: str, body: int | None, model: str) -> dict[str, Statistic]:
         """Return one demand at the largest scale by motion, by one model."""
-        asked = structure, quantity, body, model
-        found = {}
+        return self.values_by_body(structure, quantity, model, self.top).get(body, {})
+
+    def values_by_body(
+        self, structure: str, quantity: str, model: str, scale: float
+    ) -> dict[int | None, dict[str, Statistic]]:
+        """Return a demand at a scale by body and motion, by one model."""
+        asked = structure, quantity, model
+        found: dict[int | None, dict[str, Statistic]] = {}
         for curve in self.curves:
-            if (curve.structure, curve.quantity, curve.body, curve.model) == asked and self.top in curve.scales:
-                at = list(curve.scales).index(self.top)
-                found[curve.motion] = Statistic(curve.values[at], curve.errors[at])
+            if (curve.structure, curve.quantity, curve.model) == asked and scale in curve.scales:
+                at = list(curve.scales).index(scale)
+                found.setdefault(curve.body, {})[curve.motion] = Statistic(curve.values[at], curve.errors[at])
         return found
 
 

@@ -2,16 +2,20 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 
 from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
+from comparison.analyses.ensemble.statistics import summarize_motions
+from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL
-from reference.problem import GRAVITY
+from reference.measures import Estimate
+from reference.problem import GRAVITY, Outcome
 
 ENVELOPE = "envelope"
+NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over the bodies
 NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
 HEIGHTS = ("acceleration", "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
 PLATFORM = 1
@@ -20,7 +24,7 @@ WORST = 4  # column of the worst value, behind mean and fractiles
 
 @dataclass(frozen=True)
 class Shown:
-    """A demand of the table. bodies: of these the governing one; none for a demand of the isolator."""
+    """A demand of the table. bodies: of every motion the largest over these; none for a demand of the isolator."""
 
     name: str
     quantity: str
@@ -45,6 +49,10 @@ MAIN = (
 )
 
 
+OF_MOTION = ("displacement", "base_shear", "acceleration", "drift_ratio", "support_force_max", "support_force_min",
+             "residual")  # fmt: skip
+
+
 @dataclass(frozen=True)
 class DemandRow:
     """One line of a table: a demand of one bound, or the envelope."""
@@ -52,7 +60,7 @@ class DemandRow:
     name: str
     unit: str
     bound: str
-    where: str
+    where: str  # of the worst value
     cells: tuple[str, ...]  # mean, fractiles, the worst value
     motion: str  # of the worst value
     motions: str  # how many have the demand, and why others do not
@@ -85,14 +93,49 @@ def place_of(structure: Structure, quantity: str, body: int | None) -> str:
     return "isolator" if body == PLATFORM else f"below {floor_of(structure, body)}"
 
 
-def governing(rows: Sequence[Stripe]) -> Stripe | None:
-    """Of stripes of several bodies that with the largest mean, or the largest fractile that is known."""
+def find_largest_of_motions(
+    ensemble: EnsembleResult,
+    structure: str,
+    quantity: str,
+    model: str,
+    scale: float,
+    bodies: Collection[int | None] | None = None,
+) -> dict[str, tuple[Estimate, int | None]]:
+    """
+    The largest value of a demand over the bodies, of every motion by one model, and the body that has it.
 
-    def size(row: Stripe) -> list[float]:
-        values = (each.value for each in (row.mean, *reversed(row.fractiles), row.smallest))
-        return [-math.inf if value is None else value for value in values]
+    NaN where a body has none. bodies: over these; over all without it.
+    """
+    found: dict[str, list[tuple[Estimate, int | None]]] = {}
+    for body, numbers in ensemble.values_by_body(structure, quantity, model, scale).items():
+        for motion, each in numbers.items() if bodies is None or body in bodies else ():
+            value, error = (math.nan if part is None else part for part in (each.value, each.error))
+            found.setdefault(motion, []).append((Estimate(value, error), body))
+    return {motion: _find_largest_place(places) for motion, places in found.items()}
 
-    return max(rows, key=size, default=None)
+
+def _find_largest_place(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
+    """The largest of numbers with its place; its error is its largest change within all errors."""
+    if not all(math.isfinite(number.value) for number, _ in places):
+        return Estimate(math.nan, math.nan), None
+    number, body = max(places, key=lambda place: place[0].value)
+    high, low = (max(each.value + side * each.error for each, _ in places) for side in (1.0, -1.0))
+    return Estimate(number.value, max(high - number.value, number.value - low)), body
+
+
+def summarize_over_bodies(ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float) -> Stripe | None:
+    """Statistics of the largest value of every motion over the bodies; the body is that of the largest of all."""
+    own = ensemble.profile(structure.name, quantity, scale)
+    largest = find_largest_of_motions(ensemble, structure.name, quantity, EXACT.key, scale)
+    if not own or not largest:
+        return None
+    reasons = dict(min(own, key=lambda stripe: stripe.answered).reasons)
+    lost = sum(not math.isfinite(number.value) for number, _ in largest.values())
+    if (more := lost - sum(reasons.values())) > 0:
+        reasons[NOT_EVERYWHERE] = more
+    about = structure.name, quantity, None, EXACT.key, own[0].unit, scale
+    found = summarize_motions(about, {motion: number for motion, (number, _) in largest.items()}, reasons)
+    return replace(found, body=largest[found.largest_motion][1]) if found.largest_motion else found
 
 
 def demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
@@ -118,6 +161,41 @@ def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[
     return rows
 
 
+def _select_of_motion(ensemble: EnsembleResult) -> list[Shown]:
+    """The demands of single motions that any structure has; base shears in kN, largest of the floors or stories."""
+    known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
+    return [next(each for each in reversed(MAIN) if _is_of_motion(each, name)) for name in OF_MOTION if name in known]
+
+
+def _is_of_motion(shown: Shown, quantity: str) -> bool:
+    return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
+
+
+def motion_heads(ensemble: EnsembleResult) -> list[str]:
+    """Heads of the demands in `motion_rows`, with their units."""
+    first = ensemble.structures[0]
+    return [f"{each.name}, {unit_of_row(each, first)[0]}" for each in _select_of_motion(ensemble)]
+
+
+def motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
+    """Motion, bound, demands by the equations at the largest scale and outcome, of every motion of every bound."""
+    named, rows = labels(ensemble), []
+    ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
+    for structure in ensemble.structures:
+        columns = []
+        for shown in _select_of_motion(ensemble):
+            numbers, factor = read_values(ensemble, structure, shown, EXACT.key), unit_of_row(shown, structure)[1]
+            columns.append({
+                motion: text_of(finite_or_none(number.value), None, factor)
+                for motion, (number, _) in numbers.items()
+            })  # fmt: skip
+        for motion in dict.fromkeys(motion for column in columns for motion in column):
+            outcome = ended.get((structure.name, motion, ensemble.top), Outcome.OK.value)
+            cells = [column.get(motion, "none") for column in columns]
+            rows.append((motion, named[structure.name], cells, outcome))
+    return rows
+
+
 def _rows_of(
     ensemble: EnsembleResult, shown: Shown, read: Callable[[Structure], Stripe | None], scale: float
 ) -> Iterator[DemandRow]:
@@ -135,13 +213,23 @@ def _rows_of(
 
 
 def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
-    """The statistics of a demand of a structure; of several bodies those of the governing one."""
+    """The statistics of a demand of a structure; over several bodies those of the largest value of every motion."""
+    if shown.bodies == "floors":
+        return summarize_over_bodies(ensemble, structure, shown.quantity, scale)
     own = ensemble.profile(structure.name, shown.quantity, scale)
     if shown.bodies:
-        return governing([each for each in own if shown.bodies == "floors" or each.body == PLATFORM])
+        return next((each for each in own if each.body == PLATFORM), None)
     if not own and scale == ensemble.top:
         return ensemble.stripe(structure.name, shown.quantity, None, SPATIAL.key)
     return own[0] if own else None
+
+
+def read_values(
+    ensemble: EnsembleResult, structure: Structure, shown: Shown, model: str
+) -> dict[str, tuple[Estimate, int | None]]:
+    """A demand of the table at the largest scale by motion, by one model, and the body that has it."""
+    bodies = {"": (None,), "platform": (PLATFORM,)}.get(shown.bodies)
+    return find_largest_of_motions(ensemble, structure.name, shown.quantity, model, ensemble.top, bodies)
 
 
 def unit_of_row(shown: Shown, structure: Structure) -> tuple[str, float]:
@@ -208,8 +296,8 @@ def _envelope_row(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named
         count = stripe.answered + sum(stripe.reasons.values())
         cells.append(cell_of(number, factor, column, count, shown.quantity))
     structure, stripe = at
-    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
     motion = worst_of(stripe)[1] if cells[-1] != "none" else ""
+    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" and motion else ""
     said = f"{motion}, {named[structure.name]}" if motion else ""
     return DemandRow(
         shown.name, unit_of_row(shown, structure)[0], ENVELOPE, where, tuple(cells), said, "", is_first=False

@@ -8,7 +8,9 @@ from comparison.analyses.ensemble.rows import MAIN, floor_of, labels, peak_in_g,
 from comparison.study.models import EXACT
 from comparison.wording import percent
 from reference.plausibility import implausible_drift
+from reference.problem import Outcome
 
+TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
 NAMED = 12  # motions that are named one by one
 FEW = 3  # and of a sentence that has other things to say
 DEFINITIONS = (
@@ -18,17 +20,33 @@ DEFINITIONS = (
     "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
     "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
     "16 %, 50 % and 84 % are fractiles over the motions (Hazen), and each motion has a value of its own. A motion "
-    "without a value, as one that reaches the rim or the travel, counts as worse than all others; a statistic that "
-    "rests on it is none. A fractile beyond the outermost motions is left out, as 16 % of three. The column “largest” "
-    "has the smallest value of a smallest force.",
-    "The envelope is in every column the worst of the bounds.",
+    "without a value, as one that reaches the rim or the travel, counts as the worst: all fractiles rest on that. Mean "
+    "and worst value are none with it, and so is a fractile that falls on it. A fractile beyond the outermost motions "
+    "is left out, as 16 % of three. The column “largest” has the smallest value of a smallest force.",
+    "Largest floor acceleration, drift and drift ratio are of every motion the largest over the floors or stories; "
+    "statistics are of these, and “where” is the place of the largest of all. The tables over the height, and a limit "
+    "on a mean, take each floor or story by itself.",
+    "The envelope is in every column the worst of the bounds; motion, bound and place are those of its largest value.",
     "All supports carry the same dead load, but for eccentric masses. Support forces by the equations are statics: "
     "normal force, overturning moment and displaced weight on equally stiff supports under a stiff platform, negative "
-    "where a support would lift off. Those of the spatial engine are its contact forces.",
+    "where a support would lift off. The displaced weight is the moment of the weight about the middle of the spheres, "
+    "which stay where they are while the platform moves: the weight W times (R / ρ times the displacement, and the "
+    "drift of the floors), R = ρ + the radius of the sphere. Those of the spatial engine are its contact forces.",
     "The overturning moment is that of the forces of inertia about the sliding contact, or about the floor below.",
     "Effective period and damping are those of a bilinear loop (ASCE/SEI 7, chapter 17) with the friction at high "
     "speed. Damping of the links acts in the superstructure; friction has no part in the modal damping.",
     "The residual displacement is where the platform comes to rest under Coulomb friction.",
+)
+
+
+NOT_MODELED = (  # docs/guide/building.md says more of each, and begins with these words
+    "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
+    "pendulums.",
+    "Unequal dead loads of the supports other than those that follow from the places of supports and centers of mass.",
+    "Bearings of different kind, radius or friction under one platform.",
+    "A damper beside the bearings: `lubrication` in place of `friction` is a viscous one.",
+    "Accidental eccentricity, unless `offset` of the bodies states it.",
+    "Scaling by RotD100 as codes ask for it: `--target` fits the geometric mean of x and y.",
 )
 
 
@@ -48,13 +66,17 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
     """Return mean and largest displacement and base shear of the bound in which each is larger."""
     said = []
     for quantity, words in (("displacement", "isolator displacement"), ("base_shear", "base shear")):
-        found = []
+        found, unknown = [], []
         for structure in ensemble.structures:
             stripe = ensemble.stripe(structure.name, quantity)
             if stripe is not None and stripe.largest.value is not None:
                 per = structure.weight if quantity == "base_shear" else 1.0
                 found.append((stripe.largest.value / per, structure, stripe))
+            elif stripe is not None:
+                unknown.append(structure)
+        reached = _reached_sentence(ensemble) if quantity == "displacement" else ""
         if not found:
+            said += [f"{words}: {reached}"] if reached else []
             continue
         most, structure, stripe = max(found, key=lambda each: each[0])
         unit, factor = unit_for_reading(quantity, structure.weight)
@@ -62,8 +84,10 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
         bound = f"{labels(ensemble)[structure.name]}, " if len(ensemble.structures) > 1 else ""
         travel = structure.building.travel if structure.building else None
         share = f" = {percent(most / travel)} of the travel" if quantity == "displacement" and travel else ""
+        bound = bound.replace(", ", " alone, ") if unknown else bound
         where = f"{bound}{stripe.largest_motion}"
-        said.append(f"{words}: mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
+        reached = f"{reached}; " if reached else ""
+        said.append(f"{words}: {reached}mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
     lost = {each.name: missing_motions(ensemble, each) for each in ensemble.structures}
     bounds = [
         f"{', '.join(motions) if len(motions) <= FEW else motions_in_words(len(motions))} ({labels(ensemble)[name]})"
@@ -71,9 +95,53 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
         if motions
     ]
     lacking = f"No value under {'; '.join(bounds)}. " if bounds else ""
-    if not said:
-        return f"{lacking}No demand is known of all motions. {outcomes_sentence(ensemble)}"
-    return f"{lacking}{'; '.join(said)}. {outcomes_sentence(ensemble)}".replace("isolator", "Isolator", 1)
+    if not any("mean" in each for each in said):
+        said.append("no demand is known of all motions")
+    text = "; ".join(said)
+    return f"{lacking}{text[:1].upper()}{text[1:]}. {outcomes_sentence(ensemble)}"
+
+
+def _reached_sentence(ensemble: EnsembleResult) -> str:
+    """Return at which bounds the displacement is at least the travel; "" where none reaches it."""
+    named = labels(ensemble)
+    found: dict[float, list[str]] = {}
+    for structure in ensemble.structures:
+        stripe, building = ensemble.stripe(structure.name, "displacement"), structure.building
+        if stripe is not None and building is not None and building.travel and TRAVEL_REACHED in stripe.reasons:
+            found.setdefault(building.travel, []).append(named[structure.name])
+
+    def bounds_of(bounds: list[str]) -> str:
+        return f" ({', '.join(bounds)})" if len(ensemble.structures) > 1 else ""
+
+    return "; ".join(
+        f"at least the travel, {text_of(travel, None, 1e3)} mm{bounds_of(bounds)}" for travel, bounds in found.items()
+    )
+
+
+def plans_of(structure: Structure) -> str:
+    """Return the sizes of the bodies in plan from the platform up, m; once where all are alike."""
+    sizes = structure.building.sizes if structure.building else ()
+    read = ["not stated" if size is None else f"{size[0]:.4g} × {size[1]:.4g}" for size in sizes]
+    return f"{read[0]}, all" if len({*read}) == 1 < len(read) else "; ".join(read)
+
+
+def travel_sentence(ensemble: EnsembleResult) -> str:
+    """Return when which motions reach the travel at the largest scale, and how to learn what they need; or ""."""
+    bounds = []
+    for structure in ensemble.structures:
+        ended = [
+            f"{each.motion}{'' if each.instant is None else f' at {each.instant:.4g} s'}"
+            for each in ensemble.ended
+            if (each.structure, each.scale, each.status) == (structure.name, ensemble.top, TRAVEL_REACHED)
+        ]
+        if ended:
+            more = f" and {len(ended) - NAMED} more" if len(ended) > NAMED else ""
+            bound = f" ({labels(ensemble)[structure.name]})" if len(ensemble.structures) > 1 else ""
+            bounds.append(f"{', '.join(ended[:NAMED])}{more}{bound}")
+    if not bounds:
+        return ""
+    rule = "A run without `travel` gives the displacement that is needed."
+    return f"The travel is reached under {'; '.join(bounds)}. {rule}"
 
 
 def missing_motions(ensemble: EnsembleResult, structure: Structure) -> list[str]:
@@ -148,11 +216,31 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
         parts = list(_support_parts(ensemble, rows))
         if not parts:
             continue  # no motion has a value
-        counts = {labels(ensemble)[each.structure]: each.motions for each in rows}
-        of = f"{', '.join(f'{count} motions of {bound}' for bound, count in counts.items())}"
-        of = f"{motions_in_words(rows[0].motions)} of each bound" if len({*counts.values()}) == 1 else of
-        said.append(f"{by}, {of}: {'; '.join(parts)}.")
+        counts = {labels(ensemble)[each.structure]: motions_of(ensemble, each) for each in rows}
+        of = ", ".join(f"{count} of the {bound}" for bound, count in counts.items())
+        of = next(iter(counts.values())) if len({*counts.values()}) == 1 else of
+        of += " of each bound" if len({*counts.values()}) == 1 < len(counts) else ""
+        lacking = model == EXACT.key and any(each.motions < ensemble.motions for each in rows)
+        unknown = " The worst may be under a motion without a value." if lacking else ""
+        said.append(f"{by}, {of}: {'; '.join(parts)}.{unknown}")
     return said
+
+
+def motions_of(ensemble: EnsembleResult, supports: SupportExtremes) -> str:
+    """How many motions the extremes of a support are of, and of how many."""
+    some = f"{supports.motions} of " if supports.motions < ensemble.motions else ""
+    return f"{some}{motions_in_words(ensemble.motions)}"
+
+
+def plate_sentence(structure: Structure) -> str:
+    """Return which plate moves, and so what loads the supports; "" of a flat slider or without supports."""
+    building = structure.building
+    if building is None or building.radius is None or not building.supports:
+        return ""
+    return (
+        "Fixed spheres below, depressions in the platform’s underside: the displaced weight W × displacement loads the "
+        "supports."
+    )
 
 
 def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
@@ -214,5 +302,11 @@ def ground_sentence(ensemble: EnsembleResult) -> str:
         return ""
     return (
         f"Peaks from {peak_in_g(min(peaks))} to {peak_in_g(max(peaks))}, resultant of x and y, with the factors; "
-        f"durations from {min(lengths):.3g} to {max(lengths):.3g} s."
+        f"{_word_span('duration', min(lengths), max(lengths))}."
     )
+
+
+def _word_span(what: str, low: float, high: float) -> str:
+    """A range in seconds, or one value where both ends read alike."""
+    ends = f"{low:.3g}", f"{high:.3g}"
+    return f"{what} {ends[0]} s" if ends[0] == ends[1] else f"{what}s from {ends[0]} to {ends[1]} s"

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -45,23 +45,28 @@ def _stripes_of_points(points: Sequence[Point]) -> Iterator[result.Stripe]:
     for name, own in group_by(points, "member.structure").items():
         for quantity in quantities(own):
             for scale, at_scale in sorted(group_by(own, "member.scale").items()):
-                numbers = [point.estimate(quantity) for point in at_scale]
-                worst = -math.inf if quantity[0] in SMALLEST else math.inf
-                mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
-                fractiles = [
-                    result.DemandFractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)
-                ]
-                lost = [pair for pair in zip(numbers, at_scale) if not math.isfinite(pair[0].value)]
-                lacking = Counter(number.reason or point.status for number, point in lost)
+                numbers = {point.member.motion: point.estimate(quantity) for point in at_scale}
+                lost = [point for point in at_scale if not math.isfinite(point.estimate(quantity).value)]
+                lacking = Counter(point.estimate(quantity).reason or point.status for point in lost)
                 about = name, *name_points(quantity), own[0].model, unit_of_demand(quantity[0]), scale
-                answered = len(numbers) - lacking.total()
-                values = [number.value for number in numbers]
-                motions = [
-                    at_scale[values.index(each.value)].member.motion if each.value in values else ""
-                    for each in (largest, smallest)
-                ]
-                extremes = largest, smallest
-                yield result.Stripe(*about, answered, mean, fractiles, *extremes, dict(lacking), *motions)
+                yield summarize_motions(about, numbers, lacking)
+
+
+def summarize_motions(
+    about: tuple[str, str, int | None, str, str, float], numbers: Mapping[str, Estimate], lacking: Mapping[str, int]
+) -> result.Stripe:
+    """
+    Statistics of a demand over the motions.
+
+    about: first fields of a stripe. numbers: by motion. lacking: why motions have none, and how many each.
+    """
+    known, values = list(numbers.values()), [number.value for number in numbers.values()]
+    worst = -math.inf if about[1] in SMALLEST else math.inf
+    mean, *shares, largest, smallest = statistics(known, (*FRACTILES, 1.0, 0.0), worst)
+    fractiles = [result.DemandFractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
+    answered = len(known) - sum(lacking.values())
+    motions = [list(numbers)[values.index(each.value)] if each.value in values else "" for each in (largest, smallest)]
+    return result.Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking), *motions)
 
 
 def name_points(quantity: Quantity) -> tuple[str, int | None]:

@@ -20,6 +20,7 @@ from comparison.analyses.ensemble.sentences import (
     motions_in_words,
     support_sentences,
     target_sentence,
+    travel_sentence,
 )
 from comparison.analyses.ensemble.trust import COLUMNS, trust_rows, trust_sentence
 from comparison.cli.terminal import new_table
@@ -79,8 +80,7 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 def _cells_of_row(row: DemandRow) -> list[str]:
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
-    name = f"{row.name}, {row.where}" if row.where else row.name
-    return [name, row.unit, mean, *values, row.motion]
+    return [row.name, row.unit, mean, *values, f"{row.motion}, {row.where}" if row.where else row.motion]
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
@@ -94,7 +94,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
         ]
         bound = f"{named[structure.name]}: " if len(ensemble.structures) > 1 else ""
         say(console, [f"{bound}{line}" for line in lines if line])
-    say(console, [answer_sentence(ensemble)])
+    say(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
 
 
 def _print_trust(console: Console, ensemble: EnsembleResult) -> None:

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from comparison.analyses.ensemble.quantities import text_of
+from comparison.analyses.ensemble.quantities import SMALLEST, text_of
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
-from comparison.analyses.ensemble.rows import MAIN, Shown, labels, place_of, stripe_of, unit_of_row, worst_of
+from comparison.analyses.ensemble.rows import MAIN, Shown, labels, read_values, stripe_of, unit_of_row, worst_of
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 
@@ -16,14 +16,15 @@ COLUMNS = {
     TRANSLATIONAL.key: "translational engine",
     SPATIAL.key: "spatial engine",
 }
-TRUSTED = ("displacement", "base_shear", "acceleration", "drift")  # demands that every model has
 # rows of the main table with the ratio of another, or without a base of one
 LEFT_OUT = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support",
 )  # fmt: skip
 UNSEEN = 1e-4  # difference that the two decimals of a table do not show
-STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))
+STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))  # and their columns
+OF_SMALLEST = (("mean", 0), ("16 %", 1), ("smallest", 4))  # in their place: the harmful end of a smallest force
+COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,14 @@ class Ratio:
     mean: float
     smallest: float
     largest: float
+    smallest_motion: str = ""
+    largest_motion: str = ""
+
+    @property
+    def worst(self) -> tuple[float, str]:
+        """The largest difference of a single motion, and the motion."""
+        ends = (self.smallest - 1.0, self.smallest_motion), (self.largest - 1.0, self.largest_motion)
+        return max(ends, key=lambda end: abs(end[0]))
 
     @property
     def text(self) -> str:
@@ -58,18 +67,17 @@ class TrustRow:
     bound: str
     structure: Structure
     shown: Shown
-    body: int | None
     motions: tuple[str, ...]
     value: float  # mean over these motions by the exact equations, SI
     ratios: Mapping[str, Ratio] = field(default_factory=dict)
     by_law: Ratio | None = None  # the translational engine over the equations with its friction law
-    turning: Ratio | None = None  # the spatial over the translational engine
+    law: Ratio | None = None  # the equations with that law over the exact ones
+    turning: Ratio | None = None  # the spatial over the translational engine; of supports over statics
 
     @property
     def name(self) -> str:
-        """The demand in words, with its place."""
-        where = place_of(self.structure, self.shown.quantity, self.body) if self.shown.bodies == "floors" else ""
-        return f"{self.shown.name}{', ' if where else ''}{where}"
+        """The demand in words."""
+        return self.shown.name
 
     @property
     def read(self) -> tuple[str, float]:
@@ -84,25 +92,23 @@ class TrustRow:
 
 
 def trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
-    """The demands of the main table, of bodies the governing one, where at least one other model has them."""
+    """The demands of the main table, as they are there, where at least one other model has them."""
     named, rows = labels(ensemble), []
     for structure in ensemble.structures:
         for shown in MAIN:
             stripe = stripe_of(ensemble, shown, ensemble.top, structure)
             if stripe is not None and shown.name not in LEFT_OUT:
-                row = _trust_row(ensemble, structure, named[structure.name], shown, stripe.body)
+                row = _trust_row(ensemble, structure, named[structure.name], shown)
                 rows += [] if row is None else [row]
     return rows
 
 
-def _trust_row(
-    ensemble: EnsembleResult, structure: Structure, bound: str, shown: Shown, body: int | None
-) -> TrustRow | None:
+def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: Shown) -> TrustRow | None:
     quantity = shown.quantity
 
     def values(model: str) -> dict[str, float]:
-        found = ensemble.values_at_top(structure.name, quantity, body, model)
-        return {motion: each.value for motion, each in found.items() if each.value is not None}
+        found = read_values(ensemble, structure, shown, model)
+        return {motion: each.value for motion, (each, _) in found.items() if math.isfinite(each.value)}
 
     by_model = {key: values(key) for key in (*COLUMNS, REGULARIZED.key)}
     # statics, not the model itself, gives the supports of all models but the spatial one
@@ -117,27 +123,33 @@ def _trust_row(
     def ratio(upper: str, lower: str) -> Ratio | None:
         if upper not in others or not (lower == EXACT.key or lower in others):
             return None
-        pairs = [by_model[upper][motion] / by_model[lower][motion] for motion in common if by_model[lower][motion]]
-        return Ratio(math.fsum(pairs) / len(pairs), min(pairs), max(pairs)) if pairs else None
+        pairs = [(by_model[upper][m] / by_model[lower][m], m) for m in common if by_model[lower][m]]
+        if not pairs:
+            return None
+        (smallest, at_smallest), (largest, at_largest) = min(pairs), max(pairs)
+        return Ratio(math.fsum(each for each, _ in pairs) / len(pairs), smallest, largest, at_smallest, at_largest)
 
     ratios = {key: found for key in COLUMNS if key != EXACT.key and (found := ratio(key, EXACT.key))}
     law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
+    supports = quantity.startswith("support_force")
     return TrustRow(
-        bound, structure, shown, body, tuple(common),
+        bound, structure, shown, tuple(common),
         math.fsum(exact[motion] for motion in common) / len(common), ratios,
-        ratio(TRANSLATIONAL.key, law), ratio(SPATIAL.key, TRANSLATIONAL.key),
+        ratio(TRANSLATIONAL.key, law), ratio(REGULARIZED.key, EXACT.key),
+        ratio(SPATIAL.key, EXACT.key if supports else TRANSLATIONAL.key),
     )  # fmt: skip
 
 
-def _largest_ratio(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | None:
-    """The largest size of a difference over the demands that every model has, and its row."""
+def _largest_ratio(ensemble: EnsembleResult, rows: Sequence[TrustRow], pick: str) -> tuple[float, str, str] | None:
+    """The largest difference of a single motion over the demands of the rows, the demand, and its bound and motion."""
     found = []
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
-        if ratio is not None and row.shown.quantity in TRUSTED:
-            worst = max(ratio.smallest - 1.0, ratio.largest - 1.0, key=abs)
-            found.append((worst, row))
-    return max(found, key=lambda pair: abs(pair[0]), default=None)
+        if ratio is not None:
+            size, motion = ratio.worst
+            bound = f"{row.bound}, " if len(ensemble.structures) > 1 else ""
+            found.append((abs(size), row.name, f"{bound}{motion}"))
+    return max(found, default=None)
 
 
 def _at_most(size: float) -> str:
@@ -146,31 +158,41 @@ def _at_most(size: float) -> str:
 
 
 def trust_sentence(ensemble: EnsembleResult) -> str:
-    """Return the sentence that keeps geometry, the codes and the turning of the bodies apart; "" without an engine."""
-    rows = trust_rows(ensemble)
+    """
+    Return the sentence that keeps geometry, codes, friction law and turning of the bodies apart; "" without an engine.
+
+    Each is the largest of single motions over every demand of the table. The smallest support force has a clause of
+    its own: close to zero, a small force is a large share of it.
+    """
+    every = trust_rows(ensemble)
+    rows = [row for row in every if row.shown.quantity not in SMALLEST]
     parts = {
         SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth {} ({})",
         "by_law": "given the same equations and friction law, the two codes differ by {} ({})",
+        "law": "the regularized friction of the engines, which the exact equations have not, is worth {} ({})",
         "turning": "bodies that turn on their supports change a demand by {} ({})",
     }
     said = []
     for pick, words in parts.items():
-        if (found := _largest_ratio(rows, pick)) is not None:
-            size, row = found
-            bound = f", {row.bound}" if len(ensemble.structures) > 1 else ""
-            said.append(words.format(_at_most(abs(size)), f"{row.name}{bound}"))
+        if (found := _largest_ratio(ensemble, rows, pick)) is not None:
+            said.append(words.format(_at_most(found[0]), ", ".join(found[1:])))
     if not said:
         return ""
-    motions = {(row.bound, motion) for row in rows for motion in row.motions}
+    things = COUNTS[len(said)]
+    smallest = [row for row in every if row.shown.quantity in SMALLEST]
+    if (found := _largest_ratio(ensemble, smallest, "turning")) is not None:
+        said[-1] += f", and the smallest support force, against statics, by {_at_most(found[0])} ({found[2]})"
+    motions = {(row.bound, motion) for row in every for motion in row.motions}
     count = f"On the {f'{len(motions)} motions' if len(motions) > 1 else 'one motion'} that all models computed"
-    return f"{count}, three things are apart: {'; '.join(said)}."
+    return f"{count}, {things} apart: {'; '.join(said)}."
 
 
 def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, list[str]]]:
     """
     Yield the demands of the suite by the equations, times the ratio of the engine over them.
 
-    Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes.
+    Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes; of a
+    smallest force 16 % and the smallest.
     """
     for row in trust_rows(ensemble):
         ratio = row.ratios.get(ensemble.engine.model)
@@ -180,9 +202,11 @@ def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, l
         unit, factor = row.read
         numbers = stripe.mean, *stripe.fractiles, worst_of(stripe)[0]
         cells = []
-        for _, place in STATISTICS:
+        shown = OF_SMALLEST if row.shown.quantity in SMALLEST else STATISTICS
+        for (name, place), (head, _) in zip(shown, STATISTICS):
             value = numbers[place].value
-            cells.append("none" if value is None else _with_range(ratio, value, factor))
+            of = f"{name}: " if name != head else ""
+            cells.append(of + ("none" if value is None else _with_range(ratio, value, factor)))
         yield row, ratio, [unit, *cells]
 
 

@@ -43,7 +43,7 @@ function equipTable(table) {
   answer.setAttribute("role", "status");
   copy.addEventListener("click", async () => {
     await copyText(csvOf(table));
-    answer.textContent = `${table.tBodies[0].rows.length} rows copied`;
+    answer.textContent = `${[...table.tBodies].flatMap(body => [...body.rows]).length} rows copied`;
   });
   const frame = table.closest(".table") ?? table;
   frame.after(element("p", "tools", copy, " ", answer));

@@ -260,7 +260,7 @@ def test_supports_of_which_no_motion_has_a_value_are_not_spoken_of() -> None:
     assert support_sentences(ensemble) == []
     known = replace(supports[1], motions=3, largest=Statistic(5e3, None), largest_motion="Kobe")
     assert support_sentences(replace(ensemble, supports=[supports[0], known])) == [
-        "By the spatial engine, 3 motions of each bound: largest force 5 kN, support 1 at [1, 2] m (Kobe)."
+        "By the spatial engine, 3 motions: largest force 5 kN, support 1 at [1, 2] m (Kobe)."
     ]
 
 

@@ -3,7 +3,7 @@
 import csv
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -27,14 +27,18 @@ from comparison.analyses.ensemble.result import (
     ChosenMotion,
     DemandCurve,
     DemandFractile,
+    EndedMotion,
     Engine,
     EnsembleResult,
     GroundMotion,
     Statistic,
     Stripe,
     Structure,
+    SupportExtremes,
 )  # fmt: skip
+from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
+from reference.measures import Estimate
 from reference.problem import GRAVITY
 
 SCENE = """title = "two floors on four pendulums"
@@ -186,6 +190,10 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
         said = f"{effective.period:.3g} s, {100 * effective.damping:.3g} % at the mean displacement"
         assert said in text
     assert "roof" in text
+    for value in ("50", "30 along x, 20 along y; 20 along x, 25 along y", "7 × 5, all"):
+        assert f">{value}<" in text, value
+    assert sentences.plate_sentence(found.structures[0]) in text
+    assert f"phase-resonance {found.run['provenance']['phase-resonance']}" in text
     suite = {each.motion: each for each in found.suite}
     assert (suite["pulse 1"].magnitude, suite["pulse 2"].magnitude) == (6.9, None)
     assert suite["pulse 3"].factor == 1.3
@@ -268,16 +276,216 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
 def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
     said = trust.trust_sentence(planted())
     assert said == (
-        "On the 2 motions that all models computed, three things are apart: the geometry of the sphere, which the "
-        "small equations leave out, is worth up to 10 % (isolator displacement); given the same equations and "
-        "friction law, the two codes differ by up to 0.2 % (isolator displacement); bodies that turn on their supports "
-        "change a demand by up to 4.8 % (isolator displacement)."
+        "On the 2 motions that all models computed, four things are apart: the geometry of the sphere, which the "
+        "small equations leave out, is worth up to 10 % (isolator displacement, m4); given the same equations and "
+        "friction law, the two codes differ by up to 0.2 % (isolator displacement, m3); the regularized friction of "
+        "the engines, which the exact equations have not, is worth less than 0.01 % (isolator displacement, m3); "
+        "bodies that turn on their supports change a demand by up to 4.8 % (isolator displacement, m3)."
     )
     contradiction = trust.trust_sentence(planted({"small": 1.0, "translational": 1.3, "spatial": 1.3}))
     assert "the two codes differ by up to 30 %" in contradiction, "the codes, and neither geometry nor turning"
     assert "leave out, is worth less than 0.01 %" in contradiction
     regularized = trust.trust_sentence(planted({"regularised": 1.3, "translational": 1.3, "spatial": 1.3}))
     assert "the two codes differ by less than 0.01 %" in regularized, "with the same friction law"
+    assert "which the exact equations have not, is worth up to 30 % (isolator displacement" in regularized
+
+
+def with_demand(found: EnsembleResult, quantity: str, body: int | None, **models: Sequence[float]) -> EnsembleResult:
+    """Another demand of every motion by these models, with its statistics by the equations."""
+    names = [each.motion for each in found.suite]
+    curves = [
+        DemandCurve("b", quantity, body, model, name, (1.0,), (value,), (0.0,))
+        for model, values in models.items()
+        for name, value in zip(names, values)
+    ]
+    numbers = {name: Estimate(value, 0.0) for name, value in zip(names, models["exact"])}
+    stripe = summarize_motions(("b", quantity, body, "exact", "", 1.0), numbers, {})
+    return replace(found, curves=[*found.curves, *curves], stripes=[*found.stripes, stripe])
+
+
+def test_the_sentence_of_trust_covers_every_demand_of_its_table() -> None:
+    """The largest difference of a single motion, of moments and support forces, too; the smallest force by itself."""
+    found = with_demand(planted(), "support_force_max", None, exact=(4.0, 4.0, 4.0, 4.0), spatial=(4.0, 4.0, 4.0, 4.4))
+    said = trust.trust_sentence(found)
+    assert said.endswith("change a demand by up to 10 % (largest support force, m4).")
+    found = with_demand(found, "support_force_min", None, exact=(1.0, 1.0, 1.0, 1.0), spatial=(1.0, 1.0, 0.99, 0.8))
+    said = trust.trust_sentence(found)
+    assert said.endswith(
+        "(largest support force, m4), and the smallest support force, against statics, by up to 20 % (m4)."
+    )
+    moments = {"exact": (1.0, 1.0, 1.0, 1.0), "translational": (1.0, 1.0, 1.0, 1.0), "spatial": (1.0, 1.0, 1.0, 1.5)}
+    others = {"small": (1.0,) * 4, "regularised": (1.0,) * 4}
+    said = trust.trust_sentence(with_demand(found, "overturning_moment", 1, **moments, **others))
+    assert "change a demand by up to 50 % (overturning moment at the isolator, m4), and the smallest" in said
+
+
+def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion() -> None:
+    """The story of the largest mean is not that of the largest value."""
+    found = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
+    found = with_demand(found, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009), spatial=(0.001,) * 4)
+    found = with_demand(found, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005), spatial=(0.004,) * 4)
+    row = next(row for row in rows.demand_rows(found, 1.0) if row.name == "largest drift ratio")
+    assert (row.cells[0], row.cells[2], row.cells[4]) == ("0.525", "0.4", "0.9"), "mean, median and largest of maxima"
+    assert (row.motion, row.where) == ("m4", "below body 2")
+    table = {row.name: row.cells[4] for row in rows.profile_rows(found, "drift_ratio", 1.0)}
+    assert (table["below body 2"], table["below body 3"]) == ("0.9", "0.5"), "every story by itself"
+    for each in found.stripes:
+        if each.quantity == "drift_ratio":
+            assert float(row.cells[4]) >= 100.0 * each.largest.value - 1e-9  # type: ignore[operator]
+    unknown = [
+        replace(each, values=(None,)) if (each.quantity, each.body, each.motion) == ("drift_ratio", 3, "m1") else each
+        for each in found.curves
+    ]
+    row = next(
+        row for row in rows.demand_rows(replace(found, curves=unknown), 1.0) if row.name == "largest drift ratio"
+    )
+    assert (row.cells[0], row.cells[4], row.where, row.motions) == ("none", "none", "", "3; 1 not at every place")
+
+
+def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
+    """Bounds whose largest drifts are in different stories; a bound without one leaves no place."""
+    one = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
+    one = with_demand(one, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009))
+    one = with_demand(one, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005))
+    other = replace(planted(), structures=one.structures)
+    other = with_demand(other, "drift_ratio", 2, exact=(0.001, 0.001, 0.002, 0.001))
+    other = with_demand(other, "drift_ratio", 3, exact=(0.006, 0.006, 0.007, 0.006))
+    curves = [*one.curves, *(replace(each, structure="c") for each in other.curves)]
+    stripes = [*one.stripes, *(replace(each, structure="c") for each in other.stripes)]
+    names = [*one.structures, replace(one.structures[0], name="c")]
+    both = replace(one, structures=names, curves=curves, stripes=stripes)
+
+    def envelope(found: EnsembleResult) -> rows.DemandRow:
+        shown = rows.demand_rows(found, 1.0)
+        return next(row for row in shown if (row.name, row.bound) == ("largest drift ratio", "envelope"))
+
+    row = envelope(both)
+    assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4, b", "below body 2")
+    lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
+    row = envelope(replace(both, curves=lost))
+    assert (row.cells[4], row.motion, row.where) == ("none", "", "")
+
+
+def test_a_motion_beyond_the_travel_has_its_instant_in_the_files_and_on_the_page(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "short.toml").write_text(SCENE.replace("travel = 0.5", "travel = 0.04"))
+    assert run("short.toml", "--engine", "0", "--out", "short") == 0
+    said = capsys.readouterr().out
+    stored = STORED.load(folder / "short")
+    assert stored is not None
+    assert {each.status for each in stored.ended} == {"travel reached"}
+    assert stored.outcomes["travel reached"] == len(stored.ended) > 0
+    assert all(each.instant is not None and 0.0 < each.instant < 2.0 for each in stored.ended)
+    line = sentences.travel_sentence(stored)
+    assert f" at {stored.ended[0].instant:.4g} s" in line
+    assert line in said
+    shown = (folder / "short" / "index.html").read_text(encoding="utf-8")
+    assert line in shown
+    assert "at least the travel, 40 mm" in shown
+
+
+@NO_CHROMIUM
+def test_rows_of_one_demand_stay_together_on_paper(folder: Path, browser: Browser) -> None:
+    sheet = as_printed(opened(browser, folder / "out" / "index.html", LAPTOP).page)
+    groups = sheet.evaluate("""[...document.querySelectorAll('.demands tbody')].map(body =>
+      [getComputedStyle(body).breakInside, ...[...body.rows].map(row => row.cells[0].textContent)])""")
+    assert len(groups) > 20
+    for inside, first, *others in groups:
+        assert (inside, bool(first), {*others} <= {""}) == ("avoid", True, True), (first, others)
+    last = sheet.evaluate("getComputedStyle(document.querySelector('#run')).breakBefore")
+    assert last == "avoid", "no last sheet of three lines"
+    sheet.close()
+
+
+def test_an_extended_smallest_force_shows_its_harmful_end() -> None:
+    found = with_demand(planted(), "support_force_min", None, exact=(4e3, 3e3, 2e3, 1e3), spatial=(4e3, 3e3, 1e3, 5e2))
+    (cells,) = [cells for row, _, cells in trust.extended_rows(found) if row.name == "smallest support force"]
+    assert cells[1] == "1.875 (1.25 to 2.5)"
+    assert cells[2] == "16 %: 0.855 (0.57 to 1.14)"
+    assert cells[3] == "smallest: 0.75 (0.5 to 1)"
+
+
+def two_bounds() -> EnsembleResult:
+    """The lower bound reaches its travel of 0.5 m under m4, the upper bound has a value under all."""
+    one = planted()
+    lower = [replace(each, values=(None,), errors=(None,)) if each.motion == "m4" else each for each in one.curves]
+    none = Statistic(None, None)
+    stripe = replace(
+        one.stripes[0], mean=none, largest=none, answered=3, reasons={"travel reached": 1}, largest_motion=""
+    )
+    upper = [replace(each, structure="c") for each in one.curves]
+    names = [replace(one.structures[0], name=name) for name in ("b", "c")]
+    return replace(
+        one, structures=names, curves=[*lower, *upper], stripes=[stripe, replace(one.stripes[0], structure="c")],
+        outcomes={"ok": 7, "travel reached": 1}, ended=[EndedMotion("b", "m4", 1.0, "travel reached", 12.345)],
+    )  # fmt: skip
+
+
+def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reaches_its_travel() -> None:
+    assert sentences.answer_sentence(two_bounds()) == (
+        "No value under m4 (b). Isolator displacement: at least the travel, 500 mm (b); mean 250 mm, largest 400 mm = "
+        "80 % of the travel (c alone, m4). Outcomes by the equations: 7 ok, 1 travel reached."
+    )
+    assert "at least" not in sentences.answer_sentence(planted())
+    assert " alone" not in sentences.answer_sentence(planted())
+    rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
+    said = sentences.answer_sentence(replace(two_bounds(), stripes=rim))
+    assert ("at least the travel" in said, "(c alone, m4)" in said) == (False, True)
+
+
+def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
+    assert sentences.travel_sentence(two_bounds()) == (
+        "The travel is reached under m4 at 12.35 s (b). A run without `travel` gives the displacement that is needed."
+    )
+    assert sentences.travel_sentence(planted()) == ""
+    stopped = [EndedMotion("b", "m4", 1.0, "rim reached", 3.0)]
+    assert sentences.travel_sentence(replace(two_bounds(), ended=stopped)) == ""
+
+
+def test_support_forces_say_of_how_many_motions_they_are() -> None:
+    known, none = Statistic(1e3, 0.0), Statistic(None, None)
+    about = SupportExtremes("b", 1, 3.0, 2.0, "exact", 3, known, "m1", known, "m2", none)
+    some = replace(planted(), supports=[about])
+    (said,) = sentences.support_sentences(some)
+    assert said.startswith("By the equations and statics, 3 of 4 motions: largest force 1 kN")
+    assert said.endswith("The worst may be under a motion without a value.")
+    whole = replace(planted(), supports=[replace(about, motions=4)])
+    (said,) = sentences.support_sentences(whole)
+    assert said.startswith("By the equations and statics, 4 motions: ")
+    assert "may be" not in said
+    (said,) = sentences.support_sentences(
+        replace(two_bounds(), supports=[about, replace(about, structure="c", motions=4)])
+    )
+    assert "statics, 3 of 4 motions of the b, 4 motions of the c: " in said
+    (said,) = sentences.support_sentences(replace(planted(), supports=[replace(about, model="spatial", motions=2)]))
+    assert said.startswith("By the spatial engine, 2 of 4 motions: ")
+    shown = page.page_of(some)
+    assert '<td class="number">3 of 4</td>' in shown
+
+
+def test_every_motion_of_every_bound_is_a_row_with_its_outcome() -> None:
+    found = two_bounds()
+    assert rows.motion_heads(found) == ["isolator displacement, mm"]
+    read = {(motion, bound): (cells, outcome) for motion, bound, cells, outcome in rows.motion_rows(found)}
+    assert len(read) == 8
+    assert read["m4", "b"] == (["none"], "travel reached")
+    assert read["m4", "c"] == (["400"], "ok")
+
+
+def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> None:
+    guide = (Path(__file__).parents[3] / "docs/guide/building.md").read_text(encoding="utf-8")
+    listed = guide.partition("## What is not modeled")[2].partition("\n## ")[0]
+    items = [" ".join(item.split()) for item in listed.split("\n- ")[1:]]
+    assert len(items) == len(sentences.NOT_MODELED)
+    for item, line in zip(items, sentences.NOT_MODELED):
+        assert item.startswith(line), line
+
+
+def test_one_duration_is_no_range() -> None:
+    assert sentences.ground_sentence(planted()).endswith("; duration 10 s.")
+    longer = [GroundMotion("m1", 10.0, 2.0), GroundMotion("m2", 30.0, 2.0)]
+    assert sentences.ground_sentence(replace(planted(), suite=longer)).endswith("; durations from 10 to 30 s.")
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
