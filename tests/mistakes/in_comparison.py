@@ -709,5 +709,15 @@ MISTAKES = (
             (TESTS + "study/test_selection.py::test_only_leaves_the_sections_asked_for",)),
     Mistake(EVIDENCE + "trend_feature.py", '"panels": trend_panels(trends, parameter)', '"panels": trend_panels(trends, "")',
             "The scaling test is drawn over another parameter.", (RECORDED,)),
+    Mistake("comparison/evidence/validation/cycles.py",
+            "middles = [np.angle(np.exp(1j * np.radians(phases)).sum(), deg=True) % 360.0 for phases in (starts, stops)]",
+            "middles = [phases.mean() % 360.0 for phases in (starts, stops)]",
+            "Phases of 350 and 10 degrees have their middle at 180.",
+            ("tests/comparison/evidence/test_validation.py::test_phases_of_both_directions_have_their_middle_on_the_circle",)),
+    Mistake("comparison/evidence/convergence/analysis.py",
+            "errors = np.hypot(SAFETY * np.abs(fine - coarse), exact.error[:, None]) / scale",
+            "errors = SAFETY * np.abs(fine - coarse) / scale",
+            "The error of the equations is no part of that of a contact.",
+            ("tests/comparison/evidence/test_trends.py::test_the_error_of_a_constant_step_has_that_of_the_equations_and_that_of_the_step",)),
 )
 # fmt: on
