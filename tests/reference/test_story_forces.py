@@ -86,6 +86,25 @@ def test_supports_by_statics_carry_weight_and_moment(moved: tuple[Trajectory, St
     assert [each.value for each in forces.support_max] == pytest.approx(by_hand.max(axis=0))
 
 
+def test_supports_of_uneven_places_balance_weight_and_moment_about_any_point() -> None:
+    """By hand: N_k = c0 + c1 x_k + c2 y_k with their sum and both moments about the axis of the links."""
+    places = np.array([[3.0, 2.0], [-3.5, 2.2], [-2.0, -2.6], [0.5, -1.5], [4.0, -0.5]])
+    isolator = {**TABLES["isolator"], "supports": places.tolist()}  # type: ignore[dict-item]
+    bodies = [{**body, "offset": [0.2 * n, -0.3]} for n, body in enumerate(TABLES["bodies"])]  # type: ignore[arg-type]
+    motion = reference.trajectory(
+        reference.Scene.model_validate({**TABLES, "isolator": isolator, "bodies": bodies}), (0, 0)
+    )
+    forces = story_forces(motion)
+    offsets = MASSES / MASSES.sum() @ [body["offset"] for body in bodies]
+    wanted = np.column_stack([motion.contact_force, motion.contact_force[:, None] * offsets - moments(motion)])
+    shape = np.column_stack([np.ones(len(places)), places])
+    by_hand = wanted @ np.linalg.inv(shape.T @ shape) @ shape.T
+    assert forces.support_min is not None
+    assert forces.support_max is not None
+    assert [each.value for each in forces.support_min] == pytest.approx(by_hand.min(axis=0))
+    assert [each.value for each in forces.support_max] == pytest.approx(by_hand.max(axis=0))
+
+
 def test_support_forces_of_the_engine_balance_the_overturning_moment(turned: tuple[Trajectory, StoryForces]) -> None:
     """Sum of N_k r_k about the middle is minus the moment, but for the inertia of bodies that turn."""
     motion, forces = turned

@@ -17,15 +17,19 @@ from terminal_tables import rows_under
 
 import reference
 from comparison.analyses.ensemble import analysis, governing, quantities, statistics
+from comparison.analyses.ensemble.build import read_suite
 from comparison.analyses.ensemble.command import CHECKED, FILES, largest_choices, main
 from comparison.analyses.ensemble.governing import largest_count
 from comparison.analyses.ensemble.members import SCALE, Member, members_of
+from comparison.analyses.ensemble.result import Stripe
+from comparison.analyses.ensemble.rows import governing as governing_stripe
 from comparison.analyses.ensemble.rows import labels
 from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
 from reference.measures import Estimate, FloorSpectra, StoryForces, story_forces
 from reference.problem import load_family, load_scene
+from reference.records.motion_lists import Motion
 
 SCENE = """title = "two bodies"
 isolator = {radius = 0.25, friction = 0.05}
@@ -167,6 +171,28 @@ def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_wor
     assert [found["story_shear", body].value for body in (1, 2, 3)] == [9.0, 5.0, 2.0]
     assert [found["overturning_moment", body].value for body in (1, 2, 3)] == [70.0, 30.0, 4.0]
     assert [found[f"support_force_{end}", 0].value for end in ("min", "max")] == [2.0, 8.0]
+
+
+def test_a_motion_has_its_peak_at_scale_1_with_the_factors_of_list_and_target() -> None:
+    scene = load_scene("synthetic-pair")
+    peak = float(np.hypot(*scene.record[:, 1:3].T).max())
+    members = [Member("mine", "m", scale, scene.with_values({SCALE: 1.7 * scale}), 1.7) for scale in (4.0, 0.5)]
+    (read,) = read_suite(members, {"m": Motion("m", {}, 1.3, 6.9)})
+    assert (read.peak, read.factor, read.magnitude) == pytest.approx((1.7 * peak, 1.7 * 1.3, 6.9))
+    assert read.duration == scene.duration
+
+
+def test_the_story_with_the_largest_mean_governs_or_that_with_the_largest_fractile_that_is_known() -> None:
+    def stories(*pairs: tuple[float, float]) -> list[Stripe]:
+        known = [demanding(f"m{n}", drift={2: sure(low), 3: sure(high)}) for n, (low, high) in enumerate(pairs)]
+        return list(statistics.stripes(analysis.Points(known)))
+
+    below, above = stories((1.0, 4.0), (9.0, 5.0))
+    assert (below.mean.value, above.mean.value) == (5.0, 4.5)
+    assert governing_stripe([below, above]) is governing_stripe([above, below]) is below
+    below, above = stories((1.0, 4.0), (9.0, 5.0), (2.5, 6.0), (NAN, NAN))
+    assert [below.mean.value, *(each.value for each in below.fractiles[1:])] == [None, 5.75, None]
+    assert governing_stripe([below, above]) is below, "by the median, 5.75 and 5.5"
 
 
 def test_a_band_of_floor_spectra_has_the_larger_direction() -> None:

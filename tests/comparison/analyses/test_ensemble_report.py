@@ -550,6 +550,24 @@ def test_the_envelope_is_the_worst_of_the_bounds_in_every_column() -> None:
     assert (envelope.cells[-1], envelope.motion) == ("none", ""), "a bound without a value is no smaller than the other"
 
 
+def test_bounds_of_different_weight_are_compared_in_the_unit_that_is_read() -> None:
+    """The heavier has the larger force, the lighter the larger share; mean and largest share are of two bounds."""
+    one = planted()
+    shears = [
+        replace(one.stripes[0], structure=name, quantity="base_shear", unit="N", mean=Statistic(mean, 0.0),
+                largest=Statistic(largest, 0.0))
+        for name, mean, largest in (("b", 300.0, 400.0), ("c", 700.0, 1000.0), ("d", 310.0, 380.0))
+    ]  # fmt: skip
+    weights = {"b": 1e3, "c": 4e3, "d": 1e3}
+    structures = [replace(one.structures[0], name=name, weight=weight) for name, weight in weights.items()]
+    found = replace(one, structures=structures, stripes=shears)
+    force, share = (row for row in rows.demand_rows(found, 1.0) if row.bound == "envelope")
+    assert (force.cells[0], force.cells[-1], force.motion) == ("0.7", "1", "m4, c")
+    assert (share.cells[0], share.cells[-1], share.motion) == ("31", "40", "m4, b")
+    said = sentences.answer_sentence(found)
+    assert "mean 30 % of the weight, largest 40 % of the weight (b, m4)" in said
+
+
 def test_the_first_sentence_says_what_has_no_value_before_what_has() -> None:
     assert sentences.answer_sentence(planted()) == (
         "Isolator displacement: mean 250 mm, largest 400 mm = 80 % of the travel (m4). Outcomes by the equations: 4 ok."

@@ -284,3 +284,20 @@ def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch,
     sizes, errors = convergence._compare_stiff_contacts(load_scene("fig3-I"))
     assert (np.abs(sizes) <= errors).all()
     assert (errors <= 5.0 * np.abs(sizes)).all()
+
+
+def test_the_error_of_a_constant_step_has_that_of_the_equations_and_that_of_the_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stepped(scene: Scene, v_reg: float, penetration: float, factor: int) -> Array:
+        return np.full((len(convergence.FEW), 2), 4.0 if factor == 1 else 4.0 + 4.0 * penetration)
+
+    def exact(scene: Scene, phases: Array, **settings: float) -> Amplification:
+        mu = np.full((len(phases), 2), 4.0)
+        return Amplification(mu, 0.01 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
+
+    monkeypatch.setattr(convergence, "_at_constant_step", stepped)
+    monkeypatch.setattr(reference, "amplification", exact)
+    _, errors = convergence._stiffen(load_scene("fig3-I"))
+    expected = np.hypot(convergence.SAFETY * np.array(PENETRATIONS), 0.01)
+    assert errors == pytest.approx(np.broadcast_to(expected[:, None], errors.shape), rel=1e-12)

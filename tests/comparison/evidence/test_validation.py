@@ -96,6 +96,17 @@ def test_the_numbers_of_a_known_cycle_are_read():
     assert np.isnan(at_rest[3:]).all(), "nothing starts or stops"
 
 
+def test_phases_of_both_directions_have_their_middle_on_the_circle():
+    """The plate goes back from 350 to 60 degrees, fastest at the end of a turn, and forth from 190 to 240."""
+    turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
+    ends = [0, 60, 61, 189, 190, 240, 241, 349, 350, 358, 360]
+    speed = np.interp(turn, ends, [-1, -0.8, 0, 0, 1, 1, 0, 0, -1.5, -1.5, -1])
+    speed[speed > 0.0] *= -speed[speed < 0.0].sum() / speed[speed > 0.0].sum()  # the cycle closes
+    *_, starts, stops = frame.read_cycle(np.cumsum(speed), 1.0)
+    assert (starts + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=8.0)
+    assert stops == pytest.approx(60.0, abs=8.0)
+
+
 def test_a_run_is_folded_at_the_turns_of_its_base():
     """Base and second harmonic, 7 and 0.2 mm, the latter behind by 40 degrees; the plate is behind the base by 50."""
     time, turn = np.arange(2501) / RATE, 2.0 * math.pi * FREQUENCY * np.arange(2501) / RATE + 1.0

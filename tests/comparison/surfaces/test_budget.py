@@ -110,6 +110,19 @@ def test_the_peak_moves_the_short_way_round_the_torus_to_the_nearest_of_equals()
     assert table["resolved"].peak_moves == 0.0
 
 
+def test_a_point_that_may_be_the_highest_by_its_own_error_is_no_move_of_the_peak() -> None:
+    study, surfaces = planted_study({})
+    surfaces["mu"][:], surfaces["error"][:] = 1.0, 1e-6
+    places = [{"alpha1": surfaces["alpha1"][n], "alpha2": surfaces["alpha2"][n]} for n in (0, 5)]
+    surfaces["mu"].loc[places[0]] = 2.0
+    surfaces["mu"].loc[{"model": "resolved", **places[0]}] = 1.0
+    surfaces["mu"].loc[{"model": "resolved", **places[1]}] = 2.0
+    surfaces["mu"].loc[{"model": "small-resolved", **places[1]}] = 1.95
+    assert _table(study, surfaces)["resolved"].peak_moves > 1.0
+    surfaces["error"].loc[{"model": "small-resolved", **places[1]}] = 0.1
+    assert _table(study, surfaces)["resolved"].peak_moves == 0.0
+
+
 SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs are not all mirror images
 Solved = tuple[Study, xr.Dataset]
 

@@ -12,7 +12,7 @@ from studies import GRID, KEYS, planted_study, solved
 
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.headline import Headline, make_headline
+from comparison.surfaces.headline import Effect, Headline, main_cause_of, make_headline
 from comparison.surfaces.unanswered import study_of_results
 from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Scene, load_scene
@@ -136,6 +136,12 @@ def test_the_ends_of_the_range_have_their_signs_and_phases() -> None:
         surfaces["mu"].loc[place] *= factor
     numbers = told(study, surfaces)
     assert "from −29 % at (90°, 180°) to +43 % at (270°, 0°)" in numbers.sentence
+    for row, column, error in ((2, 4, 0.01), (6, 0, 0.03)):
+        place = {"body": 1, "alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
+        base = surfaces["mu"].sel(model="small-resolved", **place)
+        surfaces["error"].loc[{"model": "spatial", **place}] = error * base
+    ends = told(study, surfaces)
+    assert (ends.low_error, ends.high_error) == pytest.approx((0.01, 0.03), rel=1e-3), "each its own"
     assert [numbers.low, numbers.high] == pytest.approx([1.02 * 0.7 - 1.0, 1.02 * 1.4 - 1.0])
 
 
@@ -156,6 +162,19 @@ def test_no_main_cause_is_named_where_means_differ_by_less_than_their_errors() -
     surfaces["mu"].loc[{"model": "spatial"}] *= 1.0 + wave
     numbers = told(study, surfaces)
     assert (set(numbers.causes), numbers.main_cause) == ({GEOMETRY, TURNING}, "")
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.02, 0.001), (0.001, 0.02)])
+def test_the_errors_of_both_means_leave_open_which_cause_is_the_largest(first: float, second: float) -> None:
+    nothing = {"share": math.nan, "elsewhere": math.nan, "order": "", "interaction": math.nan, "supremum": math.nan}
+
+    def effects(*errors: float) -> list[Effect]:
+        sizes = zip((GEOMETRY, TURNING), (0.05, -0.04), errors)
+        return [Effect(name, "m", mean, error, resolved=True, **nothing) for name, mean, error in sizes]
+
+    open_causes, told_causes = effects(first, second), effects(0.006, 0.006)
+    assert main_cause_of(open_causes, open_causes) == ""
+    assert main_cause_of(told_causes, told_causes) == GEOMETRY
 
 
 def test_the_sentence_says_that_a_model_was_refused() -> None:
