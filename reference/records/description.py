@@ -13,7 +13,8 @@ from reference.support.constants import GRAVITY
 LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.001  # g
 UNEVEN = 0.01  # relative difference of steps from which a column of times counts as uneven
 FEW_SAMPLES = 100  # samples, below which no zero line is judged
-SHARE_OF_PEAK_VELOCITY = 0.2  # share that a record's last velocity may have: at most 0.07 in 289 public records
+# Share of the largest velocity of a record that its last may have: at most 0.07 in 289 public records
+SHARE_OF_PEAK_VELOCITY = 0.2
 CLIPPED = 4  # equal samples in a row, at the largest size, that count as clipped
 FLAT = 1e-9  # relative difference below which samples count as equal
 

@@ -155,7 +155,11 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     def read(cycles: frame.Cycles, setup: frame.Setup) -> table.ComputedValues:
         return table.ComputedValues(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
 
-    for name, known in (("fold", folded), ("compute", lambda side, cycles, setup: setup), ("read", read)):
+    for name, known in (
+        ("fold", folded),
+        ("compute_motion", lambda side, cycles, setup: setup),
+        ("read_quantities", read),
+    ):
         monkeypatch.setattr(frame, name, known)
     monkeypatch.setattr(frame, "last_cycle", lambda motion, frequency: cycle(motion))
     found = frame.compare_frame([Shaken(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])

@@ -124,7 +124,7 @@ def test_each_feature_can_be_deleted(tmp_path: Path) -> None:
         for name in ("analyses", "evidence"):
             shutil.copytree(ROOT / "comparison" / name, copies[-1] / name)
         shutil.copy(ROOT / REGISTRY, copies[-1])
-        replace_once(copies[-1] / "registry.py", f'    _feature("{folder}"),\n', "")
+        replace_once(copies[-1] / "registry.py", f'    _load_feature("{folder}"),\n', "")
         shutil.rmtree(copies[-1] / room / key)
         others = [file.read_text(encoding="utf-8") for file in copies[-1].rglob("*.j2")]
         assert not [text for text in others if f'"{key}/' in text], "no template reads another feature's"
@@ -149,8 +149,8 @@ def test_a_folder_and_its_line_are_a_feature(tmp_path: Path) -> None:
     folder.mkdir()
     for name, text in FOLDER.items():
         (folder / name).write_text(text, encoding="utf-8")
-    claims = '    _feature("evidence.claims"),\n'
-    replace_once(registry, claims, f'{claims}    _feature("evidence.ratio"),\n')
+    claims = '    _load_feature("evidence.claims"),\n'
+    replace_once(registry, claims, f'{claims}    _load_feature("evidence.ratio"),\n')
     command = [sys.executable, "-P", "-m", "comparison.run", "fig3-I", "--grid", "2", "--only", "surfaces,ratio"]
     environment = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
     subprocess.run([*command, "--out", str(report)], cwd=tmp_path, env=environment, check=True)
