@@ -21,8 +21,6 @@ from comparison.analyses.ensemble.build import read_suite
 from comparison.analyses.ensemble.command import CHECKED, FILES, largest_choices, main
 from comparison.analyses.ensemble.governing import largest_count
 from comparison.analyses.ensemble.members import SCALE, Member, members_of
-from comparison.analyses.ensemble.result import Stripe
-from comparison.analyses.ensemble.rows import governing as governing_stripe
 from comparison.analyses.ensemble.rows import labels
 from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
@@ -180,19 +178,6 @@ def test_a_motion_has_its_peak_at_scale_1_with_the_factors_of_list_and_target() 
     (read,) = read_suite(members, {"m": Motion("m", {}, 1.3, 6.9)})
     assert (read.peak, read.factor, read.magnitude) == pytest.approx((1.7 * peak, 1.7 * 1.3, 6.9))
     assert read.duration == scene.duration
-
-
-def test_the_story_with_the_largest_mean_governs_or_that_with_the_largest_fractile_that_is_known() -> None:
-    def stories(*pairs: tuple[float, float]) -> list[Stripe]:
-        known = [demanding(f"m{n}", drift={2: sure(low), 3: sure(high)}) for n, (low, high) in enumerate(pairs)]
-        return list(statistics.stripes(analysis.Points(known)))
-
-    below, above = stories((1.0, 4.0), (9.0, 5.0))
-    assert (below.mean.value, above.mean.value) == (5.0, 4.5)
-    assert governing_stripe([below, above]) is governing_stripe([above, below]) is below
-    below, above = stories((1.0, 4.0), (9.0, 5.0), (2.5, 6.0), (NAN, NAN))
-    assert [below.mean.value, *(each.value for each in below.fractiles[1:])] == [None, 5.75, None]
-    assert governing_stripe([below, above]) is below, "by the median, 5.75 and 5.5"
 
 
 def test_a_band_of_floor_spectra_has_the_larger_direction() -> None:
