@@ -298,6 +298,6 @@ def test_the_error_of_a_constant_step_has_that_of_the_equations_and_that_of_the_
 
     monkeypatch.setattr(convergence, "_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", exact)
-    _, errors = convergence._stiffen(load_scene("fig3-I"))
+    _, errors = convergence._compare_stiff_contacts(load_scene("fig3-I"))
     expected = np.hypot(convergence.SAFETY * np.array(PENETRATIONS), 0.01)
     assert errors == pytest.approx(np.broadcast_to(expected[:, None], errors.shape), rel=1e-12)
