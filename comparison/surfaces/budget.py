@@ -53,7 +53,8 @@ def closure_error(comparison: BodyComparison) -> float:
     differences = [comparison.difference(pair) for pair in comparison.chain_pairs]
     coarsest = max([total.stride, *(each.stride for each in differences)])
     gap = np.abs(
-        np.sum([each.every(coarsest, each.size) for each in differences], axis=0) - total.every(coarsest, total.size)
+        np.sum([each.at_stride(coarsest, each.size) for each in differences], axis=0)
+        - total.at_stride(coarsest, total.size)
     )
     return float(np.nanmax(gap)) if np.isfinite(gap).any() else float("nan")
 

@@ -88,7 +88,7 @@ class ModelDifference:
             return float("nan")
         return float(values[place[0] // self.stride, place[1] // self.stride])
 
-    def every(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
+    def at_stride(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
         """Return `values` of the difference, such as its size, at every `stride`-th phase of the study only."""
         return values[:: stride // self.stride, :: stride // self.stride]
 

@@ -164,7 +164,9 @@ class _Progress:
         elif change is not None:
             last, rejected = change.row, False
         before = at.state
-        if last > 0 and not self._accept(motion.cut_at(last), size[: last + 1], settle=rejected or change is not None):
+        if last > 0 and not self._accept_steps(
+            motion.cut_at(last), size[: last + 1], settle=rejected or change is not None
+        ):
             return False
         if openings is not None and event is not None:
             return self._pass_event(openings, event, step)
@@ -223,7 +225,7 @@ class _Progress:
         self.at.divisions += 1
         return True
 
-    def _accept(self, motion: EngineMotion, size: Array, *, settle: bool = False, read: bool = True) -> bool:
+    def _accept_steps(self, motion: EngineMotion, size: Array, *, settle: bool = False, read: bool = True) -> bool:
         """Accept steps up to where the model's validity ends, and move on; return whether the run goes on."""
         outcome, row, instant = find_termination(motion, self.model)
         if self.integration.keep:
@@ -249,7 +251,7 @@ class _Progress:
             else:
                 motion = openings.fill_gaps_of_open_contacts(motion)
             # so short a step tells nothing about a peak that may lie in it: forces have not settled at its end
-            if not self._accept(motion, size, read=False):
+            if not self._accept_steps(motion, size, read=False):
                 return False
         if event.closes:
             if at.time > run.peaks_count_from:
@@ -287,7 +289,7 @@ class _Progress:
         if motion is not None and np.isfinite(motion.accelerations).all():
             # nothing is read here: the next chunk reads the place of the kink from its side
             size = absolute_accelerations(self.model, motion, self.integration.ground)
-            if not self._accept(motion, size, settle=True, read=False):
+            if not self._accept_steps(motion, size, settle=True, read=False):
                 return False
             at.state = springs.settle(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
             if change.slides:

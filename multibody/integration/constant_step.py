@@ -197,10 +197,10 @@ class EngineSolver:
             self.newton_iterations = int(self.solver.it.newtonStepsCount)
         if self.stopped and springs is None:
             return None
-        motion = self._read()
+        motion = self._read_sensors()
         return motion if len(motion.time) > 1 else None
 
-    def _read(self) -> EngineMotion:
+    def _read_sensors(self) -> EngineMotion:
         """Read the last run from the sensors, at the engine's own instants: it halves steps that it cannot solve."""
         stored = self.model.mbs.GetSensorStoredData
         tables = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]

@@ -17,7 +17,7 @@ from reference.solver.steps import vertical_acceleration
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Ground, RunSettings, StepRecord, System
 from reference.solver.work import CLOCK, Workspace
 
-MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85  # controller in `length_factor`
+MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85  # bounds and safety in `length_factor`
 MAX_SHORTENING = 0.7  # largest factor from the length of a step that misses the tolerance to the next
 FAILURE_SHORTENING = 0.3  # factor from the length of a step whose equations have no solution to the next
 ERROR_ORDER = 7.0  # order of the error estimate in the step length

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from comparison.evidence.benchmarks.cases import Case, MotionReading
+from comparison.evidence.benchmarks.cases import BenchmarkCase, MotionReading
 from comparison.evidence.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, PublishedNumber
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
@@ -44,7 +44,7 @@ class BenchmarkTable(Analysis[Benchmarks]):
     """Every benchmark by the equations, by the equations with the engine's friction law, and by the engine."""
 
     key, stage = "benchmarks", "benchmarks"
-    cases: Sequence[Case]
+    cases: Sequence[BenchmarkCase]
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each benchmark and side."""
@@ -57,12 +57,12 @@ class BenchmarkTable(Analysis[Benchmarks]):
         ]
         return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
-    def _task(self, case: Case, side: str) -> Task:
+    def _task(self, case: BenchmarkCase, side: str) -> Task:
         seconds = SECONDS[side] * max(1.0, case.scene.duration / 12.0)
         return Task(solve_side, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
 
 
-def solve_side(question: tuple[Case, str]) -> SideNumbers:
+def solve_side(question: tuple[BenchmarkCase, str]) -> SideNumbers:
     """The numbers of one side. Runs inside a worker process."""
     case, side = question
     settings = dict(MODELS[side].settings)
@@ -98,7 +98,7 @@ def halve_samples(motion: Trajectory) -> Trajectory:
     return replace(motion, **arrays)
 
 
-def _make_benchmark(case: Case, answers: Mapping[str, SideNumbers]) -> Benchmark:
+def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -112,7 +112,7 @@ def _make_benchmark(case: Case, answers: Mapping[str, SideNumbers]) -> Benchmark
     )
 
 
-def _make_row(case: Case, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
+def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
     """A published number with that of every side, NaN where a side has not as many values as are published."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
@@ -135,5 +135,5 @@ def _make_row(case: Case, place: int, answers: Mapping[str, SideNumbers]) -> Pub
     return replace(row, numbers={side: read_number(side) for side in numbers})
 
 
-def _answer_of_failure(question: tuple[Case, str], failed: TaskResult) -> SideNumbers:
+def _answer_of_failure(question: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
     return SideNumbers([], [], failed.reason, 0.0)

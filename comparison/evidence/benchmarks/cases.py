@@ -49,7 +49,7 @@ def published_number(quantity: str, value: float, uncertainty: float, unit: str 
 
 
 @dataclass(frozen=True)
-class Case:
+class BenchmarkCase:
     """
     One benchmark.
 
@@ -76,7 +76,7 @@ def load_shipped_scene(name: str, values: Mapping[str, Any] | None = None) -> Sc
     return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values({"name": name, **(values or {})})
 
 
-def list_cases() -> list[Case]:
+def list_cases() -> list[BenchmarkCase]:
     """The benchmarks whose inputs are shipped."""
     return [
         *_wear_power(),
@@ -89,11 +89,11 @@ def list_cases() -> list[Case]:
     ]
 
 
-def _wear_power() -> list[Case]:
+def _wear_power() -> list[BenchmarkCase]:
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
-        Case(
+        BenchmarkCase(
             title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
@@ -106,8 +106,8 @@ def _wear_power() -> list[Case]:
     ]
 
 
-def _release_case() -> Case:
-    return Case(
+def _release_case() -> BenchmarkCase:
+    return BenchmarkCase(
         title="code_aster SDND100: release with friction",
         source="code_aster, test SDND100 (V5.01.100): closed form",
         evidence="turning points, and rest at the end",
@@ -122,10 +122,10 @@ def _release_case() -> Case:
     )
 
 
-def _coulomb_damping() -> Case:
+def _coulomb_damping() -> BenchmarkCase:
     stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor: from 386 in/s^2 and 10 lb to a radius of 981 m
     times = (0.09, 0.102, 0.183)
-    return Case(
+    return BenchmarkCase(
         title="ANSYS VM73: free vibration with Coulomb damping",
         source="ANSYS Verification Manual, VM73, after Tse, Morse and Hinkle, Mechanical Vibrations: closed form",
         evidence="the motion between stops, at given instants",
@@ -140,10 +140,10 @@ def _coulomb_damping() -> Case:
     )
 
 
-def _den_hartog() -> Case:
+def _den_hartog() -> BenchmarkCase:
     scene = load_shipped_scene("den-hartog")
     unit = 1e-3 * scene.radius / GRAVITY  # m: static displacement under the force
-    return Case(
+    return BenchmarkCase(
         title="Den Hartog: forced oscillation with friction",
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
@@ -156,10 +156,10 @@ def _den_hartog() -> Case:
     )
 
 
-def _harmonic_block() -> Case:
+def _harmonic_block() -> BenchmarkCase:
     share = 1.0 / 2.5  # friction limit over the ground's acceleration
     amplitude = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
-    return Case(
+    return BenchmarkCase(
         title="Rigid block on a harmonically shaken plane",
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
@@ -170,8 +170,8 @@ def _harmonic_block() -> Case:
     )
 
 
-def _pulse_case() -> Case:
-    return Case(
+def _pulse_case() -> BenchmarkCase:
+    return BenchmarkCase(
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
@@ -181,10 +181,10 @@ def _pulse_case() -> Case:
     )
 
 
-def _linear_cases() -> list[Case]:
+def _linear_cases() -> list[BenchmarkCase]:
     stories = (2.0, 0.6852, 0.4346, 0.3383, 0.2966)
     return [
-        Case(
+        BenchmarkCase(
             title="Chopra: one-story frame on isolators",
             source="A. K. Chopra, Dynamics of Structures, base-isolated one-story building: natural periods",
             evidence="stiffness of the isolator, mass and link",
@@ -196,7 +196,7 @@ def _linear_cases() -> list[Case]:
             scene=load_shipped_scene("frame"),
             start=((1e-4, 0.0), (0.0, 0.0)),
         ),
-        Case(
+        BenchmarkCase(
             title="Chopra: uniform five-story shear building",
             source="A. K. Chopra, Dynamics of Structures, uniform five-story shear building: natural periods",
             evidence="chain of links above a platform that friction holds",
@@ -209,7 +209,7 @@ def _linear_cases() -> list[Case]:
             start=(*((0.0, 0.0),) * 5, (1e-4, 0.0)),
             regularization=DEFAULT_V_REG,
         ),
-        Case(
+        BenchmarkCase(
             title="Pendulum released at 60°",
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
@@ -239,7 +239,7 @@ FRICTION = {
 }
 
 
-def mastodon(path: Path) -> Case:
+def mastodon(path: Path) -> BenchmarkCase:
     """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
     try:
         samples = read_csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
@@ -260,7 +260,7 @@ def mastodon(path: Path) -> Case:
         }
     )
     names = ("smallest along x", "largest along x", "smallest along y", "largest along y")
-    return Case(
+    return BenchmarkCase(
         title="MASTODON and OpenSees: friction pendulum under three-directional shaking",
         source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
         "loops of both programs",

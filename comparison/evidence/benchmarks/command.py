@@ -17,7 +17,7 @@ from comparison.cli.arguments import CommandParser, command, number_of_jobs, wri
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
-from comparison.evidence.benchmarks.cases import Case, list_cases, mastodon
+from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, mastodon
 from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, with_error, word_explanations, word_page
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.runner.attempts import attempt
@@ -83,7 +83,7 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
         console.print(f"{sentence}.", soft_wrap=True)
 
 
-def _choose_cases(only: str, mastodon_input: Path | None) -> list[Case]:
+def _choose_cases(only: str, mastodon_input: Path | None) -> list[BenchmarkCase]:
     """The benchmarks that the options leave. Raises SceneError."""
     known = list_cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]

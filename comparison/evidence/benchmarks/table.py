@@ -24,7 +24,7 @@ from comparison.verdicts import (
 FILE, PAGE = "benchmarks.json", "benchmarks.md"
 
 
-ROUNDING = 1e-12  # relative, of a computed value
+ROUNDING = 1e-12  # relative rounding of a computed value
 FRICTION = "the engine's friction law, linear below v_reg: the equations with it give the same"
 MODEL = "the source models something else, which its benchmark names"
 

@@ -85,7 +85,7 @@ def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: boo
     into = list(range(len(height)))  # for lesser maxima, the one across their saddle
     tops = []
     for node in order:
-        islands: dict[int, int] = {}  # adjacent to this node, and their highest node
+        islands: dict[int, int] = {}  # islands adjacent to this node, with their highest node
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
                 islands.setdefault(_root_of_node(parent, other), other)

@@ -20,7 +20,7 @@ PRINT: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 8.0,
-}  # as journals set figures
+}  # style of matplotlib for figures in journals
 WIDTH = 6.9  # inches, two columns of a page
 RESOLUTION = 300  # dots per inch
 

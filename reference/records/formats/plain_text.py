@@ -30,7 +30,7 @@ from reference.support.arguments import as_float, brief
 
 FORMAT = "plain text"
 OPTIONS = ("step", "unit", "skip", "column")
-MAX_SKIP = 10_000  # lines
+MAX_SKIP = 10_000  # lines that `skip` may leave out
 MAX_COLUMN = 100
 EVEN = 0.01  # relative, of the steps of a column that is a time
 MOST_COLUMNS = 4  # values a line that may be a time and three directions as well as a run of values

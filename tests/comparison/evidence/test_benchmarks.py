@@ -18,7 +18,7 @@ from comparison.evidence.benchmarks import analysis, readings
 from comparison.evidence.benchmarks.analysis import BenchmarkTable, SideNumbers, _make_benchmark, solve_side
 from comparison.evidence.benchmarks.cases import (
     LIMITS,
-    Case,
+    BenchmarkCase,
     MotionReading,
     list_cases,
     load_shipped_scene,
@@ -108,7 +108,7 @@ def test_the_error_covers_that_of_few_instants(monkeypatch):
 
 
 def _words(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]:
-    case = Case(
+    case = BenchmarkCase(
         "a",
         "b",
         "c",
