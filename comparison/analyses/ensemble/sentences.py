@@ -42,8 +42,8 @@ DEFINITIONS = (
 NOT_MODELED = (  # docs/guide/building.md says more of each, and begins with these words
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
-    "Bearings whose depression is below and whose slider is fixed to the building: there the displaced weight loads the "
-    "foundation.",
+    "Bearings whose depression is below and whose slider is fixed to the building: there the displaced weight loads "
+    "the foundation.",
     "Unequal dead loads of the supports other than those that follow from the places of supports and centers of mass.",
     "Bearings of different kind, radius or friction under one platform.",
     "Accidental eccentricity: state it by `offset` at the bodies, in a file for each sign.",
