@@ -42,10 +42,13 @@ DEFINITIONS = (
 NOT_MODELED = (  # docs/guide/building.md says more of each, and begins with these words
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
+    "Bearings whose depression is below and whose slider is fixed to the building: there the displaced weight loads "
+    "the foundation.",
     "Unequal dead loads of the supports other than those that follow from the places of supports and centers of mass.",
     "Bearings of different kind, radius or friction under one platform.",
+    "Accidental eccentricity: state it by `offset` at the bodies, in a file for each sign.",
+    "Vertical ground motion, except where the record has z.",
     "A damper beside the bearings: `lubrication` in place of `friction` is a viscous one.",
-    "Accidental eccentricity, unless `offset` of the bodies states it.",
     "Scaling by RotD100 as codes ask for it: `--target` fits the geometric mean of x and y.",
 )
 
