@@ -158,13 +158,13 @@ def test_the_answers_stand_below_their_heads_and_beside_their_labels() -> None:
         "scene": "tower", "body": "platform",
         f"SECOND {less}: mean, and range over the phases (α₁, α₂)": "<difference 1> <range 1>",
         "causes, with their share of the mean": "<causes 1>",
-        "same equations and friction law: largest difference (within twice the errors?)": "<agreement 1>",
+        "same equations and friction law: largest difference (met?)": "<agreement 1>",
         "literal supremum above as integrated: mean, largest": "<supremum 1>",
     }]  # fmt: skip
     labels = dict(re.findall(r'<td data-label="([^"]*)">.*?&lt;(\w+) 1', text))
     assert labels == {
         "SECOND less the paper’s equations, as integrated: mean, range": "difference", "causes": "causes",
-        "same equations and friction law: largest difference (within twice the errors?)": "agreement",
+        "same equations and friction law: largest difference (met?)": "agreement",
         "literal supremum above as integrated": "supremum",
     }  # fmt: skip
 
