@@ -39,6 +39,7 @@ MODEL: Any = SimpleNamespace(
     relaxation=1.0,
     friction=None,
     depressions=SimpleNamespace(),
+    springs=None,
     warping_displacement=lambda coordinates: coordinates,
 )
 
