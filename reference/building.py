@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.measures.story_forces import heights_above_contact
+from reference.measures.story_forces import heights_above_contact, support_loads_at_rest
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
 from reference.problem.chain_modes import solve_chain
@@ -17,6 +17,7 @@ from reference.problem.scene import takes_scene
 
 DESCRIBED = 10  # modes of each axis; of a tall chain only the lowest are found
 NAMED = 6  # modes, or buildings, that a line names
+ALIKE = 1e-6  # share of the mean within which the dead loads of supports are equal
 SHOWN = 3  # kinds of buildings that are described
 
 
@@ -36,7 +37,7 @@ class Building:
     supports : int or None
         Number of supports; None where the scene states none.
     load_per_support : float or None, N
-        Weight over the number of supports: the dead load of each, alike on all; None where the scene states none.
+        Weight over the number of supports; None where the scene states none.
     isolated_period : ndarray, (2, M), s
         Natural periods on the isolator, linear and without friction, of the M = min(N, 10) lowest modes; inf for the
         rigid motion on a plane.
@@ -59,6 +60,8 @@ class Building:
         Distance of the outermost supports along x and y; None where the scene states no places.
     heights : ndarray or None, (N,), m
         Heights of the centers of mass above the sliding contact; None unless the scene states all.
+    support_loads : ndarray or None, (K,), N
+        Dead load of every support by statics, with the centers of mass where they are; None where none is placed.
     """
 
     name: str
@@ -75,6 +78,7 @@ class Building:
     travel: float | None
     support_extent: Array | None
     heights: Array | None
+    support_loads: Array | None
 
     @property
     def lines(self) -> list[str]:
@@ -135,6 +139,7 @@ def describe_building(scene: Scene) -> Building:
             scene.isolator.travel,
             None if places is None else np.ptp(places, axis=0),
             heights_above_contact(scene),
+            support_loads_at_rest(scene),
         )
 
 
@@ -176,11 +181,21 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
     return "\n".join(lines).splitlines()
 
 
+def _word_loads(building: Building) -> str:
+    """Return how the weight spreads over the supports."""
+    loads, mean = building.support_loads, building.load_per_support
+    if loads is None or mean is None or float(np.ptp(loads)) <= ALIKE * mean:
+        return "(equal dead load)"
+    return f"in the mean ({word_force(loads.min())} to {word_force(loads.max())} at rest, by statics)"
+
+
 def _word_structure(building: Building) -> list[str]:
     """Return what is said of a building without its loading."""
     bodies = f"{building.bodies} {'body' if building.bodies == 1 else 'bodies'}"
     load = building.load_per_support
-    each = "" if load is None else f", {word_force(load)} on each of {building.supports} supports (equal dead load)"
+    each = (
+        "" if load is None else f", {word_force(load)} on each of {building.supports} supports {_word_loads(building)}"
+    )
     lines = [f"{bodies}, weight {word_force(building.weight)}{each}"]
     travel = "no travel stated" if building.travel is None else f"travel {building.travel:.4g} m"
     lines.append(f"  isolator: {_word_radius(building.radius)}, {travel}{_word_extent(building.support_extent)}")

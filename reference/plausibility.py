@@ -36,6 +36,7 @@ def implausible_values(scene: Scene) -> list[str]:
         lines.append(f"the radius of the isolator is {scene.radius:.4g} m, above {LARGEST_RADIUS:g} m: {unit}?")
     if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > LARGEST_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
+    lines += _implausible_limits(scene)
     # What a record has by itself is said where it is described.
     as_read = scene.largest_acceleration / (scene.excitation.scale or 1.0) if scene.recorded else 0.0
     if (peak := building.ground_peak / GRAVITY) > LARGEST_PEAK and as_read <= LARGEST_PEAK * GRAVITY:
@@ -49,6 +50,18 @@ def implausible_drift(ratio: float, place: str) -> str:
         return ""
     share = f"{100.0 * ratio:.3g} % of the height of the story, above {100.0 * LARGEST_DRIFT_RATIO:g} %"
     return f"the drift {place} is {share}: is stiffness in N/m?"
+
+
+def _implausible_limits(scene: Scene) -> Iterator[str]:
+    """Yield the lines for limits on demands that hold whatever happens."""
+    limits = scene.acceptance.demands
+    if limits is None:
+        return
+    if limits.displacement is not None and limits.displacement > scene.radius:
+        yield f"the limit on the displacement is {limits.displacement:.4g} m, above the radius of the isolator: mm?"
+    if limits.drift_ratio is not None and limits.drift_ratio > LARGEST_DRIFT_RATIO:
+        share = f"{limits.drift_ratio:.4g}, above {LARGEST_DRIFT_RATIO:g}"
+        yield f"the limit on the drift ratio is {share}: percent?"
 
 
 def _implausible_modes(building: Building) -> list[str]:

@@ -232,4 +232,12 @@ MISTAKES = (
             "off_middle = scene.center_of_mass + lean",
             "Supports about another point than the axis carry another moment.",
             ("tests/reference/test_story_forces.py::test_supports_of_uneven_places_balance_weight_and_moment_about_any_point",)),
+    Mistake("reference/measures/story_forces.py", "weight / len(places) + weight *", "weight / len(places) - weight *",
+            "The dead load grows away from the center of mass.", ("tests/reference/test_story_forces.py::test_dead_loads_follow_the_centers_of_mass",)),
+    Mistake("comparison/analyses/ensemble/analysis.py", "if model != EXACT and numbers.status != Outcome.OK:", "if False:",
+            "An engine that does not meet its tolerance has values.",
+            ("tests/comparison/analyses/test_ensemble.py::test_an_engine_that_does_not_meet_its_tolerance_has_no_value",)),
+    Mistake("comparison/analyses/ensemble/trust.py", "value > 0.0 and ratio.motions > 1", "value > 0.0",
+            "One motion extends a ratio to the suite.",
+            ("tests/comparison/analyses/test_ensemble_report.py::test_one_motion_extends_no_ratio_nor_does_a_force_below_zero",)),
 )

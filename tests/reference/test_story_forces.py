@@ -6,6 +6,7 @@ import pytest
 import multibody
 import reference
 from reference.measures import StoryForces, story_forces
+from reference.measures.story_forces import support_loads_at_rest
 from reference.problem.result import Trajectory
 
 KICK = {"record": {"time": [0.0, 0.3, 0.6, 0.9, 1.2], "acceleration": [[0.0, 0.0], [3, 1], [-3, 2], [2, -2], [0, 0]]}}
@@ -129,3 +130,17 @@ def test_no_moment_without_heights_and_no_supports_without_places() -> None:
         reference.trajectory(reference.load_scene("fig3-I").with_values({"bodies.1.height": None}), (0.3, 1.1))
     )
     assert (forces.moment, forces.support_min, forces.support_max, forces.uplift) == (None, None, None, None)
+
+
+def test_dead_loads_follow_the_centers_of_mass() -> None:
+    """By hand: a roof of 20 t, 2 and 1.5 m off the middle of four supports at 3 and 2 m."""
+    bodies = [*TABLES["bodies"][:2], {**TABLES["bodies"][2], "offset": [2.0, 1.5]}]  # type: ignore[index]
+    even, uneven = (reference.Scene.model_validate({**TABLES, **more}) for more in ({}, {"bodies": bodies}))
+    weight = 9.81 * 20e3
+    by_hand = 9.81 * 90e3 / 4.0 + weight * (2.0 * PLACES[:, 0] / 36.0 + 1.5 * PLACES[:, 1] / 16.0)
+    loads = support_loads_at_rest(uneven)
+    assert loads == pytest.approx(by_hand, rel=1e-9)
+    assert support_loads_at_rest(even) == pytest.approx(9.81 * 90e3 / 4.0)
+    assert "220.7 kN on each of 4 supports (equal dead load)" in reference.describe_building(even).lines[0]
+    ends = f"{by_hand.min() / 1e3:.4g} kN to {by_hand.max() / 1e3:.4g} kN at rest, by statics"
+    assert f"220.7 kN on each of 4 supports in the mean ({ends})" in reference.describe_building(uneven).lines[0]

@@ -13,7 +13,7 @@ from comparison.study.batches import import_function
 from comparison.study.costs import seconds_per_motion
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model, has_spatial_data
 from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, demands, floor_spectra, story_forces
-from reference.problem import Scene
+from reference.problem import Outcome, Scene
 
 STAGE = "ensemble"
 REST = (0.0, 0.0)  # a record has no phases
@@ -111,6 +111,8 @@ class Ensemble:
         if isinstance(found, str):
             return Point(member, model.key, found)
         numbers, forces, spectra, instant = found
+        if model != EXACT and numbers.status != Outcome.OK:
+            return Point(member, model.key, numbers.status, instant=instant)  # a status that is not ok is no value
         values = values_of_motion(member.scene, numbers, forces)
         return Point(member, model.key, numbers.status, values, spectra, forces, instant)
 

@@ -114,6 +114,9 @@ def read_building(scene: Scene) -> result.BuildingRead:
     return result.BuildingRead(
         supports=building.supports,
         load_per_support=building.load_per_support,
+        support_loads=None if building.support_loads is None else building.support_loads.tolist(),
+        masses=scene.masses.tolist(),
+        offsets=scene.offsets.tolist(),
         isolated_period=[[finite_or_none(period) for period in axis] for axis in building.isolated_period.tolist()],
         fixed_base_period=building.fixed_base_period.tolist(),
         modal_damping=building.modal_damping.tolist(),

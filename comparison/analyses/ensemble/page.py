@@ -90,11 +90,14 @@ def _supports_context(ensemble: EnsembleResult, say: Say) -> Context:
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
-    loads = {each.name: each.building.load_per_support for each in ensemble.structures if each.building}
+    loads = {each.name: each.building.support_loads for each in ensemble.structures if each.building}
     return {
         "labels": labels(ensemble),
         "text_of": text_of,
-        "rows": [(name, number, loads.get(name), models) for (name, number), models in by_place.items()],
+        "rows": [
+            (name, number, own[number - 1] if (own := loads.get(name)) else None, models)
+            for (name, number), models in by_place.items()
+        ],
         "engine": ensemble.engine.model,
         "exact": EXACT.key,
         "support_sentences": sentences.support_sentences(ensemble),

@@ -54,7 +54,7 @@ class BuildingRead:
     """The building as it was read; axis 0 is x, 1 is y."""
 
     supports: Annotated[int | None, "number of supports; null where the scene states none"]
-    load_per_support: Annotated[float | None, "weight over their number, N: all carry the same"]
+    load_per_support: Annotated[float | None, "weight over their number, N"]
     isolated_period: Annotated[Sequence[Sequence[float | None]], "periods on the isolator without friction, s"]
     fixed_base_period: Annotated[Sequence[Sequence[float]], "periods of the bodies above a platform that is held, s"]
     modal_damping: Annotated[Sequence[Sequence[float]], "damping ratio of each of these modes, from the links"]
@@ -66,6 +66,9 @@ class BuildingRead:
     floors: Annotated[Sequence[str], "names of the bodies, empty where the scene gives none"] = ()
     friction_rate: Annotated[float | None, "rate of the friction law, s/m; null if lubricated"] = None
     stiffness: Annotated[Sequence[Sequence[float]], "of every story from the lowest, along x and y, N/m"] = ()
+    support_loads: Annotated[Sequence[float] | None, "of every support at rest, N; null if not placed"] = None
+    masses: Annotated[Sequence[float], "of the bodies, kg"] = ()
+    offsets: Annotated[Sequence[Sequence[float]], "of the centers of mass along x and y, m"] = ()
     sizes: Annotated[Sequence[Sequence[float] | None], "of the bodies along x, y and z, m; null if not stated"] = ()
 
 

@@ -14,8 +14,9 @@ TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
 NAMED = 12  # motions that are named one by one
 FEW = 3  # and of a sentence that has other things to say
 DEFINITIONS = (
-    "Displacement, drift, story shear, base shear, overturning moment and acceleration are resultants of x and y, "
-    "the largest over time; floor spectra are the larger of x and y.",
+    "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
+    "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
+    "middle of the platform; `support_displacement` in ensemble.csv is the largest of a support that turns with it.",
     "Accelerations by the equations are the literal supremum: the one-sided limits at a stop of the isolator count.",
     "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
     "value have it, where it is not below the last digit; summary.json has those of the fractiles.",

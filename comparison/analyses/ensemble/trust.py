@@ -34,6 +34,7 @@ class Ratio:
     mean: float
     smallest: float
     largest: float
+    motions: int = 1
     smallest_motion: str = ""
     largest_motion: str = ""
 
@@ -127,7 +128,9 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
         if not pairs:
             return None
         (smallest, at_smallest), (largest, at_largest) = min(pairs), max(pairs)
-        return Ratio(math.fsum(each for each, _ in pairs) / len(pairs), smallest, largest, at_smallest, at_largest)
+        return Ratio(
+            math.fsum(each for each, _ in pairs) / len(pairs), smallest, largest, len(pairs), at_smallest, at_largest
+        )
 
     ratios = {key: found for key in COLUMNS if key != EXACT.key and (found := ratio(key, EXACT.key))}
     law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
@@ -206,7 +209,8 @@ def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, l
         for (name, place), (head, _) in zip(shown, STATISTICS):
             value = numbers[place].value
             of = f"{name}: " if name != head else ""
-            cells.append(of + ("none" if value is None else _with_range(ratio, value, factor)))
+            extended = value is not None and value > 0.0 and ratio.motions > 1  # one motion tells no spread
+            cells.append(of + (_with_range(ratio, value, factor) if extended and value is not None else "none"))
         yield row, ratio, [unit, *cells]
 
 

@@ -25,6 +25,7 @@ from comparison.analyses.ensemble.rows import labels
 from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
+from comparison.study.models import EXACT, TRANSLATIONAL
 from reference.measures import Estimate, FloorSpectra, StoryForces, story_forces
 from reference.problem import load_family, load_scene
 from reference.records.motion_lists import Motion
@@ -488,3 +489,15 @@ def test_structures_are_told_apart_by_the_values_that_differ() -> None:
     names = [f"frame[friction=slow=0.03+rate={rate}, travel=0.2]" for rate in ("1e+05", "2e+05")]
     found = labels(SimpleNamespace(structures=[SimpleNamespace(name=name) for name in names]))  # type: ignore[arg-type]
     assert list(found.values()) == ["rate=1e+05", "rate=2e+05"]
+
+
+def test_an_engine_that_does_not_meet_its_tolerance_has_no_value() -> None:
+    """Only the exact equations keep what they found before a motion ended early."""
+    member = Member("mine", "m", 1.0, load_scene("synthetic-pair"))
+    motion = reference.trajectory(member.scene, (0.0, 0.0))
+    for status, known in (("ok", True), ("tolerance not met", False)):
+        answer = replace(reference.demands(motion), status=status), story_forces(motion), None, 1.5
+        results: Any = SimpleNamespace(value=lambda task, otherwise, answer=answer: answer)
+        for model, kept in ((TRANSLATIONAL, known), (EXACT, True)):
+            point = analysis.Ensemble((member,))._point(member, model, results)
+            assert (point.status, bool(point.values)) == (status, kept)

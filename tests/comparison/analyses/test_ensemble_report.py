@@ -406,6 +406,19 @@ def test_an_extended_smallest_force_shows_its_harmful_end() -> None:
     assert cells[3] == "smallest: 0.75 (0.5 to 1)"
 
 
+def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
+    def cells(exact: Sequence[float], spatial: Sequence[float], left_out: tuple[str, ...] = ()) -> list[str]:
+        found = with_demand(planted(), "support_force_min", None, exact=exact, spatial=spatial)
+        kept = [each for each in found.curves if each.model != "spatial" or each.motion not in left_out]
+        rows = trust.extended_rows(replace(found, curves=kept))
+        return next(shown for row, _, shown in rows if row.name == "smallest support force")
+
+    one = cells((4e3, 3e3, 2e3, 1e3), (1.0, 1.0, 1.0, 5e2), ("m1", "m2", "m3"))
+    assert one[1:] == ["none", "16 %: none", "smallest: none"], "one motion tells no spread"
+    below = cells((4e3, 3e3, 2e3, -1e3), (4e3, 3e3, 1e3, 0.0))
+    assert below[3] == "smallest: none", "the engine's supports do not pull"
+
+
 def two_bounds() -> EnsembleResult:
     """The lower bound reaches its travel of 0.5 m under m4, the upper bound has a value under all."""
     one = planted()

@@ -203,6 +203,15 @@ def test_a_peak_of_the_ground_is_hardly_meant_by_its_scale_where_the_record_is_n
     assert implausible_values(in_another_unit) == [], "said where the record is described"
 
 
+def test_limits_that_always_hold_are_hardly_meant() -> None:
+    scene, key = load_scene("fig3-I"), "acceptance.demands"
+    assert implausible_values(scene.with_values({key: {"displacement": 0.24, "drift_ratio": 0.1}})) == []
+    assert implausible_values(scene.with_values({key: {"displacement": 400.0, "drift_ratio": 0.4}})) == [
+        "the limit on the displacement is 400 m, above the radius of the isolator: mm?",
+        "the limit on the drift ratio is 0.4, above 0.1: percent?",
+    ]
+
+
 def test_a_drift_above_a_tenth_of_the_height_is_hardly_meant() -> None:
     assert implausible_drift(0.1, "below body 2") == ""
     assert implausible_drift(0.236, "below body 2").startswith("the drift below body 2 is 23.6 % of the height")
