@@ -13,7 +13,6 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from reference import describe_building
 from reference.building import horizontal_peak
 from reference.measures import effective_isolator
-from reference.measures.story_forces import heights_above_contact
 from reference.problem import GRAVITY, Outcome, Scene
 from reference.records.motion_lists import Motion
 
@@ -110,7 +109,7 @@ def structures_of(members: Sequence[Member], displacements: Mapping[str, result.
 
 def read_building(scene: Scene) -> result.BuildingRead:
     """The building of a scene as it was read."""
-    building, heights = describe_building(scene), heights_above_contact(scene)
+    building = describe_building(scene)
     return result.BuildingRead(
         supports=building.supports,
         load_per_support=building.load_per_support,
@@ -123,7 +122,7 @@ def read_building(scene: Scene) -> result.BuildingRead:
         radius=finite_or_none(scene.radius),
         friction=() if scene.lubricated else (scene.dry_friction.slow, scene.dry_friction.fast),
         travel=scene.isolator.travel,
-        heights=None if heights is None else heights.tolist(),
+        heights=None if building.heights is None else building.heights.tolist(),
         floors=[body.floor or "" for body in scene.bodies],
         friction_rate=None if scene.lubricated else scene.dry_friction.rate,
         stiffness=scene.stiffness.tolist(),

@@ -40,7 +40,7 @@ from comparison.analyses.ensemble.limits import (
 )
 from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit, with_suite
 from comparison.analyses.ensemble.page import page_of
-from comparison.analyses.ensemble.result import STORED, EnsembleResult, Target
+from comparison.analyses.ensemble.result import STORED, EnsembleResult
 from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.analyses.ensemble.terminal import print_engine, print_equations
@@ -89,7 +89,7 @@ MAX_SCALES = 100
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Compute the ensemble that the command line names, and write what it shows; the exit code."""
     options = _parser().parse_args(argv)
-    number_of_jobs(options)  # refused before anything else is looked at
+    jobs = number_of_jobs(options)  # refused before anything else is looked at
     members = members_of([family_of_options(options, scene) for scene in options.scenes])
     asked = parse_engine_option(options.engine, members)
     target = None
@@ -109,23 +109,14 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     print_records(console, [(member.motion, member.scene) for member in members], short=not options.plan)
     print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks = ensemble.equation_tasks()
-    first = expected_choices(members, asked)
-    later = ensemble.engine_tasks([Choice(member, ()) for member in first])
-    jobs = number_of_jobs(options)
-    seconds = sum(wall_seconds([task.seconds for task in each], jobs) for each in (tasks, later))
-    engine = f"at most {most}" if (most := largest_choices(members, asked)) > len(first) else f"{len(first)}"
-    workers = f"{jobs} worker{'' if jobs == 1 else 's'}"
-    wall = f"about {STARTING + seconds + WRITING:.0f} s on idle cores with {workers}"
-    console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
-    if ensemble.spatial and asked != 0:
-        for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
-            console.print(f"{line}.", soft_wrap=True, markup=False)
+    print_work(console, ensemble, tasks, asked, jobs)
     if options.plan:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
     begin = command_start().wall
-    write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options), check)
+    build = partial(build_result, tolerance=ensemble.tolerance, target=target, listed=listed_motions(options))
+    write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def then(results: TaskResults, display: Display) -> Sequence[Task]:
         chosen = [] if asked == 0 else choose_motions(ensemble.points(results).equations, asked)
@@ -150,6 +141,21 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         written = write(results, ensemble.points(results, chosen), print_engine)
     console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
     return print_checks(check(written), asked=options.check or options.against is not None)
+
+
+def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: Asked, jobs: int) -> None:
+    """Say what computes how many motions in what time, and why a structure has no spatial model. tasks: equations."""
+    members = ensemble.members
+    first = expected_choices(members, asked)
+    later = ensemble.engine_tasks([Choice(member, ()) for member in first])
+    seconds = sum(wall_seconds([task.seconds for task in each], jobs) for each in (tasks, later))
+    engine = f"at most {most}" if (most := largest_choices(members, asked)) > len(first) else f"{len(first)}"
+    workers = f"{jobs} worker{'' if jobs == 1 else 's'}"
+    wall = f"about {STARTING + seconds + WRITING:.0f} s on idle cores with {workers}"
+    console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
+    if ensemble.spatial and asked != 0:
+        for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
+            console.print(f"{line}.", soft_wrap=True, markup=False)
 
 
 def demand_check(
@@ -188,32 +194,26 @@ def write_ensemble(
     options: argparse.Namespace,
     argv: Sequence[str],
     begin: float,
-    ensemble: Ensemble,
-    target: Target | None,
-    listed: Mapping[str, Motion],
+    build: Callable[[Points, Mapping[str, Any]], EnsembleResult],
     check: Callable[[EnsembleResult], list[DemandCheck]],
     results: TaskResults,
     points: Points,
     show: Callable[[Console, EnsembleResult], None],
 ) -> EnsembleResult:
     """Write the files of the ensemble, show on the terminal what they hold, write the page; return the result."""
-    cost = results.parts[STAGE].seconds
+    cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
-    result = build_result(points, run, ensemble.tolerance, target, listed)
+    result = build(points, run)
     checks = check(result)
     result = replace(result, limits=verdicts_of(checks))
     files = {STORED.name: STORED.as_json(result)}
     files |= {CHECKED: junit_of(checks, run)} if checks else {}
     if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
         files[TABLE] = table
-    written = write_and_show(
-        options.out,
-        partial(publish_files, resolve_destination(options.out), files, COMMAND),
-        partial(show, console, result),
-    )
+    written = write_and_show(options.out, partial(publish_files, out, files, COMMAND), partial(show, console, result))
     page = attempt(PAGE, lambda: page_of(result).encode())
     with report_write_errors(options.out):
-        written += publish_files(resolve_destination(options.out), {} if page is None else {PAGE: page}, COMMAND)
+        written += publish_files(out, {} if page is None else {PAGE: page}, COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
     return result
 
@@ -238,22 +238,22 @@ def junit_of(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
 
 def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
     """Members in place of those that the engine will compute, whose cost is alike."""
-    top = max(member.scale for member in members)
     if asked == MOST:
         return list(members)
-    chosen = []
-    for own in group_by([member for member in members if member.scale == top], "structure").values():
-        chosen += own[: expected_count(asked, len(own))]
-    return chosen
+    return [member for own in _by_structure(members) for member in own[: expected_count(asked, len(own))]]
 
 
 def largest_choices(members: Sequence[Member], asked: Asked) -> int:
     """Return the most motions that the engine may compute."""
     if asked == MOST:
         return len(members)
+    return sum(largest_count(asked, own[0].scene, len(own)) for own in _by_structure(members))
+
+
+def _by_structure(members: Sequence[Member]) -> list[list[Member]]:
+    """Members at the largest scale of all, by structure."""
     top = max(member.scale for member in members)
-    groups = group_by([member for member in members if member.scale == top], "structure").values()
-    return sum(largest_count(asked, own[0].scene, len(own)) for own in groups)
+    return list(group_by([member for member in members if member.scale == top], "structure").values())
 
 
 def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:

@@ -108,11 +108,10 @@ def governing_motions(ensemble: EnsembleResult, structure: str) -> list[str]:
     """Return the motions of a structure that govern by the equations at the largest scale, each once."""
     found: dict[str, None] = {}
     for quantity in GOVERNING:
-        bodies = {each.body for each in ensemble.curves if (each.structure, each.quantity) == (structure, quantity)}
         values = [
             (number.value, motion)
-            for body in bodies
-            for motion, number in ensemble.values_at_top(structure, quantity, body, EXACT.key).items()
+            for numbers in ensemble.values_by_body(structure, quantity, EXACT.key, ensemble.top).values()
+            for motion, number in numbers.items()
             if number.value is not None
         ]
         if values:

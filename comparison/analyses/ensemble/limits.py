@@ -150,9 +150,9 @@ def _check_body(
     lacking = _lacking_governing(ensemble, structure, {motion for *_, motion in known}) if governing else ""
     least, least_motion = _least_by_travel(ensemble, structure, key, statistic, values)
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
-    what = "base shear over the weight" if key == "base_shear" else title_of(key)
-    what += f" {place}" if (place := place_of(structure, key, body)) else ""
-    what += f", {_statistic_in_words(ensemble, statistic, count, model if of_engine else '', governing, not lacking)}"
+    alone = model if of_engine else ""
+    on = _statistic_in_words(ensemble, statistic, count, alone, part=governing, governing=not lacking)
+    what = f"{_word_demand(structure, key, body)}, {on}"
     what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
     unit, ended = UNITS.get(key, ""), len(values) - len(known)
@@ -163,17 +163,26 @@ def _check_body(
     if not known:
         reason = reason if values else "heights of the bodies are needed" if key == "drift_ratio" else NOT_COMPUTED
         return DemandCheck(*about, None, limit, unit=unit, reason=reason)
-    if statistic == MEAN and not governing:
-        found, error, motion = *(sum(part) / len(known) / per for part in list(zip(*known))[:2]), ""
-    else:
-        value, error, motion = max(known)
-        found, error = value / per, error / per
+    value, error, motion = _mean_of(known) if statistic == MEAN and not governing else max(known)
+    found, error = value / per, error / per
     excess = max(found - limit, 0.0)
     if excess > error and statistic == LARGEST:  # whatever the others have
         reason = ""
     elif excess > error and governing and not reason:  # the others can make the mean smaller
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
     return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
+
+
+def _word_demand(structure: Structure, key: str, body: int | None) -> str:
+    """Return the demand that a limit is on, and its place."""
+    what = "base shear over the weight" if key == "base_shear" else title_of(key)
+    return f"{what} {place}" if (place := place_of(structure, key, body)) else what
+
+
+def _mean_of(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
+    """Return mean value and mean error of values with their errors and motions, of no single motion."""
+    values, errors, _ = zip(*known)
+    return sum(values) / len(known), sum(errors) / len(known), ""
 
 
 def _statistic_in_words(

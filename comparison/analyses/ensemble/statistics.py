@@ -122,9 +122,10 @@ def curves(points: Points) -> Iterator[result.DemandCurve]:
     asked = quantities(points.all_points)
     for name in group_by(points.equations, "member.structure"):
         by_model = [[point for point in own if point.member.structure == name] for own in every]
+        known = [({*quantities(own)}, group_by(own, "member.motion")) for own in by_model]
         for quantity in asked:
-            for own in by_model:
-                for motion, at in group_by(own, "member.motion").items() if quantity in quantities(own) else ():
+            for has, by_motion in known:
+                for motion, at in by_motion.items() if quantity in has else ():
                     at = sorted(at, key=lambda point: point.member.scale)
                     numbers = [statistic(point.estimate(quantity)) for point in at]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
