@@ -36,6 +36,7 @@ from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Deadline, TimeUpError, show_progress, wide_console
 from comparison.runner.runner import Runner
+from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.costs import WRITING, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
@@ -67,6 +68,7 @@ def main(
             words = edit_command_line(argv, as_words(models or {}))
             options = parse_options(words)
             run = StudyRun(options, words, hierarchy, began)
+            run.describe()
             if options.plan:
                 run.plan()
                 return 0
@@ -109,6 +111,9 @@ class StudyRun:
         self._options, self._words, self._began = options, words, began
         self._study, self._console = _make_study(options, hierarchy), wide_console()
         self._cache = Cache(locate_store(options.out))
+
+    def describe(self) -> None:
+        """Print what was read of the scenes, what is hardly meant, and what models are left out."""
         print_models_left_out(self._console, self._study)
 
     def plan(self) -> None:
@@ -120,7 +125,8 @@ class StudyRun:
         options, models = self._options, {model.amplification for model in self._study.hierarchy}
         with open_workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
             clear_dead(options.out)
-            results = self._open_results()
+            surfaces = surface_tasks(self._study)
+            results = self._open_results(surfaces)
             stages = seconds_by_stage(self._study)
             models_seconds = sum(seconds_of_model(self._study, model) for model in self._study.hierarchy)
             total = WRITING + sum(stages.values()) + models_seconds
@@ -129,10 +135,10 @@ class StudyRun:
                 show_progress(self._console, total, jobs) as display,
                 Deadline(self._began.wall, options.budget) as deadline,
             ):
-                stop = self._compute_levels(Runner(results, jobs, pool, display, stages), reports, deadline)
-            return self.close(reports, jobs, stop)
+                stop = self._compute_levels(Runner(results, jobs, pool, display, stages), surfaces, reports, deadline)
+            return self._close(reports, jobs, stop)
 
-    def close(self, reports: Reports, jobs: int, stop: KeyboardInterrupt | None) -> int:
+    def _close(self, reports: Reports, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
         Print what the last report says and what to do next; return the exit code.
 
@@ -156,9 +162,9 @@ class StudyRun:
         """Print a line that is not wrapped."""
         self._console.print(line, soft_wrap=True)
 
-    def _open_results(self) -> TaskResults:
+    def _open_results(self, surfaces: Sequence[Task]) -> TaskResults:
         """Return the results of earlier runs, less those that this one computes anew, and say how many there are."""
-        first, surfaces = first_tasks(self._study, select_analyses(self._study)), surface_tasks(self._study)
+        first = first_tasks(self._study, select_analyses(self._study))
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)
         if self._options.fresh:  # gone before anything is computed: what an interrupted run left is new
@@ -167,12 +173,14 @@ class StudyRun:
         print_stored(self._console, results, surfaces, first)
         return results
 
-    def _compute_levels(self, runner: Runner, reports: Reports, deadline: Deadline) -> KeyboardInterrupt | None:
+    def _compute_levels(
+        self, runner: Runner, surfaces: Sequence[Task], reports: Reports, deadline: Deadline
+    ) -> KeyboardInterrupt | None:
         """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
         complete: CompleteLevel | None = None
         try:
             planned = study_levels(self._study)
-            for level in planned if runner.results.missing(surface_tasks(self._study)) else planned[-1:]:
+            for level in planned if runner.results.missing(surfaces) else planned[-1:]:
                 complete = compute_level(level, runner)
                 if level.last or reports.is_due(complete, runner):
                     before = reports.results

@@ -14,6 +14,7 @@ from reference.problem import GRAVITY, Scene
 from reference.problem.chain_modes import solve_chain
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
+from reference.support.arguments import name_some
 
 DESCRIBED = 10  # modes of each axis; of a tall chain only the lowest are found
 NAMED = 6  # modes, or buildings, that a line names
@@ -172,8 +173,7 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
     lines = []
     for text, own in [*alike.items()][:SHOWN]:
         names = [*dict.fromkeys(building.name for building in own)]
-        more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-        lines.append(f"Building {', '.join(names[:NAMED])}{more}: {text}")
+        lines.append(f"Building {name_some(names, NAMED)}: {text}")
         lines += _word_frictions(own)
         lines.append(f"  peak of the ground: {_word_peaks([building.ground_peak for building in own])}")
     if len(alike) > SHOWN:
@@ -225,9 +225,7 @@ def _word_frictions(buildings: Sequence[Building]) -> list[str]:
         return [f"  {_word_friction([*alike])}"]
     lines = []
     for friction, own in alike.items():
-        names = [*dict.fromkeys(own)]
-        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-        lines.append(f"  {_word_friction([friction])} ({', '.join(names[:SHOWN])}{more})")
+        lines.append(f"  {_word_friction([friction])} ({name_some([*dict.fromkeys(own)], SHOWN)})")
     return lines
 
 

@@ -18,6 +18,7 @@ from comparison.surfaces.headline import Headline
 from comparison.surfaces.statements import word_unchecked
 from comparison.wording import percent, signed
 from reference.problem import Scene, builtin_scenes, example_scenes
+from reference.support.arguments import name_some
 
 FIRST_SENTENCES = 8  # sentences that the terminal shows after a level
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
@@ -54,8 +55,9 @@ def print_check(results: Results, scenes: Sequence[Scene]) -> None:
 def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
     """Return a line that says where limits on demands are checked; none without such limits."""
     stated = [scene.name for scene in scenes if scene.acceptance.demands is not None]
-    names = f"{stated[0]} and {len(stated) - 1} more" if len(stated) > 1 else "".join(stated)
-    return [f"[acceptance.demands] of {names}: phase-resonance ensemble --check checks it"] if stated else []
+    if not stated:
+        return []
+    return [f"[acceptance.demands] of {name_some(stated, 1)}: phase-resonance ensemble --check checks it"]
 
 
 def print_closing(console: Console, results: Results, options: Options, words: Sequence[str], report: Path) -> None:

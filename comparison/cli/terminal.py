@@ -24,6 +24,7 @@ from comparison.surfaces.surfaces import surface_tasks
 from reference.building import describe_building, word_buildings
 from reference.plausibility import implausible_values
 from reference.problem import Family, Scene
+from reference.support.arguments import name_some
 
 NAMES = 4  # names of a list that the terminal shows
 
@@ -31,7 +32,7 @@ NAMES = 4  # names of a list that the terminal shows
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """Print what would be computed, and roughly how long it would take."""
     for reason, of in _list_refusals(study).items():
-        console.print(f"{_list_names(of)}: {reason}.", soft_wrap=True)
+        console.print(f"{name_some(of, NAMES)}: {reason}.", soft_wrap=True)
     _print_models(console, study, options.families)
     analyses = select_analyses(study)
     _print_analyses(console, study, analyses)
@@ -82,12 +83,6 @@ def _print_levels(console: Console, study: Study) -> None:
         kinds = {"equations" if m.side == "reference" else m.title: len(level.study.phase_indices(m)) for m in models}
         grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
         console.print(f"{level.title.capitalize()}: {grids}.")
-
-
-def _list_names(names: Sequence[str]) -> str:
-    """The first names, and how many others."""
-    shown = ", ".join(names[:NAMES])
-    return shown if len(names) <= NAMES else f"{shown} and {len(names) - NAMES} more"
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
@@ -147,7 +142,7 @@ def _print_reductions(console: Console, study: Study) -> None:
     elif rows := list_omissions(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
-            console.print(f"  {row.what} ({row.models}; {_list_names(row.scenes)}): {row.why}", soft_wrap=True)
+            console.print(f"  {row.what} ({row.models}; {name_some(row.scenes, NAMES)}): {row.why}", soft_wrap=True)
     else:
         console.print("Nothing is left out: the scenes require all of it.")
 

@@ -57,17 +57,17 @@ def junit_text(scenes: Sequence[JUnitSuite]) -> str:
     """Return suites of checks as JUnit XML."""
     suites = ElementTree.Element("testsuites", name="phase-resonance acceptance limits")
     for scene in scenes:
-        name = _limit_text(scene.name)
+        name = _xml_text(scene.name)
         about = {"name": name, "time": f"{scene.seconds:.1f}", "timestamp": scene.timestamp}
         suite = ElementTree.SubElement(suites, "testsuite", about)
         for each in scene.cases:
-            case = ElementTree.SubElement(suite, "testcase", classname=name, name=_limit_text(each.name))
+            case = ElementTree.SubElement(suite, "testcase", classname=name, name=_xml_text(each.name))
             if each.failures:
-                lines = [_limit_text(line) for line in each.failures]
+                lines = [_xml_text(line) for line in each.failures]
                 ElementTree.SubElement(case, "failure", message=lines[0]).text = "\n".join(lines)
             if each.skipped:
                 ElementTree.SubElement(case, "skipped", message=each.skipped)
-        ElementTree.SubElement(suite, "system-out").text = _limit_text(scene.said)
+        ElementTree.SubElement(suite, "system-out").text = _xml_text(scene.said)
         counts: dict[str, int] = {"tests": len(suite.findall("testcase")), "errors": 0}
         counts |= {kind: len(suite.findall(f"testcase/{tag}")) for kind, tag in OUTCOMES.items()}
         suite.attrib |= {kind: str(count) for kind, count in counts.items()}
@@ -77,6 +77,6 @@ def junit_text(scenes: Sequence[JUnitSuite]) -> str:
     return ElementTree.tostring(suites, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def _limit_text(text: str) -> str:
+def _xml_text(text: str) -> str:
     """The text, every character that XML cannot hold replaced."""
     return FORBIDDEN.sub("\ufffd", text)

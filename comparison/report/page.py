@@ -40,7 +40,7 @@ def render_pages(report: Report) -> dict[str, str]:
         return attempt(what, act, partial(note_missing_part, lost))
 
     packed = {
-        each.key: part(each.key, partial(_pack_numbers, each.packed_data, report))
+        each.key: part(each.key, partial(_pack_numbers, each.packed_data, report)) or ""
         for each in report.features
         if each.packed_data
     }
@@ -51,7 +51,7 @@ def render_pages(report: Report) -> dict[str, str]:
         "summary": part("summary", partial(render_summary, report)) or "",
         "data": part("surfaces", lambda: compress_to_text(page_data(report, partial(note_missing_part, lost)).encode()))
         or nothing,
-        "packed": {key: numbers or "" for key, numbers in packed.items()},
+        "packed": packed,
     }
     verification = {"data": nothing, "packed": {}}
     return {
@@ -71,8 +71,7 @@ def word_answer(results: Results) -> str:
 
 def render_alerts(report: Report) -> Markup:
     """Return what to know before trusting a number."""
-    has_engine = any(model.side == "engine" for model in models_in_use(report.study))
-    context = {"alerts": _alert_groups(report.results), "has_engine": has_engine}
+    context = {"alerts": _alert_groups(report.results), "has_engine": has_engine(report.study)}
     return render_template("sections/alerts.html.j2", context)
 
 
@@ -99,7 +98,12 @@ def render_summary(report: Report) -> Markup:
 
 def name_second(study: Study) -> str:
     """Return what the answers compare with the paper's equations."""
-    return "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model"
+    return "Exudyn" if has_engine(study) else "the last model"
+
+
+def has_engine(study: Study) -> bool:
+    """Return whether a model of Exudyn takes part."""
+    return any(model.side == "engine" for model in models_in_use(study))
 
 
 def is_drawn(bars: Waterfall) -> bool:

@@ -65,14 +65,18 @@ def _data_of_features(report: Report, scene: Scene, say: Callable[[str], object]
     added: dict[str, Any] = {}
     for feature in report.features:
         if feature.page_data:
-            read = partial(_as_json, feature.page_data, report, scene)
-            added |= json.loads(attempt(f"data of {feature.key} on the page", read, say) or "{}")
+            read = partial(_read_encodable, feature.page_data, report, scene)
+            added |= attempt(f"data of {feature.key} on the page", read, say) or {}
     return added
 
 
-def _as_json(read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene) -> str:
-    """Return what a feature adds as text, so that what no text can hold costs the feature alone."""
-    return _json_text(dict(read(report, scene)))
+def _read_encodable(
+    read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene
+) -> Mapping[str, Any]:
+    """Return what a feature adds; what no text can hold raises here, and costs the feature alone."""
+    data = read(report, scene)
+    _json_text(dict(data))
+    return data
 
 
 def _json_text(data: Any) -> str:

@@ -227,7 +227,7 @@ def _pack_value(about: Any, value: Any) -> bytes:
 
 
 def _unpack_value(content: bytes, declared: Any) -> Any:
-    """The value of type `declared` that `_packed` has written. Raises an exception for anything else."""
+    """The value of type `declared` that `_pack_value` has written. Raises an exception for anything else."""
     text, _, rest = content.partition(b"\n")
     arrays, stream = [], BytesIO(rest)
     while stream.tell() < len(rest):

@@ -13,7 +13,7 @@ import multiprocessing
 import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Executor, Future
+from concurrent.futures import CancelledError, Executor, Future, wait
 from contextlib import contextmanager, suppress
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
@@ -78,10 +78,9 @@ def _finish_call(call: Call) -> None:
             ended.set_exception(error)
 
     threading.Thread(target=run, daemon=True).start()
-    try:
-        ended.result(LONGEST_KNOCK)
-    except TimeoutError:
-        raise TimeoutError(str(ended.exception()) if ended.done() else f"silent for {LONGEST_KNOCK:g} s") from None
+    if not wait([ended], LONGEST_KNOCK).done:
+        raise TimeoutError(f"silent for {LONGEST_KNOCK:g} s")
+    ended.result()
 
 
 class ClusterExecutor(Executor):

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -20,6 +20,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from comparison.runner.cache import locate_store
+from comparison.runner.manifest import (
+    MANIFEST,
+    Own,
+    hash_of,
+    is_own,
+    list_foreign_files,
+    manifest_json,
+    read_manifest,
+    walk_folder,
+)
 from reference.problem import SceneError
 from reference.support.files import (
     NEW,
@@ -35,16 +45,6 @@ from reference.support.files import (
 
 if TYPE_CHECKING:
     import xarray as xr
-from comparison.runner.manifest import (
-    MANIFEST,
-    Own,
-    hash_of,
-    is_own,
-    list_foreign_files,
-    manifest_json,
-    read_manifest,
-    walk_folder,
-)
 
 REPORT = "comparison.run"  # the command whose files make up a report; those of others in the folder stay
 PAGE = "index.html"
@@ -213,14 +213,6 @@ def _write_manifest(folder: Path, manifest: Mapping[str, Own]) -> None:
 def netcdf_content(values: xr.Dataset) -> bytes:
     """The content of a netCDF file, made in memory: HDF5 ends the process where it cannot write all of a file."""
     return bytes(values.to_netcdf(engine="h5netcdf"))
-
-
-def files_written_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
-    """The files that the writers leave in the folder they are given."""
-    with tempfile.TemporaryDirectory() as name:
-        for write in writers:
-            write(Path(name))
-        return {file.name: file.read_bytes() for file in sorted(Path(name).iterdir())}
 
 
 def _install_report(new: Path, place: Path) -> Path:

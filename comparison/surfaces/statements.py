@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from comparison.wording import degrees, difference_with_error, more_or_less, percent, signed
 from reference.problem.readings import BOTH_READINGS
+from reference.support.arguments import name_some
 
 if TYPE_CHECKING:
     from comparison.surfaces.acceptance import Breach, Limit
@@ -207,14 +208,8 @@ def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
     """Return which pairs of models of which scenes no limit holds; "" where all are checked."""
     lacking = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
     groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(lacking, lambda each: each[0])]
-    listed = "; ".join(f"{', '.join(pairs)} of {_name_some(scenes)}" for pairs, scenes in groups)
+    listed = "; ".join(f"{', '.join(pairs)} of {name_some(scenes, NAMED)}" for pairs, scenes in groups)
     return f"not checked, as no limit is stated: {listed}" if listed else ""
-
-
-def _name_some(names: Sequence[str]) -> str:
-    """The first of many names, and how many more there are."""
-    rest = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return f"{', '.join(names[:NAMED])}{rest}"
 
 
 def word_verdict(headlines: Sequence[Headline], measured: str) -> str:

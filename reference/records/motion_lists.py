@@ -12,7 +12,7 @@ from typing import Any
 
 from reference.records.numerals import decode_text
 from reference.records.samples import AXES, RecordError
-from reference.support.arguments import brief
+from reference.support.arguments import brief, name_some
 from reference.support.files import read_file
 from reference.support.scene_error import one_line
 
@@ -85,9 +85,8 @@ class MotionList:
         return f"1 {kind.removesuffix('s')}" if self.ignored[kind] == 1 else f"{self.ignored[kind]} {kind}"
 
     def _name_ignored(self, kind: str) -> str:
-        names = self.names.get(kind, ())
-        more = f" and {len(names) - IGNORED} more" if len(names) > IGNORED else ""
-        return f" ({', '.join(map(one_line, names[:IGNORED]))}{more})" if names else ""
+        names = [one_line(name) for name in self.names.get(kind, ())]
+        return f" ({name_some(names, IGNORED)})" if names else ""
 
 
 def read_motion_list(folder: Path) -> MotionList | None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from reference.records.directions import TRIED, Direction, assign_axes, split_name
 from reference.records.motion_lists import FILE, Motion
-from reference.support.arguments import brief
+from reference.support.arguments import brief, name_some
 
 MAX_NAMED = 20  # files that an error names one by one
 
@@ -77,8 +77,7 @@ def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tu
 
 
 def _list_names(names: Sequence[str]) -> str:
-    shown = ", ".join(brief(name) for name in names[:MAX_NAMED])
-    return shown if len(names) <= MAX_NAMED else f"{shown} and {len(names) - MAX_NAMED} more"
+    return name_some([brief(name) for name in names], MAX_NAMED)
 
 
 def find_vertical_components(files: Sequence[Path]) -> set[Path]:

@@ -123,6 +123,12 @@ def _is_masked(values: Any) -> bool:
     return bool(np.ma.is_masked(values))
 
 
+def name_some(names: Sequence[str], most: int) -> str:
+    """Return the first `most` names, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{', '.join(names[:most])}{more}"
+
+
 def brief(value: Any) -> str:
     """Return the `repr` of a value in one line of at most LONGEST letters."""
     try:

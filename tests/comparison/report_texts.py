@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from jsonschema import Draft202012Validator
-from pypdf import PdfReader
 
 
 def summary_of(report: Path) -> dict[str, Any]:
@@ -39,18 +38,6 @@ def data_of(report: Path) -> dict[str, Any]:
     (packed,) = re.findall(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page_of(report), flags=re.DOTALL)
     found: dict[str, Any] = json.loads(gzip.decompress(base64.b64decode(packed)))
     return found
-
-
-def text_of(path: Path) -> tuple[int, str]:
-    """Number of pages of a PDF, and its text on one line."""
-    pages = PdfReader(path).pages
-    words = " ".join(page.extract_text() for page in pages).replace("\u00a0", " ").split()
-    return len(pages), " ".join(words)
-
-
-def flat(text: str) -> str:
-    """The letters alone: where lines break, a reader of the file may add or lose a space or a hyphen."""
-    return "".join(letter for letter in text if letter.isalnum())
 
 
 class Tables(HTMLParser):

@@ -154,7 +154,7 @@ MISTAKES = (
     Mistake("reference/support/scene_error.py", '"" if absent else f" = {brief(self.value)}"', 'f" = {brief(self.value)}"',
             "A table that is missing has the value None.",
             ("tests/reference/problem/test_hints.py::test_a_missing_loading_is_named",)),
-    Mistake("comparison/cli/closing.py", "checks it\"] if stated else []", "checks it\"] if not stated else []",
+    Mistake("comparison/cli/closing.py", "    if not stated:\n        return []", "    if stated:\n        return []",
             "run --check says nothing of limits on demands.", (PLAN + "check_says_where_limits_on_demands_are_checked",)),
     Mistake("reference/problem/friction.py", "share * fast, stated.rate or 0.0", "share * fast, 0.2 * (stated.rate or 0.0)",
             "Friction grows with the speed at a fifth of its rate.",

@@ -201,7 +201,7 @@ def _fill_curve(
 ) -> ConditioningCurve:
     scene, number, grid = task
     question = QUESTIONS[number]
-    columns: dict[str, Any] = {name: tuple(getattr(row, name) for row in rows) for name in _SpeedStatistics._fields}
+    columns: dict[str, Any] = dict(zip(_SpeedStatistics._fields, zip(*rows)))
     return ConditioningCurve(
         scene=scene.name,
         body=body,

@@ -85,8 +85,4 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
 
 
 def _write_size(size: float, error: float) -> str:
-    return (
-        difference_with_error(size, error)
-        if math.isfinite(error)
-        else f"{difference_with_error(size, error)} (error unknown)"
-    )
+    return difference_with_error(size, error) + ("" if math.isfinite(error) else " (error unknown)")

@@ -9,6 +9,7 @@ from comparison.study.models import EXACT
 from comparison.wording import percent
 from reference.plausibility import implausible_drift
 from reference.problem import Outcome
+from reference.support.arguments import name_some
 
 TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
 NAMED = 12  # motions that are named one by one
@@ -139,9 +140,8 @@ def travel_sentence(ensemble: EnsembleResult) -> str:
             if (each.structure, each.scale, each.status) == (structure.name, ensemble.top, TRAVEL_REACHED)
         ]
         if ended:
-            more = f" and {len(ended) - NAMED} more" if len(ended) > NAMED else ""
             bound = f" ({labels(ensemble)[structure.name]})" if len(ensemble.structures) > 1 else ""
-            bounds.append(f"{', '.join(ended[:NAMED])}{more}{bound}")
+            bounds.append(f"{name_some(ended, NAMED)}{bound}")
     if not bounds:
         return ""
     rule = "A run without `travel` gives the displacement that is needed."

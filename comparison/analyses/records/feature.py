@@ -48,8 +48,7 @@ def _recorded_motion(record: RecordDescription) -> RecordedMotion:
         RecordedDirection(one.axis, one.peak, one.mean_over_peak, one.final_velocity, one.final_displacement)
         for one in record.directions
     )
-    size = record.samples, record.step, record.duration, record.scale, record.detrend
-    return RecordedMotion(record.title, record.origin, *size, directions, record.warnings)
+    return RecordedMotion(**{**vars(record), "directions": directions})
 
 
 def word_warnings(records: Sequence[RecordedMotion]) -> str:

@@ -86,11 +86,11 @@ class Trade:
 
     def __post_init__(self) -> None:
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
+        keys = {question.key for question in self.questions}
         for each in self.entries:
             for what, values in (("median", each.median), ("most", each.most), ("error_estimate", each.error_estimate)):
                 require_size(what, values, self.bodies)
-            known = any(each.question == question.key for question in self.questions)
-            require(known, f"question {each.question[:40]!r} of an entry is none of the questions")
+            require(each.question in keys, f"question {each.question[:40]!r} of an entry is none of the questions")
 
     def of(self, question: str) -> list[MeasuredSetting]:
         """The entries of one question, in the order in which they were listed."""

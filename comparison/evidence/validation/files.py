@@ -107,13 +107,14 @@ def read_folder(folder: Path) -> MeasuredFiles:
 def _read_shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:
     x, y = (_read_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
     time = _check_series(plate, "t", x["t"])
-    for name, file, values, count in (("x", plate, x["x"], len(time)), ("y", base, y["y"], len(time))):
-        if np.ptp(_check_series(file, name, values, count, "mm")) == 0.0 and name == "y":
-            raise wrong_file(file, "y must move: every sample of the base is the same")
+    motion = _check_series(plate, "x", x["x"], len(time), "mm")
+    ground = _check_series(base, "y", y["y"], len(time), "mm")
+    if np.ptp(ground) == 0.0:
+        raise wrong_file(base, "y must move: every sample of the base is the same")
     own = _check_series(base, "t", y["t"])
     if len(own) != len(time) or np.abs(own - time).max() > 0.5 * (time[1] - time[0]):
         raise wrong_file(base, f"t must be the same as in {plate.name}")
-    return Shaken(grams * 1e-3, time, *(np.asarray(values, dtype=float) for values in (x["x"], y["y"])))
+    return Shaken(grams * 1e-3, time, motion, ground)
 
 
 def _read_swing(
