@@ -78,7 +78,7 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     if has_supports:
         support = _support_of_model
     elif places is not None and heights is not None:
-        support = _support_by_statics(scene, heights, places)
+        support = _keep_by_samples(_support_by_statics(scene, heights, places))
     return StoryForces(
         shear=tuple(read.extreme(_shear_below(scene, body)) for body in bodies),
         moment=None if heights is None else tuple(read.extreme(_moment_below(scene, heights, body)) for body in bodies),
@@ -110,6 +110,18 @@ def _support_of_model(samples: DemandSamples) -> Array:
 
 def _uplift_of_model(samples: DemandSamples) -> Array:
     return samples.uplift
+
+
+def _keep_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[DemandSamples], Array]:
+    """Compute the forces of all supports once for samples that outlive the reading: each support reads its own."""
+    known: dict[int, Array] = {}
+
+    def forces(samples: DemandSamples) -> Array:
+        if id(samples) not in known:
+            known[id(samples)] = force(samples)
+        return known[id(samples)]
+
+    return forces
 
 
 def _of_supports(

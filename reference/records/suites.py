@@ -11,16 +11,16 @@ from __future__ import annotations
 import re
 import warnings
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
-from reference.records.formats.plain_text import propose_options, word_guess
+from reference.records.formats.plain_text import Proposal, propose_options, word_guess
 from reference.records.motion_lists import FILE, Motion, MotionList, motion_list_text, read_motion_list
 from reference.records.numerals import decode_text
 from reference.records.pairing import SuiteError, find_vertical_components, pair_files
@@ -50,12 +50,14 @@ MAYBE_RECORDS = ("texts", "other files")  # kinds of files whose names are said
 TEXTS = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
 MAX_FILES = 10_000  # in a folder
 
+Told = TypeVar("Told")
+
 
 def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]:
     """Numbers of the motions of a suite: "fema-p695:SET", or a directory relative to `folder`. Raises SuiteError."""
     name = _name_of_record_set(suite)
     if name is not None:
-        return [int(number) for number in _load_record_set(name).records.index]
+        return _numbers_of_record_set(name)
     return list(range(1, len(list_motions(suite, folder, components).motions) + 1))
 
 
@@ -74,20 +76,21 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
     record: its keys `suite`, `motion`, `normalized`, as FEMA P695 does, and `components`.
     """
     suite, motion, components = record["suite"], record["motion"], record.get("components")
-    motions = suite_motions(suite, folder, components)
-    if not isinstance(motion, int) or isinstance(motion, bool) or motion not in motions:
-        raise SuiteError("motion", f"must be a whole number from {motions[0]} to {motions[-1]}")
+    name = _name_of_record_set(suite)
+    listed = () if name is not None else list_motions(suite, folder, components).motions
+    numbers = range(1, len(listed) + 1) if name is None else _numbers_of_record_set(name)
+    if not isinstance(motion, int) or isinstance(motion, bool) or motion not in numbers:
+        raise SuiteError("motion", f"must be a whole number from {numbers[0]} to {numbers[-1]}")
     normalized = record.get("normalized", False)
     if not isinstance(normalized, bool):
         raise SuiteError("normalized", "must be true or false")
-    name = _name_of_record_set(suite)
     if name is not None:
         if components is not None:
             raise SuiteError("components", f"only directories are taken apart, {PACKAGE} is not: remove this key")
         return _read_motion_of_package(name, int(motion), normalized), [f"{suite}, motion {motion}"]
     if normalized:
         raise SuiteError("normalized", f"only the sets of {PACKAGE} are normalized: remove this key")
-    return _read_motion_of_files(list_motions(suite, folder, components).motions[motion - 1])
+    return _read_motion_of_files(listed[motion - 1])
 
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
@@ -112,6 +115,10 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
         scaled[:, 1:] *= motion.factor
         samples, origin = check_samples(scaled), [*origin, f"times {motion.factor:g}, the factor of {FILE}"]
     return samples, origin
+
+
+def _numbers_of_record_set(name: str) -> list[int]:
+    return [int(number) for number in _load_record_set(name).records.index]
 
 
 def _name_of_record_set(suite: Any) -> str | None:
@@ -163,11 +170,8 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
 def propose_motion(files: Sequence[Path]) -> str:
     """Return the lines of motions.csv that take the first file that is a plain text of numbers; "" for none."""
     for file in files:
-        try:
-            proposal = propose_options(decode_text(read_file(file, LARGEST)))
-        except (OSError, RecordError):
-            continue
-        if not isinstance(proposal, str):
+        proposal = _propose_options_of(file)
+        if proposal is not None:
             stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
             axes = AXES[: len(proposal.columns)] or ("x",)
             columns = proposal.columns or (0,)
@@ -208,29 +212,47 @@ def _kind_of_other_file(file: Path) -> str:
         return NO_RECORDS[suffix]
     if SEARCH_RESULTS.search(file.name):
         return "search results"
-    if suffix in RECORDS or _is_recognized(file):
+    if suffix in RECORDS or _is_record(file):
         return ""
     return "texts" if suffix in TEXTS else "other files"
 
 
-def _is_recognized(file: Path) -> bool:
-    """Tell whether the content of a file is that of a record."""
+# A suite of n motions is listed n times, so what is told of a file is kept until its time of change or size changes.
+def _keep_by_state(read: Callable[[Path], Told]) -> Callable[[Path], Told]:
+    @lru_cache(maxsize=MAX_FILES)
+    def read_once(file: Path, modified_ns: int, size: int) -> Told:
+        return read(file)
+
+    def read_kept(file: Path) -> Told:
+        try:
+            status = file.stat()
+        except OSError:
+            return read(file)
+        return read_once(file, status.st_mtime_ns, status.st_size)
+
+    return read_kept
+
+
+@_keep_by_state
+def _propose_options_of(file: Path) -> Proposal | None:
+    """Return what to state of a plain text of numbers; None for any other file."""
     try:
-        status = file.stat()
-        return status.st_size <= LARGEST and _is_record(file, status.st_mtime_ns, status.st_size)
-    except OSError:
-        return False
+        proposal = propose_options(decode_text(read_file(file, LARGEST)))
+    except (OSError, RecordError):
+        return None
+    return None if isinstance(proposal, str) else proposal
 
 
-@lru_cache(maxsize=4096)
-def _is_record(file: Path, modified_ns: int, size: int) -> bool:
-    """Tell whether the content is that of a record; `modified_ns` and `size`, bytes, only key the cache."""
+@_keep_by_state
+def _is_record(file: Path) -> bool:
+    """Tell whether the content of a file is that of a record."""
     try:
         return recognize_format(decode_text(read_file(file, LARGEST)), file.suffix) is not None
     except (OSError, RecordError):
         return False
 
 
+@_keep_by_state
 def _holds_directions(file: Path) -> bool:
     """Tell whether a file says along which directions it was recorded, as a CSV file, or cannot be read."""
     if file.suffix.lower() == ".at2":

@@ -240,4 +240,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/trust.py", "value > 0.0 and ratio.motions > 1", "value > 0.0",
             "One motion extends a ratio to the suite.",
             ("tests/comparison/analyses/test_ensemble_report.py::test_one_motion_extends_no_ratio_nor_does_a_force_below_zero",)),
+    Mistake("reference/records/suites.py", "return read_once(file, status.st_mtime_ns, status.st_size)", "return read(file)",
+            "Every file of a suite is parsed for every motion.",
+            ("tests/reference/records/test_record_suites.py::test_every_file_of_a_suite_is_parsed_twice_however_often_it_is_listed",)),
 )

