@@ -242,18 +242,16 @@ def _word_friction(kinds: Sequence[tuple[float, ...]]) -> str:
     return "; ".join(words)
 
 
-def _word_range(values: Sequence[float]) -> str:
+def _word_range(values: Sequence[float], digits: int = 4) -> str:
     """Return one value, or the least and the most of several."""
-    return " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(values), max(values))))
+    return " to ".join(dict.fromkeys(f"{end:.{digits}g}" for end in (min(values), max(values))))
 
 
 def _word_peaks(peaks: Sequence[float]) -> str:
     """Return the peaks of the ground, m/s^2, of one motion or of the least and the most."""
     if not any(peaks):
         return "none, the ground is at rest"
-    ends = [min(peaks), max(peaks)]
-    in_meters, in_g = (" to ".join(dict.fromkeys(f"{end / unit:.3g}" for end in ends)) for unit in (1.0, GRAVITY))
-    return f"{in_meters} m/s^2 = {in_g} g"
+    return f"{_word_range(peaks, 3)} m/s^2 = {_word_range([peak / GRAVITY for peak in peaks], 3)} g"
 
 
 def word_force(force: float) -> str:

@@ -69,10 +69,10 @@ def _implausible_modes(building: Building) -> list[str]:
     if building.bodies == 1:
         return []
     lines: list[str] = []
-    for period in sorted(map(float, building.fixed_base_period[:, 0]), reverse=True):
-        if period not in FIXED_BASE_PERIOD and not lines:
-            limit = _word_end_beyond(period, FIXED_BASE_PERIOD, lambda value: f"{value:g} s")
-            lines.append(f"the period above a fixed base is {period:.4g} s, {limit}: stiffness in N/m, mass in kg?")
+    periods = sorted(map(float, building.fixed_base_period[:, 0]), reverse=True)
+    if (period := next((each for each in periods if each not in FIXED_BASE_PERIOD), None)) is not None:
+        limit = _word_end_beyond(period, FIXED_BASE_PERIOD, lambda value: f"{value:g} s")
+        lines.append(f"the period above a fixed base is {period:.4g} s, {limit}: stiffness in N/m, mass in kg?")
     if (ratio := float(building.modal_damping[:, 0].max())) > LARGEST_DAMPING:
         share = f"{100.0 * ratio:.4g} % of critical, above {100.0 * LARGEST_DAMPING:g} %"
         lines.append(f"the damping of the first mode above a fixed base is {share}: percent?")

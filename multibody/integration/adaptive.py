@@ -33,7 +33,7 @@ from multibody.integration.step_control import (
     gap_rate_at_end,
 )
 from multibody.integration.termination import find_first_row, find_termination
-from multibody.models.friction_springs import Change, FrictionSprings
+from multibody.models.friction_springs import ContactChange, FrictionSprings
 from multibody.models.recorded import align_steps
 from multibody.models.state import EngineState
 from reference.problem import Outcome
@@ -215,8 +215,7 @@ class _Progress:
             # Newton's iteration finds no sliding where a slide ends within any step: it may go on from rest
             springs, state = self.model.springs, self.at.state
             assert springs is not None
-            assert state.accelerations is not None  # settled
-            self.at.state = springs.rest(state, state.accelerations)
+            self.at.state = springs.rest(state)
             self.at.rested_at, self.at.divisions = self.at.time, DIVISIONS_AT_REST
             return True
         if self.at.divisions == self.level.max_divisions:
@@ -265,7 +264,7 @@ class _Progress:
         at.next_count = MIN_CHUNK_STEPS
         return True
 
-    def _find_change(self, motion: EngineMotion) -> Change | None:
+    def _find_change(self, motion: EngineMotion) -> ContactChange | None:
         """Find the first contact that begins or ends to slide, where friction yields."""
         springs = self.model.springs
         if springs is None:
@@ -280,7 +279,7 @@ class _Progress:
         slope: Array = np.polyfit(recent.time - recent.time[-1], springs.limits(recent), 1)[0]
         return slope
 
-    def _pass_change(self, springs: FrictionSprings, change: Change, step: float, rates: Array) -> bool:
+    def _pass_change(self, springs: FrictionSprings, change: ContactChange, step: float, rates: Array) -> bool:
         """Let a contact begin or end to slide, a part of the next step ahead; return whether the run goes on."""
         at, solver, before = self.at, self.integration.solver, self.at.state
         self.integration.budget.left -= 1.0

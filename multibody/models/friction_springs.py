@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix
 from multibody.models.engine import BODY_COORDINATES, items
+from multibody.models.speed_friction import DATA_PER_CONTACT, SLIP
 from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import DryFriction, Scene
@@ -50,14 +51,11 @@ REGULARIZED_SHARE = 0.25
 # Change of the platform's velocity over the slip speed in one step that counts as much as a change of the springs.
 SHARE_OF_SLIDE = 0.3
 
-# Number of data of a contact, and the place of the slip speed among them.
-DATA, SLIP = 4, 1
-
 # Least elastic displacement that has a direction.
 SMALLEST_DISPLACEMENT = 1e-300
 
 
-class Change(NamedTuple):
+class ContactChange(NamedTuple):
     """
     A contact that slides, or rests, from a share of the step behind `row` on.
 
@@ -112,7 +110,7 @@ class FrictionSprings:
         changes = np.maximum(self.depressions.radius / self.displacement * turned, SHARE_OF_SLIDE * turning)
         return np.append(0.0, changes)
 
-    def find_change(self, motion: Any, state: EngineState, end: float, begin: float) -> Change | None:
+    def find_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
         """Find the first contact that begins or ends to slide in steps from `state`; None without one."""
         if len(motion.time) < 2:
             return None
@@ -131,7 +129,7 @@ class FrictionSprings:
                 if speed > begin:
                     change = change._replace(limits=limit[row])
                 else:
-                    change = Change(row + 1, number, 0.0, False, limit[row + 1])
+                    change = ContactChange(row + 1, number, 0.0, False, limit[row + 1])
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
@@ -149,7 +147,7 @@ class FrictionSprings:
         accelerations: Array,
         rates_of_limits: Array,
         end: float,
-        change: Change | None = None,
+        change: ContactChange | None = None,
     ) -> EngineState:
         """
         Return the state to go on from after steps from `before`, with accelerations (n,), rates (K,) of limits there.
@@ -177,45 +175,48 @@ class FrictionSprings:
             surface = np.cross(state.coordinates[turn], normal)
             along = surface / max(float(np.linalg.norm(surface)), SMALLEST_DISPLACEMENT)
             slip = float(speeds[number] @ along - rates_of_limits[number])
-            changes = change is not None and change.contact == number
-            sliding[number] = change.slides if change is not None and changes else sliding[number] and slip > end
+            if change is not None and change.contact == number:
+                sliding[number] = change.slides
+            else:
+                sliding[number] = sliding[number] and slip > end
             if sliding[number]:
                 slip, rates[number] = max(slip, end), 0.0
             else:
                 slip = 0.0
-            contact[DATA * number + SLIP] = slip
+            contact[DATA_PER_CONTACT * number + SLIP] = slip
             velocities[turn] = np.cross(normal, speeds[number] - slip * along) / self.depressions.radius
             accelerations[turn] = np.cross(normal, rates[number]) / self.depressions.radius
         return replace(
             state, velocities=velocities, contact=contact, accelerations=accelerations, sliding=tuple(sliding.tolist())
         )
 
-    def rest(self, state: EngineState, accelerations: Array) -> EngineState:
+    def rest(self, state: EngineState) -> EngineState:
         """Return the state with all contacts at rest."""
+        assert state.accelerations is not None  # settled
         resting = replace(state, sliding=(False,) * len(self.contacts))
-        return self.settle(resting, resting, accelerations, np.zeros(len(self.contacts)), math.inf)
+        return self.settle(resting, resting, state.accelerations, np.zeros(len(self.contacts)), math.inf)
 
     def _sliding(self, state: EngineState) -> tuple[bool, ...]:
         """Whether each contact slides: none does at the start."""
         return state.sliding or (False,) * len(self.contacts)
 
 
-def _find_yield(contact: int, excess: Array) -> Change | None:
+def _find_yield(contact: int, excess: Array) -> ContactChange | None:
     """Find the step in which the excess (T,) of a spring over its limit, in units of what is no yield, passes zero."""
     rows = np.flatnonzero((excess[1:] > 1.0) & (excess[1:] > excess[:-1]))
     if not len(rows):
         return None
     before, after = excess[rows[0] : rows[0] + 2].tolist()
-    return Change(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)), slides=True)
+    return ContactChange(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)), slides=True)
 
 
-def _find_rest(contact: int, slip: Array) -> Change | None:
+def _find_rest(contact: int, slip: Array) -> ContactChange | None:
     """Find the step in which the slip speed (T,), over that of the end, would pass zero if it fell as in the last."""
     rows = np.flatnonzero((2.0 * slip[1:] <= slip[:-1]) | ((slip[1:] <= 1.0) & (slip[1:] < slip[:-1])))
     if not len(rows):
         return None
     before, after = slip[rows[0] : rows[0] + 2].tolist()
-    return Change(int(rows[0]) + 1, contact, min(after / (before - after), 1.0), slides=False)
+    return ContactChange(int(rows[0]) + 1, contact, min(after / (before - after), 1.0), slides=False)
 
 
 def make_friction_springs(

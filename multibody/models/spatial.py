@@ -110,7 +110,7 @@ def assemble_spatial(
     _add_weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
     expressions = [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, pushed)
-    forces = contacts if contact_force or scene.dry_friction.by_load or scene.dry_friction.elastic else []
+    forces = contacts if contact_force or scene.dry_friction.needs_load else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 

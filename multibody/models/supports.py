@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -131,10 +132,21 @@ def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) 
     carried = first[:, None] + np.arange(3) if plate.moves else np.empty((0, 3), np.int_)
 
     def set_stiffness(penetration: float, share: float) -> None:
-        stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
-        springs(stiff, soft, 2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
+        (stiff, soft), damping = _sharing_springs(count, penetration, share)
+        springs(stiff, soft, *damping)
 
     return Supports(markers, *read, each * count, first + upright, carried, warped, set_stiffness)
+
+
+def _sharing_springs(count: int, penetration: float, share: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return stiffness and critical damping of the springs under the spheres, each against the rest and warping."""
+    stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
+    return (stiff, soft), (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
+
+
+def _soft_against_warping(warped: Array, stiff: float, soft: float) -> Array:
+    """Return a matrix (K, K) that is `stiff` but for warping, against which it is `soft`."""
+    return stiff * (np.eye(len(warped)) - warped) + soft * warped
 
 
 def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared: bool) -> Supports:
@@ -147,13 +159,13 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
         if not shared:
             return
         block = np.ix_(vertical, vertical)
-        stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
+        stiffness, damping = _sharing_springs(count, penetration, share)
         for name, held, parts in (
-            ("stiffnessMatrix", turning.stiffness, (stiff, soft)),
-            ("dampingMatrix", turning.damping, (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))),
+            ("stiffnessMatrix", turning.stiffness, stiffness),
+            ("dampingMatrix", turning.damping, damping),
         ):
             matrix = held.copy()
-            matrix[block] = parts[0] * (np.eye(count) - warped) + parts[1] * warped
+            matrix[block] = _soft_against_warping(warped, *parts)
             mbs.SetObjectParameter(turning.bodies[0], name, matrix)
 
     none = np.empty((0, 3), np.int_)
@@ -165,10 +177,7 @@ def _add_springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[A
     count = len(nodes)
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=np.full(count, 1.0 / count)))
 
-    def matrix(stiff: float, soft: float) -> Array:
-        return stiff * (np.eye(count) - warped) + soft * warped
-
-    return springs, _matrix_setter(mbs, springs, matrix)
+    return springs, _matrix_setter(mbs, springs, partial(_soft_against_warping, warped))
 
 
 def _add_springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> tuple[Any, SetSprings]:

@@ -88,7 +88,7 @@ def assemble_translational(
         [],
         [chain, *turning.bodies],
         [contact_node],
-        [contact] if contact_force or scene.dry_friction.by_load or scene.dry_friction.elastic else [],
+        [contact] if contact_force or scene.dry_friction.needs_load else [],
         plate.node,
     )
     mbs.Assemble()

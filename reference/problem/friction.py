@@ -92,6 +92,11 @@ class DryFriction:
     stiffness: float = math.inf
 
     @property
+    def needs_load(self) -> bool:
+        """True if the normal force decides more than the size of friction: its coefficient, or when it slides."""
+        return self.by_load or self.elastic
+
+    @property
     def elastic(self) -> bool:
         """True if friction yields elastically before it slides."""
         return self.stiffness < math.inf

@@ -91,7 +91,7 @@ def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) 
     if error["type"] == "missing":
         return SceneError(file, key, None, MISSING.get(key, IS_REQUIRED))
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
-    if error["type"] == "dataclass_type" or error["type"] == "model_type":
+    if error["type"] in ("dataclass_type", "model_type"):
         rule = "must be a table of keys"
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from reference.records.directions import TRIED, Direction, assign_axes, split_name
-from reference.records.motion_lists import FILE, Motion
+from reference.records.motion_lists import COLUMNS, FILE, Motion
 from reference.support.arguments import brief, name_some
 
 MAX_NAMED = 20  # files that an error names one by one
@@ -71,7 +71,7 @@ def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tu
         )
     return (
         f"{'; '.join(said[:MAX_NAMED])}{f'; and {len(said) - MAX_NAMED} more' if len(said) > MAX_NAMED else ''}. "
-        f"Tried {TRIED}. Complete the motions, list them in {FILE} ({', '.join(('name', 'x', 'y', 'z', 'factor'))}), "
+        f"Tried {TRIED}. Complete the motions, list them in {FILE} ({', '.join(COLUMNS)}), "
         "or take every file as a motion along x: components = 1"
     )
 

@@ -100,14 +100,12 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
         try:
             readings[axis] = read_record(read_file(file, LARGEST), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
-            shown = f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
-            raise SuiteError("motion", f"{shown}: {getattr(error, 'strerror', None) or error}") from None
+            reason = getattr(error, "strerror", None) or error
+            raise SuiteError("motion", f"{_word_file(axis, file)}: {reason}") from None
     try:
         samples = join_directions(readings)
     except RecordError as error:
-        names = ", ".join(
-            f"{axis} = {one_line(file.name)}" if axis else one_line(file.name) for axis, file in motion.files.items()
-        )
+        names = ", ".join(_word_file(axis, file) for axis, file in motion.files.items())
         raise SuiteError("motion", f"{names}: {error}") from None
     origin = origin_of({axis: (motion.files[axis].name, reading) for axis, reading in readings.items()})
     if motion.factor != 1.0:
@@ -115,6 +113,10 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
         scaled[:, 1:] *= motion.factor
         samples, origin = check_samples(scaled), [*origin, f"times {motion.factor:g}, the factor of {FILE}"]
     return samples, origin
+
+
+def _word_file(axis: str, file: Path) -> str:
+    return f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
 
 
 def _numbers_of_record_set(name: str) -> list[int]:

@@ -142,3 +142,44 @@ def subtract_column(factors: Array, part: Array, j: int, rhs: Array, known: floa
     """Subtract a known number times a part of column j from blocks of the right side."""
     for b in range(first, end):
         put(rhs, b, row(rhs, b) - known * (row(part, (j, b)) * row(factors, (j, b))))
+
+
+@compiled
+def factorize_all(matrix: Array, pivots: Array) -> bool:
+    """Overwrite a square matrix by its factors, with row pivoting; return False if it is singular or not finite."""
+    n = matrix.shape[0]
+    for i in range(n):
+        place = i
+        for k in range(i + 1, n):
+            if abs(matrix[k, i]) > abs(matrix[place, i]):
+                place = k
+        pivots[i] = place
+        if place != i:
+            for j in range(n):
+                matrix[i, j], matrix[place, j] = matrix[place, j], matrix[i, j]
+        if not 0.0 < abs(matrix[i, i]) < np.inf:
+            return False
+        inverse = 1.0 / matrix[i, i]
+        for k in range(i + 1, n):
+            factor = matrix[k, i] * inverse
+            matrix[k, i] = factor
+            if factor != 0.0:
+                for j in range(i + 1, n):
+                    matrix[k, j] -= factor * matrix[i, j]
+    return True
+
+
+@compiled
+def solve_all(factors: Array, pivots: Array, right: Array) -> None:
+    """Overwrite the right side by the solution, with the factors of `factorize_all`."""
+    n = factors.shape[0]
+    for i in range(n):
+        place = int(pivots[i])
+        right[i], right[place] = right[place], right[i]
+    for i in range(n):
+        for j in range(i):
+            right[i] -= factors[i, j] * right[j]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            right[i] -= factors[i, j] * right[j]
+        right[i] /= factors[i, i]

@@ -139,7 +139,7 @@ MISTAKES = (
             "            np.array([body.height for body in scene.bodies]),\n",
             "Heights are printed from the centers of the depressions.",
             (DESCRIBED + "a_building_is_said_with_what_may_be_mistyped",)),
-    Mistake("reference/building.py", "ends = [min(peaks), max(peaks)]", "ends = [peaks[0], peaks[-1]]",
+    Mistake("reference/building.py", "return f\"{_word_range(peaks, 3)} m/s^2", "return f\"{_word_range([peaks[0], peaks[-1]], 3)} m/s^2",
             "The peaks of the ground are those of the first and the last motion.",
             (DESCRIBED + "buildings_that_are_alike_are_described_once_with_all_peaks",)),
     Mistake("reference/records/suites.py", "file.name, motion.options.get(axis))", "file.name)",

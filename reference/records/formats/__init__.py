@@ -12,8 +12,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from reference.records.formats import at2, cosmos, csv_table, esm, jma, knet, plain_text
-from reference.records.numerals import MAX_HEADER_LINES, decode_text
+from reference.records.numerals import MAX_HEADER_LINES, UNIT_NAMES, decode_text
 from reference.records.samples import Array, RecordError, RecordSamples, join_directions
+from reference.support.arguments import brief
 
 
 class Reader(NamedTuple):
@@ -61,8 +62,9 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
     given, text = dict(options or {}), decode_text(content)
     if plain_text.has_options(given):
         return plain_text.read_plain_text(text, name, **given)
-    reader = recognize_format(text, name[name.rfind(".") :] if "." in name else "")
-    if CONVERTED.fullmatch(name[name.rfind(".") :]) and (reader is None or reader.name == csv_table.FORMAT):
+    suffix = name[name.rfind(".") :] if "." in name else ""
+    reader = recognize_format(text, suffix)
+    if CONVERTED.fullmatch(suffix) and (reader is None or reader.name == csv_table.FORMAT):
         raise RecordError("a file of a network that is not read as it is: docs/guide/networks.md converts it to CSV")
     if reader is None:
         return plain_text.read_plain_text(text, name, **given)
@@ -70,6 +72,8 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
         raise RecordError(
             f"{reader.name} states its own unit: remove unit, or state step, unit and skip of a plain text"
         )
+    if given and not isinstance(given["unit"], str):
+        raise RecordError(f"unit = {brief(given['unit'])}: must be one of {UNIT_NAMES}")
     return reader.read(text, name, **given)
 
 

@@ -71,13 +71,9 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
         notes.append(f"columns that are not needed: {', '.join(others)}")
     directions = _columns_by_axis(head, [column for column in columns if column.kind == "acceleration"])
     table = _read_table(below, columns, separator)
-    clock = next(column.place for column in columns if column.kind == "time")
-    time = table[:, [column.place for column in columns].index(clock)] if len(table) else np.zeros(0)
+    time = table[:, next(column.place for column in columns if column.kind == "time")]
     _check_rising(below, time)
-    values = {
-        axis: column.factor * table[:, [one.place for one in columns].index(column.place)]
-        for axis, column in directions.items()
-    }
+    values = {axis: column.factor * table[:, column.place] for axis, column in directions.items()}
     names = {axis: column.word for axis, column in directions.items() if column.word}
     return RecordSamples(FORMAT, time, values, names, notes=tuple(notes))
 
@@ -86,8 +82,6 @@ def _separator_line(rows: list[tuple[int, str]]) -> tuple[str | None, list[tuple
     """The separator that a first line `sep=;` states, and the other lines."""
     if rows and (match := re.fullmatch(r'"?sep=(.)"?', rows[0][1].strip("\r\n \ufeff"), re.IGNORECASE)):
         return match[1], rows[1:]
-    if rows and rows[0][1].rstrip("\r\n").lower() in ("sep=\t", '"sep=\t"'):
-        return "\t", rows[1:]
     return None, rows
 
 
@@ -140,9 +134,7 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
 
 def _header_columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
     """The columns of the header. Nothing is quoted where none is as it must be: that is no record. RecordError."""
-    columns = []
-    for place, cell in enumerate(cells):
-        columns.append(_header_column(place, cell))
+    columns = [_header_column(place, cell) for place, cell in enumerate(cells)]
     times = [column for column in columns if column.kind == "time"]
     usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
     if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
@@ -243,7 +235,7 @@ def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, Head
 
 def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:
     """The values of the needed columns, (K, len(columns)). Raises RecordError."""
-    needed = [(at, column.place) for at, column in enumerate(columns) if column.kind != "other"]
+    needed = [column.place for column in columns if column.kind != "other"]
     table, commas, points = np.zeros((len(rows), len(columns))), 0, 0
     for row, (number, line) in enumerate(rows):
         cells = line.split() if separator == " " else _split_cells(number, line, separator)
@@ -254,13 +246,13 @@ def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], 
             if separator == "," and len(cells) == 2 * len(columns):
                 hint = "; decimal commas need another separator: a semicolon or a tab"
             raise RecordError(f"line {number}: {len(cells)} values: the header names {len(columns)} columns{hint}")
-        for at, place in needed:
+        for place in needed:
             cell = cells[place]
             if "," in cell and len(cell) <= MAX_CELL and DECIMAL_COMMA.fullmatch(cell):
                 cell, commas = cell.replace(",", "."), number
             elif "." in cell:
                 points = number
-            table[row, at] = parse_number(number, cell)
+            table[row, place] = parse_number(number, cell)
         if commas and points:
             raise RecordError(
                 f"line {number}: decimal commas (line {commas}) and decimal points (line {points}): take one"

@@ -50,7 +50,6 @@ NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
 COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*", re.IGNORECASE)
 
 
-@lru_cache(maxsize=64)
 def read_plain_text(
     text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
 ) -> RecordSamples:
@@ -59,7 +58,6 @@ def read_plain_text(
 
     step: s. unit: one of `UNIT_NAMES`. Raises RecordError, with the line to write where one of them is missing.
     """
-    lines = text.splitlines()
     if step is None or unit is None:
         raise RecordError(f"plain text needs step and unit: {propose_line(text, name)}")
     spacing, factor = as_float(step), unit_factor(unit) if isinstance(unit, str) else None
@@ -71,6 +69,13 @@ def read_plain_text(
         whole = isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
         if not whole and not (key == "column" and value is None):
             raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
+    return _read_stated(text, name, spacing, factor, skip, column)
+
+
+@lru_cache(maxsize=64)  # of stated values that are checked: what a scene file may hold in their place has no hash
+def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
+    """Return the values of a text; spacing: s, factor: of its unit. Raises RecordError."""
+    lines = text.splitlines()
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose_line(text, name)}")
     rows, notes = _read_rows(lines, skip, text, name)

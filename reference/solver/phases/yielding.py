@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from math import inf
 
-import numpy as np
-
 from reference.solver.chain import move_chain, set_chain_acceleration, set_feedback
 from reference.solver.collocation import A2, NODES, STAGES, A
 from reference.solver.compiled import compiled
@@ -17,6 +15,7 @@ from reference.solver.contact.platform import load_in_state
 from reference.solver.contact.yielding import yielding_motion
 from reference.solver.events import LEVEL, NEVER, expand_level, locate_first_event
 from reference.solver.ground import ground_at
+from reference.solver.linear_solve import factorize_all, solve_all
 from reference.solver.polynomial import A_COLUMNS, NODES_ROW, expand, value_at
 from reference.solver.rows import broadcast_like, highest, lowest, put, row
 from reference.solver.step_control import begin_with_acceleration
@@ -28,7 +27,7 @@ from reference.solver.steps import (
     rim_or_unsolved,
     set_absolute_accelerations,
 )
-from reference.solver.system import OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, Array, Load, System
+from reference.solver.system import OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, Load, System
 from reference.solver.work import (
     ALONG_FORCE,
     ARGUMENTS,
@@ -216,47 +215,6 @@ def correct_unknowns(work: Workspace) -> float:
             work.shear[FORCE + axis, m] += turn
             change = max(change, abs(step)) if abs(step) + abs(turn) < inf else inf
     return change
-
-
-@compiled
-def factorize_all(matrix: Array, pivots: Array) -> bool:
-    """Overwrite a square matrix by its factors, with row pivoting; return False if it is singular or not finite."""
-    n = matrix.shape[0]
-    for i in range(n):
-        place = i
-        for k in range(i + 1, n):
-            if abs(matrix[k, i]) > abs(matrix[place, i]):
-                place = k
-        pivots[i] = place
-        if place != i:
-            for j in range(n):
-                matrix[i, j], matrix[place, j] = matrix[place, j], matrix[i, j]
-        if not 0.0 < abs(matrix[i, i]) < np.inf:
-            return False
-        inverse = 1.0 / matrix[i, i]
-        for k in range(i + 1, n):
-            factor = matrix[k, i] * inverse
-            matrix[k, i] = factor
-            if factor != 0.0:
-                for j in range(i + 1, n):
-                    matrix[k, j] -= factor * matrix[i, j]
-    return True
-
-
-@compiled
-def solve_all(factors: Array, pivots: Array, right: Array) -> None:
-    """Overwrite the right side by the solution, with the factors of `factorize_all`."""
-    n = factors.shape[0]
-    for i in range(n):
-        place = int(pivots[i])
-        right[i], right[place] = right[place], right[i]
-    for i in range(n):
-        for j in range(i):
-            right[i] -= factors[i, j] * right[j]
-    for i in range(n - 1, -1, -1):
-        for j in range(i + 1, n):
-            right[i] -= factors[i, j] * right[j]
-        right[i] /= factors[i, i]
 
 
 @compiled

@@ -354,3 +354,24 @@ def test_the_suffix_of_a_file_names_its_reader_where_its_content_does_not():
     unlike = "no header of any format\nand no number"
     names = {suffix: getattr(recognize_format(unlike, suffix), "name", None) for suffix in (".AT2", ".csv", ".txt")}
     assert names == {".AT2": at2.FORMAT, ".csv": csv_table.FORMAT, ".txt": None}
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"step": [0.01], "unit": "g"}, "step = [0.01]: must be a number of seconds"),
+        ({"step": 0.01, "unit": ["g"]}, "unit = ['g']: must be one of"),
+        ({"step": 0.01, "unit": "g", "column": [1]}, "column = [1]: must be a whole number"),
+        ({"step": 0.01, "unit": "g", "skip": True}, "skip = True: must be a whole number"),
+    ],
+)
+def test_a_list_or_a_truth_is_no_option_of_a_plain_text(options, said):
+    assert read_record(b"1\n2\n3\n4\n", "a.txt", {"step": 0.01, "unit": "g", "skip": 1}).step == 0.01
+    with pytest.raises(RecordError) as refused:
+        read_record(b"1\n2\n3\n4\n", "a.txt", options)
+    assert str(refused.value).startswith(said)
+
+
+def test_a_list_is_no_unit_of_a_table():
+    with pytest.raises(RecordError, match=r"unit = \['g'\]: must be one of"):
+        read_record(b"time,ax\n0,1\n1,2\n2,3\n", "a.csv", {"unit": ["g"]})
