@@ -44,3 +44,16 @@ def test_opensees_states_the_worst_of_all_rows(column: str, place: int, words: s
     next(row for name, row in other["opensees"].items() if "u_y" in name)[column][place][1] = 0.5
     assert words not in yielding_friction.state_opensees(FOUND)
     assert words in yielding_friction.state_opensees(other)
+
+
+def test_opensees_states_the_step_from_which_on_mu_1_is_near_its_limit() -> None:
+    """fig3-I, 1 mm: the period on the spring is 0.142 s, so that 1 ms are fine steps and 4 ms are not."""
+    name, steps = "fig3-I, u_y = 1 mm, Newmark", yielding_friction._steps_in_period
+    assert (steps(name, 1e-3), steps(name, 4e-3)) == (pytest.approx(141.8, abs=0.1), pytest.approx(35.5, abs=0.1))
+    said = "μ₁ needs 40 steps in the period 2π √(m₁ u_y / (μW)) of the platform on the spring: then it is within {} %"
+    assert said.format("0.3") in yielding_friction.state_opensees(FOUND)
+    assert "0.002 s, 7 steps in that period" in yielding_friction.state_opensees(FOUND)
+    other = copy.deepcopy(FOUND)
+    other["opensees"][name]["0.001 s"][0][1] = 0.07
+    other["opensees"][name]["0.004 s"][0][1] = 0.5
+    assert said.format("7.0") in yielding_friction.state_opensees(other)
