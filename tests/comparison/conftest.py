@@ -1,14 +1,16 @@
 """Runs of the command line with models of known answer."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from browsers import chromium
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are, known_others
+from playwright.sync_api import Browser
 from runs import Here, Run, quick_figure, quick_figures
 
 from comparison.cli import user_models
@@ -20,6 +22,12 @@ try:
     import fcntl
 except ImportError:  # on Windows every process makes its own
     fcntl = None  # type: ignore[assignment]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with chromium() as browser:
+        yield browser
 
 
 @pytest.fixture

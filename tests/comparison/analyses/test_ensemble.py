@@ -1,7 +1,6 @@
 """Demands under a suite of motions at many intensities: fractiles, the engine's motions, the command and its files."""
 
 import csv
-import io
 import json
 import math
 from collections.abc import Mapping
@@ -22,7 +21,6 @@ from comparison.analyses.ensemble.command import CHECKED, FILES, largest_choices
 from comparison.analyses.ensemble.governing import largest_count
 from comparison.analyses.ensemble.members import SCALE, Member, members_of
 from comparison.analyses.ensemble.rows import labels
-from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
 from comparison.study.models import EXACT, TRANSLATIONAL
@@ -373,14 +371,6 @@ def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest
     assert "4 motions by the equations, 1 by the engine: about" in said
     assert "The motions last 1.95 to 1.95 s. Nothing was computed." in said
     assert not list(Path().glob("out*"))
-
-
-def test_a_formula_stands_behind_an_apostrophe(monkeypatch: pytest.MonkeyPatch) -> None:
-    texts = ["=1+1", "+1", "-1", "@A1", "\tx"]
-    rows = [{"motion": text, "scale": -1.0} for text in texts]
-    monkeypatch.setattr("comparison.analyses.ensemble.table.as_rows", lambda points, result: rows)
-    written = csv.reader(io.StringIO(table_text(None, None), newline=""))  # type: ignore[arg-type]
-    assert [*written][1:] == [[f"'{text}", "-1.0"] for text in texts]
 
 
 def test_motions_are_scaled_to_the_target_spectrum(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browsers import CHROMIUM, LAPTOP, OVERLAPS, PHONE, chromium, opened, unfolded
+from browsers import CHROMIUM, LAPTOP, OVERLAPS, PHONE, opened, unfolded
 from fake_models import fake_hierarchy
 from playwright.sync_api import Browser
 from printed_pages import BEYOND, CUT, as_printed, letters, printed_page
-from runs import SMALL
+from runs import SMALL, quick_figures
 
 import reference
 from comparison.analyses.ensemble import page, panels, rows, sentences, trust
@@ -101,12 +101,6 @@ def found(folder: Path) -> EnsembleResult:
     result = STORED.load(folder / "out")
     assert result is not None
     return result
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 def table(folder: Path) -> list[dict[str, str]]:
@@ -672,8 +666,11 @@ def test_a_page_that_fails_costs_neither_tables_nor_files(
     assert json.loads((folder / "lost" / "summary.json").read_text())["outcomes"] == {"ok": 4}
 
 
-def test_a_report_of_another_kind_is_refused_and_not_shown(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_report_of_another_kind_is_refused_and_not_shown(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """No study shows an ensemble, and neither takes the place of the other."""
+    quick_figures(monkeypatch)
     words = [*SMALL, "--out", "out"]
     assert study(words, fake_hierarchy(), ThreadPoolExecutor) == 2
     rule = "--out = 'out': holds the page of `ensemble`, of this building or another: give a directory of its own"

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browsers import CHROMIUM, DESKTOP, LAPTOP, OVERLAPS, PHONE, Scheme, Visit, chromium, opened, unfolded, until
+from browsers import CHROMIUM, DESKTOP, LAPTOP, OVERLAPS, PHONE, Scheme, Visit, opened, unfolded, until
 from fake_models import fake_hierarchy, known_motions, silenced
 from known_analyses import analyses_are
 from playwright.sync_api import Browser
@@ -20,12 +20,6 @@ SVG = "{http://www.w3.org/2000/svg}"
 SERIOUS = ("serious", "critical")
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture

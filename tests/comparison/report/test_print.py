@@ -1,10 +1,10 @@
 """The pages on paper, as Chromium prints them: A4, complete, nothing cut, nothing folded."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from browsers import CHROMIUM, LAPTOP, OVERLAPS, Scheme, chromium, opened
+from browsers import CHROMIUM, LAPTOP, OVERLAPS, Scheme, opened
 from playwright.sync_api import Browser
 from printed_pages import A4, BEYOND, CUT, DOT, MARGIN, Printed, as_printed, letters, printed_page
 from report_texts import page_of
@@ -15,12 +15,6 @@ from comparison.surfaces.statements import CELLS
 PAGES = {"index.html": range(5, 21), "verification.html": range(2, 9)}  # how many may be printed
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture(scope="module")
