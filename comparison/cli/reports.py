@@ -14,11 +14,10 @@ from comparison.cli.arguments import command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
 from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
-from comparison.report.building import note_missing_part
 from comparison.report.feature import ResultField
 from comparison.report.results import Results
 from comparison.report.section import Report
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import LostParts
 from comparison.runner.environment import describe_provenance
 from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.runner import Runner, compiling_task
@@ -130,16 +129,16 @@ class Reports:
             "levels": complete.level.of,
             "provenance": describe_provenance(),
         }
-        lost: list[str] = []
+        lost = LostParts()
         found: dict[str, Any] = {}
         for analysis in select_analyses(study):
             collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
-            found[analysis.key] = attempt(f"section {analysis.key}", collect, partial(note_missing_part, lost))
+            found[analysis.key] = lost.attempt(f"section {analysis.key}", collect)
         fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
         found |= {field.name: _load_stored(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _list_faults(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, families=families, lost=lost)
+        return report_of(study, surfaces, found, faults, run, families=families, lost=lost.lines)
 
 
 def _list_faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:

@@ -10,8 +10,7 @@ from comparison.report.feature import Feature, Findings
 from comparison.report.results import ModelDescription, Results, Run
 from comparison.report.scene_result import ModelOutcome, RecordValue
 from comparison.report.section import Report
-from comparison.runner.attempts import attempt
-from comparison.runner.output import on_stderr
+from comparison.runner.attempts import LostParts
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits, pairs_without_limit
@@ -43,10 +42,10 @@ def build_report(
 
     found: of the features, by key. kind: with a field for each of them.
     """
-    lines = [*lost]
+    parts_lost = LostParts(lost)
 
     def compute(name: str, *words: Any, function: Callable[..., Any]) -> Any:
-        return attempt(f"section {name}", partial(function, *words), partial(note_missing_part, lines))
+        return parts_lost.attempt(f"section {name}", partial(function, *words))
 
     comparisons, lacking = body_comparisons(study, surfaces), list_unanswered(study, surfaces)
     completed = [
@@ -89,14 +88,7 @@ def build_report(
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
-    return Report(study, surfaces, completed, results, found, features, lines)
-
-
-def note_missing_part(lines: list[str], line: str) -> None:
-    """Add a line on a part that could not be made, and say it on standard error, once."""
-    if line not in lines:
-        lines.append(line)
-        on_stderr(line)
+    return Report(study, surfaces, completed, results, found, features, parts_lost.lines)
 
 
 def _scene_fields(

@@ -10,13 +10,12 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from comparison.report.building import note_missing_part
 from comparison.report.glossary import explain_words, mark_term
 from comparison.report.page_data import compress_to_text, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report, Section
 from comparison.report.surface_sections import models_in_use
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import LostParts
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELLS, word_verdict
@@ -34,29 +33,24 @@ def render_pages(report: Report) -> dict[str, str]:
 
     A part of a page that raises is one line at its top and, where it is a section, in its place.
     """
-    lost, nothing = [*report.lost], compress_to_text(b"null")
-
-    def part(what: str, act: Callable[[], Any]) -> Any:
-        return attempt(what, act, partial(note_missing_part, lost))
-
+    lost, nothing = LostParts(report.lost), compress_to_text(b"null")
     packed = {
-        each.key: part(each.key, partial(_pack_numbers, each.packed_data, report)) or ""
+        each.key: lost.attempt(each.key, partial(_pack_numbers, each.packed_data, report)) or ""
         for each in report.features
         if each.packed_data
     }
     answers = {
-        "verdict": part("verdict", partial(word_answer, report.results)) or "",
-        "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
-        "alerts": part("alerts", partial(render_alerts, report)) or "",
-        "summary": part("summary", partial(render_summary, report)) or "",
-        "data": part("surfaces", lambda: compress_to_text(page_data(report, partial(note_missing_part, lost)).encode()))
-        or nothing,
+        "verdict": lost.attempt("verdict", partial(word_answer, report.results)) or "",
+        "lead_lines": lost.attempt("sentences of sections", partial(lead_lines, report)) or [],
+        "alerts": lost.attempt("alerts", partial(render_alerts, report)) or "",
+        "summary": lost.attempt("summary", partial(render_summary, report)) or "",
+        "data": lost.attempt("surfaces", lambda: compress_to_text(page_data(report, lost.note).encode())) or nothing,
         "packed": packed,
     }
     verification = {"data": nothing, "packed": {}}
     return {
         "index.html": _render_page("report.html.j2", report, False, answers, lost),
-        "verification.html": _render_page("verification.html.j2", report, True, verification, [*report.lost]),
+        "verification.html": _render_page("verification.html.j2", report, True, verification, LostParts(report.lost)),
     }
 
 
@@ -130,7 +124,7 @@ def _render_page(
     report: Report,
     verifies: bool,
     context: Mapping[str, Any],
-    lost: list[str],
+    lost: LostParts,
 ) -> str:
     """Return one page with its sections; what raises is left out, with a line in `lost`."""
     study, results = report.study, report.results
@@ -149,11 +143,10 @@ def _render_page(
     }
     parts = []
     for section in shown:
-        say = partial(note_missing_part, lost)
-        verdict = attempt(f"verdict of section {section.name}", partial(word_section, section, results), say)
-        body = attempt(f"section {section.name}", partial(_render_section, section, common, report), say)
-        parts.append((section, lost_line(lost[-1]) if body is None else body, verdict or ""))
-    return render_page(template, {**common, **context, "absent": absent}, parts, lost)
+        verdict = lost.attempt(f"verdict of section {section.name}", partial(word_section, section, results))
+        body = lost.attempt(f"section {section.name}", partial(_render_section, section, common, report))
+        parts.append((section, lost_line(lost.last) if body is None else body, verdict or ""))
+    return render_page(template, {**common, **context, "absent": absent}, parts, lost.lines)
 
 
 def render_page(

@@ -6,7 +6,7 @@ exit code is as without it.
 """
 
 import errno
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 from comparison.runner.output import on_stderr
@@ -31,3 +31,25 @@ def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = on_s
             raise
         say(f"{what} could not be shown: {exception_line(error)[:LONGEST]}")
         return None
+
+
+class LostParts:
+    """
+    Parts of a whole that could not be made.
+
+    lines: one for each, said on standard error, once. last: the line of the part that failed last.
+    """
+
+    def __init__(self, lines: Iterable[str] = ()) -> None:
+        self.lines, self.last = [*lines], ""
+
+    def attempt(self, what: str, act: Callable[[], T]) -> T | None:
+        """Return what `act` returns; where it raises note the part and return None."""
+        return attempt(what, act, self.note)
+
+    def note(self, line: str) -> None:
+        """Add the line of a part."""
+        self.last = line
+        if line not in self.lines:
+            self.lines.append(line)
+            on_stderr(line)

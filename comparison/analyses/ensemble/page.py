@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
@@ -19,21 +19,20 @@ from comparison.analyses.ensemble.rows import (
     profile_rows,
 )
 from comparison.analyses.ensemble.trust import COLUMNS, STATISTICS, extended_rows, trust_rows, trust_sentence
-from comparison.report.building import note_missing_part
 from comparison.report.page import lost_line, render_page, render_template
 from comparison.report.page_data import compress_to_text
 from comparison.report.plots import Panel
 from comparison.report.section import Section
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import LostParts
 from comparison.study.models import EXACT
 from comparison.verdicts import count_verdicts, word_counts
 from reference.problem import GRAVITY
 
-Say = Callable[[str], None]
 Context = Mapping[str, Any]
+Read = Callable[[EnsembleResult, LostParts], Context]
 
 
-def _building_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
         "labels": labels(ensemble),
         "floor_of": floor_of,
@@ -45,17 +44,17 @@ def _building_context(ensemble: EnsembleResult, say: Say) -> Context:
     }
 
 
-def _suite_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
         "ground_sentence": sentences.ground_sentence(ensemble),
         "target_sentence": sentences.target_sentence,
         "has_magnitudes": any(each.magnitude is not None for each in ensemble.suite),
         "gravity": GRAVITY,
-        "panels": draw_panels(panels.ground_panels(ensemble), say),
+        "panels": draw_panels(panels.ground_panels(ensemble), lost),
     }
 
 
-def _demands_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
         **heads_of_fractiles(),
         "rows": demand_rows(ensemble, ensemble.top),
@@ -65,15 +64,15 @@ def _demands_context(ensemble: EnsembleResult, say: Say) -> Context:
             *sentences.all_missing_sentences(ensemble),
             *filter(None, [sentences.travel_sentence(ensemble)]),
         ],
-        "panels": draw_panels(panels.isolator_panels(ensemble), say),
+        "panels": draw_panels(panels.isolator_panels(ensemble), lost),
     }
 
 
-def _limits_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {"counts": word_counts(count_verdicts(each.verdict for each in ensemble.limits), "demand")}
 
 
-def _height_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     weight = ensemble.structures[0].weight
     tables = [
         (f"{title_of(name)}, {unit_for_reading(name, weight)[0]}", profile_rows(ensemble, name, ensemble.top))
@@ -82,11 +81,11 @@ def _height_context(ensemble: EnsembleResult, say: Say) -> Context:
     return {
         **heads_of_fractiles(),
         "tables": [(title, rows) for title, rows in tables if rows],
-        "panels": draw_panels([*panels.height_panels(ensemble), *panels.floor_spectra_panels(ensemble)], say),
+        "panels": draw_panels([*panels.height_panels(ensemble), *panels.floor_spectra_panels(ensemble)], lost),
     }
 
 
-def _supports_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
@@ -105,11 +104,11 @@ def _supports_context(ensemble: EnsembleResult, say: Say) -> Context:
     }
 
 
-def _motions_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _motions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {"heads": motion_heads(ensemble), "rows": motion_rows(ensemble)}
 
 
-def _engine_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
         "labels": labels(ensemble),
         "engine_sentences": sentences.engine_sentences(ensemble),
@@ -119,47 +118,50 @@ def _engine_context(ensemble: EnsembleResult, say: Say) -> Context:
     }
 
 
-def _extended_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _extended_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {"rows": list(extended_rows(ensemble)), "statistics": [name for name, _ in STATISTICS]}
 
 
-def _scales_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     others = sorted((scale for scale in ensemble.scales if scale != ensemble.top), reverse=True)
     return {**heads_of_fractiles(), "tables": [(f"scale {scale:g}", demand_rows(ensemble, scale)) for scale in others]}
 
 
-def _run_context(ensemble: EnsembleResult, say: Say) -> Context:
+def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {"run": ensemble.run}
 
 
-SECTIONS: tuple[tuple[Section, Callable[[EnsembleResult, Say], Context], Callable[[EnsembleResult], bool]], ...] = (
-    (Section("The building as read", folded=False, name="building"), _building_context, lambda ensemble: True),
-    (Section("The motions", folded=False, name="suite"), _suite_context, lambda ensemble: bool(ensemble.suite)),
-    (Section("Demands", folded=False, name="demands"), _demands_context, lambda ensemble: True),
-    (Section("Limits", folded=False, name="limits"), _limits_context, lambda ensemble: bool(ensemble.limits)),
-    (Section("Over the height", folded=False, name="height"), _height_context, lambda ensemble: True),
-    (
-        Section("Support forces", folded=False, name="supports"),
-        _supports_context,
-        lambda ensemble: bool(ensemble.supports),
-    ),
-    (Section("Demands of every motion", folded=False, name="motions"), _motions_context, lambda ensemble: True),
-    (
-        Section("How far the simple models can be trusted", folded=False, name="trust"),
+class PagePart(NamedTuple):
+    """A section of the page: its name, title, what its template reads, and whether an ensemble has it."""
+
+    name: str
+    title: str
+    read: Read
+    is_shown: Callable[[EnsembleResult], bool] = lambda ensemble: True
+
+
+PARTS = (
+    PagePart("building", "The building as read", _building_context),
+    PagePart("suite", "The motions", _suite_context, lambda ensemble: bool(ensemble.suite)),
+    PagePart("demands", "Demands", _demands_context),
+    PagePart("limits", "Limits", _limits_context, lambda ensemble: bool(ensemble.limits)),
+    PagePart("height", "Over the height", _height_context),
+    PagePart("supports", "Support forces", _supports_context, lambda ensemble: bool(ensemble.supports)),
+    PagePart("motions", "Demands of every motion", _motions_context),
+    PagePart(
+        "trust",
+        "How far the simple models can be trusted",
         _engine_context,
         lambda ensemble: bool(ensemble.engine.motions),
     ),
-    (
-        Section("The engine’s ratios, extended to the suite", folded=False, name="extended"),
+    PagePart(
+        "extended",
+        "The engine’s ratios, extended to the suite",
         _extended_context,
         lambda ensemble: 0 < len(ensemble.engine.motions) < ensemble.motions * len(ensemble.structures),
     ),
-    (
-        Section("Demands at the other scales", folded=False, name="scales"),
-        _scales_context,
-        lambda ensemble: len(ensemble.scales) > 1,
-    ),
-    (Section("How it was made", folded=False, name="run"), _run_context, lambda ensemble: True),
+    PagePart("scales", "Demands at the other scales", _scales_context, lambda ensemble: len(ensemble.scales) > 1),
+    PagePart("run", "How it was made", _run_context),
 )
 
 
@@ -168,33 +170,32 @@ def heads_of_fractiles() -> Context:
     return {"shares": [f"{100.0 * share:.0f} %" for share in FRACTILES]}
 
 
-def draw_panels(makers: Sequence[Callable[[], Panel]], say: Say) -> list[Panel]:
+def draw_panels(makers: Sequence[Callable[[], Panel]], lost: LostParts) -> list[Panel]:
     """The plots that can be drawn; each other one is a line."""
-    found = (attempt(f"plot {number}", make, say) for number, make in enumerate(makers, start=1))
+    found = (lost.attempt(f"plot {number}", make) for number, make in enumerate(makers, start=1))
     return [each for each in found if each is not None]
 
 
 def page_of(ensemble: EnsembleResult) -> str:
     """Return index.html; a section or plot that raises is one line at its top and in its place."""
-    lost: list[str] = []
-    say = partial(note_missing_part, lost)
+    lost = LostParts()
     parts = []
-    for section, read, shown in SECTIONS:
-        if not attempt(f"section {section.name}", partial(shown, ensemble), say):
+    for part in PARTS:
+        what = f"section {part.name}"
+        if not lost.attempt(what, partial(part.is_shown, ensemble)):
             continue
-        make = partial(_render_section, section.name, read, ensemble, say)
-        body = attempt(f"section {section.name}", make, say)
-        parts.append((section, lost_line(lost[-1]) if body is None else body, ""))
+        body = lost.attempt(what, partial(_render_part, part, ensemble, lost))
+        section = Section(part.title, folded=False, name=part.name)
+        parts.append((section, lost_line(lost.last) if body is None else body, ""))
     context = {
-        "heading": attempt("heading", partial(sentences.heading, ensemble), say) or "Demands under many motions",
-        "answer": attempt("answer", partial(sentences.answer_sentence, ensemble), say) or "",
+        "heading": lost.attempt("heading", partial(sentences.heading, ensemble)) or "Demands under many motions",
+        "answer": lost.attempt("answer", partial(sentences.answer_sentence, ensemble)) or "",
         "data": compress_to_text(b"null"),
         "packed": {},
     }
-    return render_page("ensemble/sections/page.html.j2", context, parts, lost)
+    return render_page("ensemble/sections/page.html.j2", context, parts, lost.lines)
 
 
-def _render_section(
-    name: str, read: Callable[[EnsembleResult, Say], Context], ensemble: EnsembleResult, say: Say
-) -> Markup:
-    return render_template(f"ensemble/sections/{name}.html.j2", {"ensemble": ensemble, **read(ensemble, say)})
+def _render_part(part: PagePart, ensemble: EnsembleResult, lost: LostParts) -> Markup:
+    context = {"ensemble": ensemble, **part.read(ensemble, lost)}
+    return render_template(f"ensemble/sections/{part.name}.html.j2", context)
