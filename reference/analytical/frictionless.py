@@ -12,11 +12,11 @@ The response is linear in exp(i alpha_k): a whole surface follows from one compl
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from reference.analytical.phase_peaks import PhaseSeries, largest_lengths, may_reach_bound
 from reference.natural_modes import Modes, modes
-from reference.problem import Scene, check_phases, exponents, ground_peak, linear, loading_period
+from reference.problem import Scene, exponents, loading_period
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -29,38 +29,13 @@ MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20
 ROUNDING_ERROR = 1e-13  # relative error of a frequency and of an operation
 
 
-def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:
-    """
-    Return position, velocity and horizontal absolute acceleration at `time` (T,), s, for one phase pair (2,), rad.
-
-    (T, N, 2) each, m, m/s, m/s^2; displacement and velocity relative to the plate. Raise ValueError for a scene with
-    friction or with vertical loading, under which the pendulum's stiffness varies in time.
-    """
-    _check_closed_form(scene)
-    turn = np.exp(1j * np.asarray(phase, dtype=float))
-    natural, instants = modes(scene), np.asarray(time, dtype=float)
-    position, velocity = (
-        (part @ turn).real for part in _harmonic_responses(scene, natural, instants, 2, absolute=False)
-    )
-    acceleration = (_harmonic_responses(scene, natural, instants, 1, absolute=True)[0] @ turn).real
-    return position, velocity, acceleration
-
-
-def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
-    """Return mu_i of (5.1) for phase pairs (M, 2), rad: (M, N), to about 1e-12. Raise as `frictionless_motion`."""
-    pairs = check_phases(phases)
-    result: Array = frictionless_peaks(scene, pairs)[0] / ground_peak(scene, pairs)[:, None]
-    return result
-
-
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
     Return largest accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and `ends`, (M,) each.
 
-    `ends` is True at phase pairs at which the platform may reach the end of its travel, or without one the rim (4.1).
-    Such a motion has left the range of the small equations: its peaks mean nothing. Raise as `frictionless_motion`.
+    The scene is one that `linear` allows. `ends` is True at phase pairs at which the platform may reach the end of its
+    travel, or without one the rim (4.1): such a motion has left the range of the small equations.
     """
-    _check_closed_form(scene)
     natural = modes(scene)
     fastest = max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
     shortest = min(loading_period(scene), 2.0 * np.pi / fastest if fastest > 0.0 else np.inf)
@@ -82,11 +57,6 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
         reach,
         may_reach_bound(path, phases, scene.displacement_limit),
     )
-
-
-def _check_closed_form(scene: Scene) -> None:
-    if not (allowed := linear(scene)):
-        raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
 
 
 def _harmonic_responses(

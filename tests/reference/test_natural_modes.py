@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from chains import chain
+from closed_forms.uniform_chain import uniform_chain_frequencies, uniform_chain_shapes
 from scipy.linalg import eigh
 
 import reference
-from reference.analytical import uniform_chain_frequencies, uniform_chain_shapes
 from reference.problem import GRAVITY, Scene
 
 

@@ -1,0 +1,1 @@
+"""Motions with a closed form, which both sides must reproduce: one case a file. None of them uses a solver."""
