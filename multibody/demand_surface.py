@@ -20,7 +20,6 @@ def peak_demands(
     model: str = "translational",
     regularization: float | None = DEFAULT_V_REG,
     tolerance: float = DEFAULT_TOLERANCE,
-    loading: str = "inertial",
     max_work: float = MAX_WORK,
 ) -> PeakDemands:
     """
@@ -31,7 +30,7 @@ def peak_demands(
     scene : Scene
     phases : array_like, (..., 2), rad
         Initial phases of the loading, in any shape; under a record they have no effect.
-    model, regularization, tolerance, loading, max_work
+    model, regularization, tolerance, max_work
         As in `trajectory`.
 
     Returns
@@ -58,6 +57,6 @@ def peak_demands(
     """
 
     def compute_motion(phase: ArrayLike) -> Trajectory:
-        return trajectory(scene, phase, model, regularization, tolerance, loading=loading, max_work=max_work)
+        return trajectory(scene, phase, model, regularization, tolerance, max_work=max_work)
 
     return demands_of_motions(scene, phases, compute_motion)

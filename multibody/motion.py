@@ -35,7 +35,6 @@ def trajectory(
     regularization: float | None = DEFAULT_V_REG,
     tolerance: float = DEFAULT_TOLERANCE,
     initial: State | None = None,
-    loading: str = "inertial",
     max_work: float = MAX_WORK,
     softened: bool = False,
 ) -> Trajectory:
@@ -44,7 +43,7 @@ def trajectory(
 
     Parameters
     ----------
-    scene, model, regularization, loading, max_work, softened
+    scene, model, regularization, max_work, softened
         As in `amplification`.
     phase : array_like, shape (2,)
         Initial phases of the two harmonics, rad.
@@ -90,7 +89,7 @@ def trajectory(
     max_work = check_number("max_work", max_work, WORK)
     initial = _check_initial(scene, initial)
     with silence_engine():
-        built = assemble(scene, model, regularization, loading=loading, contact_force=True)
+        built = assemble(scene, model, regularization, contact_force=True)
         pair = PhasePair(scene, built, checked, initial)
         point = refine(pair, tolerance, keep=True, max_work=max_work)
     law = describe_law(scene, regularization)
@@ -202,10 +201,7 @@ def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: floa
     model, motion = pair.model, EngineMotion.concatenate(run.chunks) if run.chunks else EngineMotion.empty(pair.model)
     units, bodies = model.units, model.bodies
     time = motion.time * units.time
-    if model.moving_plate:
-        ground = motion.plate[:, 2] * units.acceleration
-    else:
-        ground = ground_acceleration(pair.scene, pair.phase, time)
+    ground = ground_acceleration(pair.scene, pair.phase, time)
     contacts = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)
     force, normal = contacts[:, :, 0], contacts[:, :, 1]
     normal_force = (force * normal).sum(axis=-1)

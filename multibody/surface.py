@@ -41,7 +41,6 @@ def amplification(
     model: str = "translational",
     regularization: float | None = DEFAULT_V_REG,
     tolerance: float = DEFAULT_TOLERANCE,
-    loading: str = "inertial",
     full: bool = False,
     levels: Sequence[Level] | None = None,
     max_work: float = MAX_WORK,
@@ -63,8 +62,6 @@ def amplification(
         only where the contact is lubricated or frictionless.
     tolerance : float
         Relative error that is asked of every mu; 0.001 (`DEFAULT_TOLERANCE`) if not given.
-    loading : {"inertial", "plate"}
-        Inertial forces in the plate's frame, or the motion of a plate that carries the supports.
     full : bool
         Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions),
         and every run to the end of the motion.
@@ -121,7 +118,7 @@ def amplification(
     displacement = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     with silence_engine():
-        reduced = _reduce_model(scene, model, regularization, loading, full)
+        reduced = _reduce_model(scene, model, regularization, full)
         for m, phase in enumerate(pairs):
             if ground[m] < LEAST_ACCELERATION:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
@@ -154,8 +151,8 @@ def amplification(
         nothing = np.where(np.isfinite(found.mu), 0.0, np.nan)
         return replace(found, regularization_effect=nothing, displacement_effect=nothing[..., 0])
     assert regularization is not None  # refused with dry friction
-    asked: dict[str, Any] = {"loading": loading, "full": full, "levels": levels, "max_work": max_work}
-    finer = amplification(scene, phases, model, FINER * regularization, tolerance, **asked)
+    v_reg = FINER * regularization
+    finer = amplification(scene, phases, model, v_reg, tolerance, full=full, levels=levels, max_work=max_work)
     effect, slip = finer.mu - found.mu, finer.displacement - found.displacement
     return replace(
         found,
@@ -192,7 +189,7 @@ class _ReducedModel:
         return point
 
 
-def _reduce_model(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _ReducedModel:
+def _reduce_model(scene: Scene, model: str, regularization: float | None, full: bool) -> _ReducedModel:
     """
     Assemble the cheapest model that gives the same mu: without the coordinates across the plane where the motion stays
     in one. `complete` of the result assembles the asked one.
@@ -201,9 +198,9 @@ def _reduce_model(scene: Scene, model: str, regularization: float | None, loadin
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
-    built = assemble(moving, chosen, regularization, loading=loading, **axes)
+    built = assemble(moving, chosen, regularization, **axes)
 
     def complete() -> tuple[Scene, EngineModel]:
-        return scene, assemble(scene, model, regularization, loading=loading)
+        return scene, assemble(scene, model, regularization)
 
     return _ReducedModel(moving, built, complete if chosen != model else None, full)

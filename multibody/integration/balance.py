@@ -90,9 +90,8 @@ class _Balance:
         self._solver = exudyn.MainSolverImplicitSecondOrder()
         self._solver.InitializeSolver(self.model.mbs, settings)
         self._size = len(self.start.coordinates)
-        self._with_plate = np.zeros(self.model.coordinates)
         self._carried = np.zeros(self._size)
-        self._carried[self.model.carried] = self.acceleration
+        self._carried[self.model.bodies] = self.acceleration
         rounding = self.model.rounding / self.penetration
         self._limit = MAX_RESIDUAL + SAFETY_OF_RESIDUAL * rounding
 
@@ -153,8 +152,7 @@ class _Balance:
         """Compute the engine's mass matrix (n, n)."""
         self._set_coordinates(coordinates)
         self._solver.ComputeMassMatrix(self.model.mbs, 1.0)
-        mass: Array = np.array(self._solver.GetSystemMassMatrix())[: self._size, : self._size]
-        return mass
+        return np.array(self._solver.GetSystemMassMatrix())
 
     def _compute_forces(self, coordinates: Array, closed: Mask, loading: float) -> tuple[Array, Array]:
         """Compute forces (n,) under the weight and a share of the loading's first value, and their Jacobian (n, n)."""
@@ -163,15 +161,13 @@ class _Balance:
         a_gap_of_a_closed_contact = -1.0
         contact[0::4] = np.where(closed, a_gap_of_a_closed_contact, 0.0)
         self._set_coordinates(coordinates)
-        mbs, part = self.model.mbs, slice(self._size)
+        mbs = self.model.mbs
         mbs.systemData.SetDataCoordinates(contact, configuration=CURRENT)
         self._solver.ComputeODE2RHS(mbs)
-        forces = np.array(self._solver.GetSystemResidual())[part]
+        forces = np.array(self._solver.GetSystemResidual())
         self._solver.ComputeJacobianODE2RHS(mbs, 1.0, 0.0, 0.0)
-        stiffness = np.array(self._solver.GetSystemJacobian())[part, part]
-        already_loads = 0.0 if self.model.moving_plate else 1.0
-        return forces - (loading - already_loads) * shaken, stiffness
+        already_loads = 1.0
+        return forces - (loading - already_loads) * shaken, np.array(self._solver.GetSystemJacobian())
 
     def _set_coordinates(self, coordinates: Array) -> None:
-        self._with_plate[: self._size] = coordinates
-        self.model.mbs.systemData.SetODE2Coordinates(self._with_plate, configuration=CURRENT)
+        self.model.mbs.systemData.SetODE2Coordinates(coordinates, configuration=CURRENT)

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn
-from multibody.models.plate import PLATE_MASS_RATIO, carrying_axes
+from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 
@@ -38,8 +37,7 @@ class EngineMotion(NamedTuple):
     Steps of one run in units of the model, relative to the plate, the first row being its start.
 
     time: (T,). coordinates, velocities, accelerations: (T, n). contact: gap, slip speed and two unused entries of each
-    contact, (T, 4 K). force: force vector and normal of each contact, (T, 6 K), or (T, 0) unless recorded. plate:
-    displacement, velocity and acceleration of a plate that moves, else zero, (T, 3, 3).
+    contact, (T, 4 K). force: force vector and normal of each contact, (T, 6 K), or (T, 0) unless recorded.
     """
 
     time: Array
@@ -48,7 +46,6 @@ class EngineMotion(NamedTuple):
     accelerations: Array
     contact: Array
     force: Array
-    plate: Array
 
     @property
     def gap(self) -> Array:
@@ -84,8 +81,8 @@ class EngineMotion(NamedTuple):
     def empty(model: EngineModel) -> EngineMotion:
         """Return a motion without rows, of a model whose contact forces are recorded."""
         size, contacts = model.coordinates, len(model.recorders.contact)
-        widths = [(size,), (size,), (size,), (4 * contacts,), (6 * contacts,), (3, 3)]
-        return EngineMotion(np.empty(0), *(np.empty((0, *width)) for width in widths))
+        widths = size, size, size, 4 * contacts, 6 * contacts
+        return EngineMotion(np.empty(0), *(np.empty((0, width)) for width in widths))
 
     def state_at(self, row: int) -> EngineState:
         """State of the engine at an instant, with the rates of slip and load since the instant before."""
@@ -97,7 +94,7 @@ class EngineMotion(NamedTuple):
             span = self.time[row] - self.time[row - 1]
             rates = [None if each is None else (each[1] - each[0]) / span for each in (slip, load)]
         return EngineState(
-            self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row], rates[0],
+            self.coordinates[row], self.velocities[row], self.contact[row], rates[0],
             None if load is None else load[-1], rates[1],
         )  # fmt: skip
 
@@ -115,18 +112,11 @@ def silence_engine() -> Iterator[None]:
 
 def set_initial_state(model: EngineModel, state: EngineState) -> None:
     """Make `state` the one that the engine's next run starts from."""
-    coordinates, velocities = state.coordinates, state.velocities
-    if state.accelerations is not None:
-        model.mbs.systemData.SetODE2Coordinates_tt(state.accelerations, configuration=INITIAL)
-    if model.moving_plate:
-        axes = carrying_axes(model.carried, len(coordinates))
-        shift = np.hstack([state.plate, np.zeros((3, 1))])
-        turns = np.zeros(BODY_COORDINATES - 3)
-        coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
-        velocities = np.concatenate([velocities + shift[1, axes], state.plate[1], turns])
     data = model.mbs.systemData
-    data.SetODE2Coordinates(coordinates, configuration=INITIAL)
-    data.SetODE2Coordinates_t(velocities, configuration=INITIAL)
+    if state.accelerations is not None:
+        data.SetODE2Coordinates_tt(state.accelerations, configuration=INITIAL)
+    data.SetODE2Coordinates(state.coordinates, configuration=INITIAL)
+    data.SetODE2Coordinates_t(state.velocities, configuration=INITIAL)
     data.SetDataCoordinates(state.contact, configuration=INITIAL)
 
 
@@ -148,8 +138,7 @@ class EngineSolver:
         discontinuous: float | None = None,
     ) -> None:
         self.model = model
-        # over a moving plate the first residual is the heavy plate's: only the absolute tolerance has an effect
-        self.settings = _solver_settings(newton / PLATE_MASS_RATIO if model.moving_plate else newton, residual)
+        self.settings = _solver_settings(newton, residual)
         if model.coordinates > MAX_DENSE_COORDINATES:
             self.settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         if discontinuous is not None:
@@ -207,13 +196,7 @@ class EngineSolver:
         time = tables[0][0][:, 0]
         coordinates, velocities, accelerations, contact = [_join_tables(group) for group in tables[:4]]
         force = _join_tables(tables[4]) if tables[4] else np.empty((len(time), 0))
-        plate = np.zeros((len(time), 3, 3))
-        if self.model.moving_plate:
-            plate = _join_tables(tables[5]).reshape(len(time), 3, -1)[:, :, :3]
-            for derivative, part in enumerate((coordinates, velocities, accelerations)):
-                axes = carrying_axes(self.model.carried, part.shape[1])
-                part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]
-        return EngineMotion(time, coordinates, velocities, accelerations, contact, force, plate)
+        return EngineMotion(time, coordinates, velocities, accelerations, contact, force)
 
 
 def _join_tables(tables: list[Array]) -> Array:

@@ -101,8 +101,7 @@ def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
 
 def absolute_accelerations(model: EngineModel, motion: EngineMotion, ground: Ground) -> Array:
     """Sizes of the bodies' accelerations with that of the plate, (T, N), in units of the model."""
-    plate = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
-    sizes: Array = absolute_acceleration_sizes(motion.accelerations, model.bodies, plate)
+    sizes: Array = absolute_acceleration_sizes(motion.accelerations, model.bodies, ground(motion.time))
     return sizes
 
 

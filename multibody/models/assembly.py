@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from multibody.models.engine import reset_when_unused
-from multibody.models.plate import LOADINGS
 from multibody.models.spatial import assemble_spatial
 from multibody.models.system import EngineModel
 from multibody.models.translational import assemble_translational
@@ -27,22 +26,16 @@ def assemble(
     model: str,
     regularization: float | None,
     *,
-    loading: str = "inertial",
     contact_force: bool = False,
     **options: int,
 ) -> EngineModel:
-    """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or loading, or a wrong v_reg."""
-    check_choice("loading", loading, LOADINGS)
+    """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or a wrong v_reg."""
     check_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
         regularization = check_number("regularization", regularization, REGULARIZATION)
     elif scene.has_dry_friction:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
-    if loading != "inertial" and scene.dry_friction.heat is not None:
-        raise ValueError(f"loading: {loading!r}: friction that heat lowers needs the inertial loading")
-    if loading != "inertial" and scene.dry_friction.elastic:
-        raise ValueError(f"loading: {loading!r}: friction that yields needs the inertial loading")
-    built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
+    built = BUILDERS[model](scene, regularization, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)
     # copies of the model with other settings share its recorders, so that these own the engine's memory

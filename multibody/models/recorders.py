@@ -14,9 +14,8 @@ def add_recorders(
     linear: list[Any],
     contact_nodes: list[Any],
     contacts: list[Any],
-    plate: Any,
 ) -> Recorders:
-    """Add sensors: motion of nodes and linear bodies, gap, slip, force and normal of contacts, motion of the plate."""
+    """Add sensors: motion of nodes and linear bodies, and gap, slip, force and normal of contacts."""
     kind = exudyn.OutputVariableType
 
     def sense_node(node: Any, quantity: Any) -> Any:
@@ -36,7 +35,6 @@ def add_recorders(
     def add_motion_sensors(quantity: Any) -> list[Any]:
         return [sense_node(node, quantity) for node in nodes] + [sense_body(body, quantity) for body in linear]
 
-    motion = (kind.Coordinates, kind.Coordinates_t, kind.Coordinates_tt)
     return Recorders(
         coordinates=add_motion_sensors(kind.Coordinates),
         velocities=add_motion_sensors(kind.Coordinates_t),
@@ -45,5 +43,4 @@ def add_recorders(
         contact_force=[
             sense_object(contact, quantity) for contact in contacts for quantity in (kind.Force, kind.Director1)
         ],
-        plate=[] if plate is None else [sense_node(plate, quantity) for quantity in motion],
     )

@@ -44,7 +44,6 @@ from multibody.models.impact import ImpactLaw
 from multibody.models.links import Link, RigidBodies, add_links, fastest_bar_frequency
 from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
 from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
-from multibody.models.plate import add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -55,7 +54,6 @@ from multibody.models.supports import (
     Supports,
     add_fixed_supports,
     add_sharing_supports,
-    add_sphere_nodes,
     make_turning_supports,
 )
 from multibody.models.system import EngineModel
@@ -66,9 +64,7 @@ from reference.problem.supports import ring_places
 Array = NDArray[np.float64]
 
 
-def assemble_spatial(
-    scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
-) -> EngineModel:
+def assemble_spatial(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
     """
     Assemble the spatial model; arguments are those of `assemble_translational`.
 
@@ -96,12 +92,11 @@ def assemble_spatial(
     shared = not bearing_penetration and len(ring) > DETERMINATE
     elastic = scene.dry_friction.elastic
     turning = add_turning_spheres(mbs, scene, units, ring, radius, SPHERES_MASS if shared else 0.0)
-    spheres = add_sphere_nodes(mbs, ring, loading == "plate") if shared and not elastic else []
-    plate = add_plate(mbs, loading, ground)
+    plate = mbs.AddObject(items.ObjectGround())
     if elastic:
         supports = make_turning_supports(mbs, ring, turning, shared)
     else:
-        supports = add_sharing_supports(mbs, plate, ring, spheres) if shared else add_fixed_supports(mbs, plate, ring)
+        supports = add_sharing_supports(mbs, ring) if shared else add_fixed_supports(mbs, plate, ring)
     engine_law = contact_law(scene, regularization, units)
     depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
     contacts, contact_nodes = _add_contacts(
@@ -109,9 +104,9 @@ def assemble_spatial(
     )
     _add_weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
-    expressions = [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, pushed)
+    expressions = load_coordinates(mbs, ground, pushed)
     forces = contacts if contact_force or scene.dry_friction.needs_load else []
-    recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
+    recorders = add_recorders(mbs, nodes, supports.springs, contact_nodes, forces)
     mbs.Assemble()
 
     index = BODY_COORDINATES * np.arange(len(masses))[:, None] + np.arange(3)
@@ -144,8 +139,6 @@ def assemble_spatial(
         corner=corner,
         relaxation=relaxation,
         rounding=FORCE_ROUNDING * farthest_place**2,
-        moving_plate=plate.moves,
-        carried=np.vstack([index, parts.body_coordinates + supports.carried]),
         references=(container, expressions),
         allows_liftoff=True,
         kinematics=impact_law,

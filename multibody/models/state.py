@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-AT_REST = np.zeros((3, 3))
 
 
 @dataclass(frozen=True)
@@ -20,7 +18,6 @@ class EngineState:
     Attributes:
     - coordinates, velocities: (n,) arrays.
     - contact: Contact data, (c,).
-    - plate: The plate's own displacement, velocity and acceleration.
     - slip_rate, load, load_rate: Rates of the contacts' slip speeds over the last step, their loads over their shares
       of the weight where friction depends on it, and the rates of these; None where there was no last step, (K,).
     - accelerations: (n,) where the engine is not to compute them; else None.
@@ -30,7 +27,6 @@ class EngineState:
     coordinates: Array
     velocities: Array
     contact: Array
-    plate: Array = field(default_factory=AT_REST.copy)
     slip_rate: Array | None = None
     load: Array | None = None
     load_rate: Array | None = None

@@ -28,8 +28,7 @@ class Recorders:
     Sensors that are read after a run.
 
     coordinates, velocities, accelerations: one a node. contact: gap, slip speed and two unused entries of each contact.
-    contact_force: force vector and normal of each contact; empty unless asked for. plate: displacement, velocity and
-    acceleration of a plate that moves; else empty.
+    contact_force: force vector and normal of each contact; empty unless asked for.
     """
 
     coordinates: list[Any]
@@ -37,7 +36,6 @@ class Recorders:
     accelerations: list[Any]
     contact: list[Any]
     contact_force: list[Any]
-    plate: list[Any]
 
 
 @dataclass(frozen=True)
@@ -57,8 +55,6 @@ class EngineModel:
     - corner, relaxation: Slip speed below which the friction law is linear, and the time in which such a slip dies out;
       inf if the law has no such corner.
     - rounding: Rounding of a contact force times its penetration, in units of weight times length.
-    - moving_plate: Whether the loading moves the plate, whose coordinates are then the system's last.
-    - carried: Index of the coordinates that the plate carries along x, y, z, (C, 3).
     - references: The engine's container of the system, and what the engine only points to.
     - allows_liftoff: Whether the model goes on when every contact is open.
     - depressions: Depressions of a platform that turns.
@@ -90,8 +86,6 @@ class EngineModel:
     corner: float
     relaxation: float
     rounding: float
-    moving_plate: bool
-    carried: NDArray[np.int_]
     references: tuple[Any, ...]
     allows_liftoff: bool = False
     depressions: Depressions | None = None

@@ -31,7 +31,6 @@ from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exu
 from multibody.models.friction_springs import TurningSpheres, add_turning_spheres, make_friction_springs
 from multibody.models.loading import Push, load_coordinates, make_ground
 from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
-from multibody.models.plate import LOCKED_INERTIA, Plate, add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -44,6 +43,9 @@ Array = NDArray[np.float64]
 # Pattern of a spring between two coordinates.
 BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])
 
+# Moment of inertia in units of mass * length^2: the platform turns by 1e-11 rad in 20 s under the largest torque.
+LOCKED_INERTIA = 1e15
+
 # Radius R of the hollow sphere in units of rho; in translation only R - r matters.
 HOLLOW_RADIUS = 2.0
 
@@ -55,7 +57,6 @@ def assemble_translational(
     scene: Scene,
     regularization: float | None,
     *,
-    loading: str = "inertial",
     contact_force: bool = False,
     axes: int = 2,
 ) -> EngineModel:
@@ -63,8 +64,8 @@ def assemble_translational(
     Assemble the translational model.
 
     regularization: v_reg, m/s, of dry friction; None where the contact is lubricated or frictionless. contact_force:
-    record it too. loading: "inertial" or "plate". axes: 1 for a motion in the plane of x and z, in which the bodies
-    above the platform have no coordinate along y (their y is the platform's, which stays zero).
+    record it too. axes: 1 for a motion in the plane of x and z, in which the bodies above the platform have no
+    coordinate along y (their y is the platform's, which stays zero).
     """
     units = units_of(scene)
     masses = scene.masses / units.mass
@@ -76,20 +77,17 @@ def assemble_translational(
     nodes, chain = _add_chain(mbs, platform_node, masses, *links)
 
     ground = make_ground(mbs, scene, units)
-    plate = add_plate(mbs, loading, ground)
+    plate = mbs.AddObject(items.ObjectGround())
     law = contact_law(scene, regularization, units)
     turning = add_turning_spheres(mbs, scene, units, np.zeros((1, 2)), SPHERE_RADIUS)
     contact, contact_node, height = _add_contact(mbs, plate, depression, law, turning, scene.flat)
-    expressions = (
-        [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
-    )
+    expressions = load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
     recorders = add_recorders(
         mbs,
         [],
         [chain, *turning.bodies],
         [contact_node],
         [contact] if contact_force or scene.dry_friction.needs_load else [],
-        plate.node,
     )
     mbs.Assemble()
 
@@ -143,8 +141,6 @@ def assemble_translational(
         corner=corner,
         relaxation=relaxation,
         rounding=FORCE_ROUNDING,
-        moving_plate=plate.moves,
-        carried=bodies,
         references=(container, expressions),
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
@@ -153,7 +149,7 @@ def assemble_translational(
 
 
 def _add_contact(
-    mbs: Any, plate: Plate, platform: Any, law: ContactLaw, turning: TurningSpheres, flat: bool
+    mbs: Any, plate: Any, platform: Any, law: ContactLaw, turning: TurningSpheres, flat: bool
 ) -> tuple[Any, Any, float]:
     """
     Add a sphere inside the platform's hollow sphere, and its data node; `set_contact` completes it.
@@ -163,10 +159,10 @@ def _add_contact(
     """
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     if flat:
-        plane = platform if turning.markers else mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
+        plane = platform if turning.markers else mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate))
         sphere, height = (turning.markers[0], 1.0 + SPHERE_RADIUS) if turning.markers else (platform, -SPHERE_RADIUS)
         return mbs.AddObject(make_plane_contact(sphere, plane, node, SPHERE_RADIUS, height, law)), node, height
-    fixed = [] if turning.markers else [items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0])]
+    fixed = [] if turning.markers else [items.MarkerBodyRigid(bodyNumber=plate, localPosition=[0.0, 0.0, 1.0])]
     contact = items.ObjectContactSphereSphere(
         markerNumbers=[*turning.markers, *map(mbs.AddMarker, fixed), platform],
         nodeNumber=node,

@@ -62,12 +62,6 @@ def test_supports_that_stand_apart_share_the_stiffness() -> None:
     np.testing.assert_allclose(turning.mu, straight.mu, rtol=2e-3)
 
 
-def test_the_motion_of_a_plate_is_refused() -> None:
-    scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3})
-    with pytest.raises(ValueError, match=r"loading: 'plate': friction that yields needs the inertial loading"):
-        assemble(scene, "translational", None, loading="plate")
-
-
 def test_rigid_friction_has_no_springs() -> None:
     scene = load_scene("fig3-I")
     assert assemble(scene, "spatial", 1e-3).springs is None

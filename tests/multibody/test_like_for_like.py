@@ -62,8 +62,6 @@ SCENES: dict[str, Scene] = {
         ("pair, falling", "synthetic-pair", law(FALLING, duration=3.0)),
         ("pair, heated", "synthetic-pair", law(HEATED, duration=3.0)),
         ("pair, locked", "synthetic-pair", {"duration": 2.0, "isolator": {"period": 2.0, "lubrication": 1e5}}),
-        ("moving plate", "fig3-I", {"duration": 4.0}),
-        ("moving plate, plane", "fig3-I", {"duration": 4.0, **PLANE}),
     )
 }
 SCENES["frame"] = frame(5.0)
@@ -72,8 +70,7 @@ SCENES["frame on a plane"] = frame(5.0).with_values({"isolator": {"radius": math
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_factor_lies_within_its_error(name: str) -> None:
-    phases, loading = PHASES if name in ("fig3-I", "plane") else PHASES[:1], "plate" if "moving" in name else "inertial"
-    engine, equations = both_sides(SCENES[name], phases, V_REG, loading=loading)
+    engine, equations = both_sides(SCENES[name], PHASES if name in ("fig3-I", "plane") else PHASES[:1], V_REG)
     assert (engine.error <= 1e-3 * engine.mu).all()
     if SCENES[name].flat:
         np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=5e-3)

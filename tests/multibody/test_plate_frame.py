@@ -1,57 +1,79 @@
-"""The plate's frame: inertial forces over a plate at rest and a plate that really moves give the same motion."""
+"""The plate's frame: on a plate that the engine really moves, bodies move against it as inertial forces say."""
 
 from typing import Any
 
 import numpy as np
-import pytest
-from scenes_at_hand import assert_agree
+from numpy.typing import NDArray
 
 import multibody
-from multibody import demand_surface
+from multibody.integration.constant_step import silence_engine
+from multibody.models.contact import contact_law, set_contact_parameters
+from multibody.models.engine import exudyn, items
+from multibody.models.friction_springs import add_turning_spheres
+from multibody.models.translational import HOLLOW_RADIUS, LOCKED_INERTIA, SPHERE_RADIUS, _add_chain, _add_contact
+from multibody.models.units import link_damping, link_stiffness, units_of
 from reference.problem import Scene, ground_acceleration, load_scene
 
-PHASES = [(2.0, 0.7)]
+PHASE, V_REG, PENETRATION, STEP = (0.3, 1.1), 1e-3, 1e-6, 5e-4
+PLATE_MASS = 1e6  # over that of all bodies, which move the plate by a millionth of what it moves them
+SHAKEN = load_scene("fig3-I").with_values(
+    {"duration": 2.0, "excitation.amplitudes": [[1.0, 0.5], [0.0, 1.0], [2.0, 1.0]]}
+)
 
 
-def shaken_in_all_directions(duration: float) -> Scene:
-    shaking = {"excitation.amplitudes": [[1.0, 0.5], [0.0, 1.0], [2.0, 1.0]]}
-    return load_scene("fig3-I").with_values({"duration": duration, **shaking})
+def position_against_moving_plate(scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Instants (T,), s, and positions (T, N, 2), m, by steps of one length, with the weight as the only other load."""
+    units, container = units_of(scene), exudyn.SystemContainer()
+    mbs = container.AddSystem()
+    node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * 6))
+    platform = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=node))
+    masses, links = scene.masses / units.mass, (link_stiffness(scene, units), link_damping(scene, units))
+    _, chain = _add_chain(mbs, node, masses, *links)
+    fixed = add_turning_spheres(mbs, scene, units, np.zeros((1, 2)), SPHERE_RADIUS)
+    carrying = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * 6))
+    inertia = [LOCKED_INERTIA] * 3 + [0.0] * 3
+    plate = mbs.AddObject(items.ObjectRigidBody(nodeNumber=carrying, mass=PLATE_MASS, inertia=inertia))
+
+    def push(mbs: Any, time: float, force: Any) -> list[float]:
+        acceleration = ground_acceleration(scene, PHASE, [time * units.time])[0]
+        return list(PLATE_MASS * acceleration / units.acceleration)
+
+    middle = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate))
+    mbs.AddLoad(items.LoadForceVector(markerNumber=middle, loadVector=[0.0] * 3, loadVectorUserFunction=push))
+    law = contact_law(scene, V_REG, units)
+    contact, _, _ = _add_contact(mbs, plate, platform, law, fixed, False)
+    radii = [HOLLOW_RADIUS - (1.0 - PENETRATION), HOLLOW_RADIUS]
+    set_contact_parameters(mbs, contact, radii, PENETRATION)
+    kind, stored = exudyn.OutputVariableType.Coordinates, {"storeInternal": True, "writeToFile": False}
+    bodies = mbs.AddSensor(items.SensorBody(bodyNumber=chain, outputVariableType=kind, **stored))
+    below = mbs.AddSensor(items.SensorNode(nodeNumber=carrying, outputVariableType=kind, **stored))
+    mbs.Assemble()
+    settings = exudyn.SimulationSettings()
+    integration = settings.timeIntegration
+    settings.solution.file.write, settings.solution.sensors.writePeriod = False, 0.0
+    integration.endTime, integration.numberOfSteps = scene.duration / units.time, round(scene.duration / STEP)
+    integration.generalizedAlpha.spectralRadius = 0.8
+    integration.newton.relativeTolerance, integration.newton.absoluteTolerance = 1e-14, 1e-8
+    with silence_engine():
+        mbs.SolveDynamic(settings)
+    moved, plate_moved = mbs.GetSensorStoredData(bodies), mbs.GetSensorStoredData(below)[:, 1:3]
+    position = np.stack([moved[:, 1:3], moved[:, 7:9]], axis=1) - plate_moved[:, None]
+    return moved[:, 0] * units.time, position * units.length
 
 
 def test_inertial_forces_and_a_moving_plate_agree() -> None:
-    scene = shaken_in_all_directions(3.0)
-    inertial, plate = (
-        multibody.amplification(scene, PHASES, "spatial", loading=each) for each in ("inertial", "plate")
-    )
-    assert_agree(plate, inertial)
-    # the errors are upper estimates and mostly shared: a plate a million times as heavy leaves less
-    np.testing.assert_allclose(plate.mu, inertial.mu, rtol=3e-5)
-
-
-def test_demands_are_those_of_the_motion_that_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked, trajectory = [], demand_surface.trajectory
-
-    def noted(scene: Scene, phase: Any, *given: Any, **more: Any) -> Any:
-        asked.append((*given, more))
-        return trajectory(scene, phase, *given, **more)
-
-    monkeypatch.setattr(demand_surface, "trajectory", noted)
-    found = multibody.peak_demands(shaken_in_all_directions(0.2), PHASES, "spatial", 5e-3, 1e-2, "plate", 1e5)
-    assert asked == [("spatial", 5e-3, 1e-2, {"loading": "plate", "max_work": 1e5})]
-    assert found.status.tolist() == ["ok"]
-
-
-def test_motion_over_a_moving_plate_is_relative_to_it() -> None:
-    scene, phase = shaken_in_all_directions(2.0), (0.3, 1.1)
-    moving, resting = (multibody.trajectory(scene, phase, loading=loading) for loading in ("plate", "inertial"))
+    resting = multibody.trajectory(SHAKEN, PHASE, regularization=V_REG)
     swing = np.abs(resting.position).max()
     assert swing > 0.01
-    seen = np.array([np.interp(moving.time, resting.time, x) for x in resting.position.reshape(-1, 6).T]).T
-    # linear between steps of 3 ms, and a plate that gives way by a millionth
-    np.testing.assert_allclose(moving.position.reshape(-1, 6), seen, atol=2e-4 * swing)
-    # over a plate that moves the engine knows absolute accelerations itself; the top body's follow from its spring
-    stiffness, mass = scene.stiffness[0], scene.masses[1]
-    spring = -stiffness * (moving.position[:, 1, :2] - moving.position[:, 0, :2]) / mass
+    time, position = position_against_moving_plate(SHAKEN)
+    seen = [np.interp(time, resting.time, x) for x in resting.position[:, :, :2].reshape(-1, 4).T]
+    np.testing.assert_allclose(position.reshape(-1, 4).T, seen, atol=5e-4 * swing)
+
+
+def test_absolute_acceleration_of_the_top_body_is_that_of_its_spring() -> None:
+    motion = multibody.trajectory(SHAKEN, PHASE)
+    stretched = motion.position[:, 1, :2] - motion.position[:, 0, :2]
+    spring = -SHAKEN.stiffness[0] * stretched / SHAKEN.masses[1]
     largest = np.abs(spring).max()
-    assert largest > 2.0 * np.abs(ground_acceleration(scene, phase, moving.time)[:, :2]).max() / 3.0
-    np.testing.assert_allclose(moving.absolute_acceleration[:, 1, :2], spring, atol=2e-3 * largest)
+    assert largest > 2.0 * np.abs(motion.ground[:, :2]).max() / 3.0
+    np.testing.assert_allclose(motion.absolute_acceleration[:, 1, :2], spring, atol=2e-3 * largest)

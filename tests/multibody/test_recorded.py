@@ -62,7 +62,7 @@ def test_the_plate_moves_as_the_integral_of_the_record_says():
     """Frictionless and very slow, a pendulum stays behind: its motion against the plate is minus the plate's."""
     isolator = {"period": 400.0, "friction": 0.0}
     scene = EXAMPLE.with_values({"duration": 6.0, "isolator": isolator, "bodies": [{"mass": 1.0}]})
-    motion = multibody.trajectory(scene, ANY, regularization=None, loading="plate", tolerance=1e-4)
+    motion = multibody.trajectory(scene, ANY, regularization=None, tolerance=1e-4)
     expected = -ground_velocity(scene, ANY, motion.time)[:, :2]
     assert motion.velocity[:, 0, :2] == pytest.approx(expected, abs=1e-2 * np.abs(expected).max())
 

@@ -11,6 +11,7 @@ from scenes_at_hand import forces_of_links
 
 import multibody
 import reference
+from multibody import demand_surface
 from multibody.integration.candidate import Candidate
 from multibody.integration.estimate import compliance_error, contact_lag, error_between_levels
 from multibody.integration.peak import PeakReader
@@ -19,7 +20,7 @@ from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
 from multibody.models.spatial import _critical_tilt
-from reference.problem import GRAVITY, DryFriction, Outcome, ground_acceleration, load_scene
+from reference.problem import GRAVITY, DryFriction, Outcome, Scene, ground_acceleration, load_scene
 
 PHASE = (0.3, 1.1)
 BRIEF = load_scene("fig3-I").with_values({"duration": 0.5})
@@ -207,3 +208,16 @@ def test_a_body_that_turns_about_its_link_s_end_bends_it(body: int) -> None:
         rates = (law._bar_rates(np.zeros(18), UPRIGHT) @ velocity.ravel()).reshape(2, 3)
         np.testing.assert_allclose(rates[body - 1], [0.0, axis[0], axis[1]], atol=1e-12)
         np.testing.assert_allclose(rates[2 - body], 0.0, atol=1e-12)
+
+
+def test_demands_are_those_of_the_motion_that_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, trajectory = [], demand_surface.trajectory
+
+    def noted(scene: Scene, phase: Any, *given: Any, **more: Any) -> Any:
+        asked.append((*given, more))
+        return trajectory(scene, phase, *given, **more)
+
+    monkeypatch.setattr(demand_surface, "trajectory", noted)
+    found = multibody.peak_demands(BRIEF.with_values({"duration": 0.2}), [PHASE], "spatial", 5e-3, 1e-2, 1e5)
+    assert asked == [("spatial", 5e-3, 1e-2, {"max_work": 1e5})]
+    assert found.status.tolist() == ["ok"]
