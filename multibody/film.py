@@ -23,7 +23,8 @@ from PIL import Image
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from reference.problem import Scene, Trajectory, escape_for_matplotlib
+from reference.problem import Scene, Trajectory
+from reference.support.drawing import escape_for_matplotlib
 
 Array = NDArray[np.float64]
 

@@ -17,17 +17,10 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
 from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
-from reference.problem import (
-    Amplification,
-    Outcome,
-    Scene,
-    flat_phases,
-    ground_peak,
-    in_plane,
-    planar_chain,
-)
+from reference.problem import Amplification, Outcome, Scene, flat_phases, ground_peak
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
 from reference.problem.readings import FINER, describe_law, reading_of
+from reference.problem.reductions import in_plane, planar_chain
 from reference.problem.scene import takes_scene
 from reference.support.arguments import check_number
 

@@ -21,13 +21,11 @@ from reference.problem import (
     exponents,
     flat_phases,
     ground_peak,
-    in_plane,
-    linear,
     loading_period,
-    planar,
 )
 from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
 from reference.problem.readings import describe_law, reading_of
+from reference.problem.reductions import in_plane, linear, planar
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import NOT_MET, RunPeaks, peaks_with_error
 from reference.solver.system import (

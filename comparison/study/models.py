@@ -10,8 +10,9 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, Literal
 
-from reference.problem import Scene, mirror_symmetric
+from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
+from reference.problem.reductions import mirror_symmetric
 
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference

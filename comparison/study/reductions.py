@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from comparison.study.models import Model
 from comparison.study.study import Study
-from reference.problem import (
-    Scene,
+from reference.problem import Scene
+from reference.problem.reductions import (
     half_turn,
     linear,
     no_friction,

@@ -9,8 +9,9 @@ from multibody.models.engine import reset_when_unused
 from multibody.models.spatial import assemble_spatial
 from multibody.models.system import EngineModel
 from multibody.models.translational import assemble_translational
-from reference.problem import Scene, untilted
+from reference.problem import Scene
 from reference.problem.ranges import REGULARIZATION
+from reference.problem.reductions import untilted
 from reference.support.arguments import check_choice, check_number
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}

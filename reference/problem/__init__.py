@@ -11,9 +11,6 @@ ground_peak                                                     denominator of (
 check_phase, check_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
 describe_record                                                 what was read of a recorded motion, with warnings
-half_turn, own_axes, planar, planar_chain, linear, no_friction,
-untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
-escape_for_matplotlib                                           a text of a scene for matplotlib
 
 Classes
 -------
@@ -21,7 +18,7 @@ Scene, Family                       the system with its loading; the scenes of o
 State, Amplification, Trajectory    arguments and results of both sides
 DryFriction                         coefficient of friction over the slip speed
 Accuracy                            what the errors of a motion are made from
-Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
+Outcome, SceneError                 why a point has no answer; what is wrong with a scene
 
 Constants
 ---------
@@ -44,24 +41,10 @@ from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.phases import check_phase, check_phases, flat_phases, phase_axis, phase_grid
 from reference.problem.recorded import describe_record
-from reference.problem.reductions import (
-    Reduction,
-    half_turn,
-    in_plane,
-    linear,
-    mirror_symmetric,
-    no_friction,
-    own_axes,
-    planar,
-    planar_chain,
-    untilted,
-    unused_harmonics,
-)
 from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
 from reference.support.constants import GRAVITY
-from reference.support.drawing import escape_for_matplotlib
 from reference.support.scene_error import SceneError
 
 __all__ = [
@@ -72,7 +55,6 @@ __all__ = [
     "DryFriction",
     "Family",
     "Outcome",
-    "Reduction",
     "Scene",
     "SceneError",
     "State",
@@ -81,7 +63,6 @@ __all__ = [
     "check_phase",
     "check_phases",
     "describe_record",
-    "escape_for_matplotlib",
     "example_scenes",
     "exponents",
     "flat_phases",
@@ -89,20 +70,10 @@ __all__ = [
     "ground_displacement",
     "ground_peak",
     "ground_velocity",
-    "half_turn",
-    "in_plane",
-    "linear",
     "load_family",
     "load_scene",
     "loading_period",
-    "mirror_symmetric",
-    "no_friction",
-    "own_axes",
     "parse_scene",
     "phase_axis",
     "phase_grid",
-    "planar",
-    "planar_chain",
-    "untilted",
-    "unused_harmonics",
 ]

@@ -37,23 +37,7 @@ def describe_law(
     """
     Describe the law of friction of a result, and what its error leaves out.
 
-    Parameters
-    ----------
-    scene : Scene
-    regularization, cutoff : float or None, m/s
-        v_reg and v_c.
-    effect : tuple of ndarray, optional
-        What a tenth of v_reg changes in mu and in the displacement, m, where that was computed.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> describe_law(load_scene("fig3-I"), None, 1e-3)
-    'set-valued Coulomb friction; as integrated, v_c = 0.001 m/s'
+    effect: what a tenth of v_reg changes in mu and in the displacement, m, where that was computed.
     """
     if scene.friction_coefficient == 0.0:
         return "no friction"

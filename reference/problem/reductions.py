@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.problem.excitation import exponents
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene
 from reference.support.constants import GRAVITY
 
 # rad in the whole motion: links that vibrate more often are integrated at less cost than summed
@@ -26,16 +26,7 @@ LOAD_SHIFT_FACTOR = 2.0  # times the shift of the supports' load on a level sphe
 
 @dataclass(frozen=True)
 class Reduction:
-    """
-    One thing that may be left out. True where it may.
-
-    Attributes
-    ----------
-    allowed : bool
-        Whether the scene lets it be left out.
-    reason : str
-        Why, or what forbids it.
-    """
+    """What a scene lets be left out, and why, or what forbids it. True where it may."""
 
     allowed: bool
     reason: str
@@ -44,25 +35,8 @@ class Reduction:
         return self.allowed
 
 
-@takes_scene
 def half_turn(scene: Scene) -> Reduction:
-    """
-    Adding pi to both phases turns the motion by half a turn about the vertical: same mu.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> bool(half_turn(load_scene("fig3-I")))
-    True
-    """
+    """Find whether adding pi to both phases turns the motion by half a turn about the vertical: same mu."""
     if scene.recorded:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
@@ -70,25 +44,8 @@ def half_turn(scene: Scene) -> Reduction:
     return Reduction(True, "no vertical loading: adding pi to both phases turns the motion by half a turn")
 
 
-@takes_scene
 def own_axes(scene: Scene) -> Reduction:
-    """
-    Adding pi to either phase alone mirrors the motion: same mu.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> bool(own_axes(load_scene("fig3-I"))), bool(own_axes(load_scene("fig3-II")))
-    (True, False)
-    """
+    """Find whether adding pi to either phase alone mirrors the motion: same mu."""
     if not half_turn(scene):
         return half_turn(scene)
     used = scene.amplitudes[:2] != 0.0
@@ -99,31 +56,12 @@ def own_axes(scene: Scene) -> Reduction:
     return Reduction(False, "a harmonic acts along both axes, or both along one")
 
 
-@takes_scene
 def untilted(scene: Scene) -> Reduction:
-    """
-    Find whether nothing turns the body of the spatial model: then (vi) holds, and it moves like the translational one.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Notes
-    -----
-    All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
-    shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the ring.
-    The weight of a second body shifts with its displacement across the direction of sliding, and turns the platform.
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> untilted(load_scene("fig3-I")).reason
-    'bodies above the platform: their weight shifts, tilts and twists it'
-    """
+    """Find whether nothing turns the body of the spatial model: then (vi) holds, and the translational one answers."""
+    # All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
+    # shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the
+    # ring. The weight of a second body shifts with its displacement across the direction of sliding, and turns the
+    # platform.
     isolator = scene.isolator
     if scene.support_places is None or isolator.sphere_radius is None:
         return Reduction(False, "no supports are stated")
@@ -149,25 +87,8 @@ def untilted(scene: Scene) -> Reduction:
     return Reduction(True, "one body, its center level with the depressions: it does not turn")
 
 
-@takes_scene
 def planar(scene: Scene) -> Reduction:
-    """
-    The motion stays in one vertical plane (4.7): half of the horizontal coordinates are enough (`in_plane`).
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> planar(load_scene("fig3-I")).reason
-    'the harmonics act in different directions'
-    """
+    """Find whether the motion stays in one vertical plane (4.7): `in_plane` then has half of the coordinates."""
     if scene.recorded:
         return Reduction(False, RECORDED)
     x, y = scene.amplitudes[:2]
@@ -186,50 +107,15 @@ def planar(scene: Scene) -> Reduction:
     )
 
 
-@takes_scene
 def planar_chain(scene: Scene) -> Reduction:
-    """
-    The bodies above the platform need no coordinates across the plane of motion.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> bool(planar_chain(load_scene("fig3-I")))
-    False
-    """
+    """Find whether the bodies above the platform need no coordinates across the plane of motion."""
     if len(scene.bodies) == 1:
         return Reduction(False, "one body: none above it whose coordinates could be left out")
     return planar(scene)
 
 
-@takes_scene
 def in_plane(scene: Scene) -> Scene:
-    """
-    A planar scene turned about the vertical so that its loading acts along x: the same mu for every body.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Scene
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> along_y = load_scene("fig3-I").with_values({"excitation.amplitudes": [[0.0, 0.0], [1.0, 0.5]]})
-    >>> in_plane(along_y).amplitudes[0].tolist()
-    [1.0, 0.5]
-    """
+    """Return a planar scene turned about the vertical so that its loading acts along x: the same mu for every body."""
     table = scene.model_dump(exclude_none=True)
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # along y: the links' y becomes their x
@@ -245,25 +131,8 @@ def in_plane(scene: Scene) -> Scene:
     return Scene.model_validate(table)
 
 
-@takes_scene
 def mirror_symmetric(scene: Scene) -> Reduction:
-    """
-    Supports and bodies of the spatial model are their own mirror images: it has the symmetries of the loading.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> bool(mirror_symmetric(load_scene("fig3-I")))
-    True
-    """
+    """Find whether supports and bodies are their own mirror images: the spatial model has the loading's symmetries."""
     supports = scene.isolator.supports or 0
     if scene.offsets.any():
         return Reduction(False, "a center of mass off the axis: mirrored, it is another one")
@@ -281,78 +150,23 @@ def mirror_symmetric(scene: Scene) -> Reduction:
     )
 
 
-@takes_scene
 def unused_harmonics(scene: Scene) -> list[int]:
-    """
-    Harmonics without any amplitude: their phase changes nothing. A record uses neither phase.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    list of int
-        0 for alpha_1, 1 for alpha_2.
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> unused_harmonics(load_scene("synthetic-pair"))
-    [0, 1]
-    """
+    """Return the harmonics without any amplitude, 0 for alpha_1, 1 for alpha_2: their phase changes nothing."""
     if scene.recorded:
         return [0, 1]
     return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
 
 
-@takes_scene
 def no_friction(scene: Scene) -> Reduction:
-    """
-    No law of friction is left to regularize or to resolve: such models repeat the exact equations.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> bool(no_friction(load_scene("fig3-I").with_values({"isolator.friction": 0.0})))
-    True
-    """
+    """Find whether no law of friction is left to regularize or to resolve: such models repeat the exact equations."""
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "friction")
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
 
 
-@takes_scene
 def linear(scene: Scene) -> Reduction:
-    """
-    The small equations (4.3)-(4.4) are linear: their motion is a sum of one complex motion per harmonic.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Reduction
-
-    Notes
-    -----
-    A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) also keeps the term f_c u (p . v) / rho.
-
-    Examples
-    --------
-    >>> from reference.problem import load_scene
-    >>> linear(load_scene("fig3-I")).reason
-    'dry friction is not linear'
-    """
+    """Find whether the small equations (4.3)-(4.4) are linear: a sum of one complex motion per harmonic."""
+    # A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) also keeps the term f_c u (p . v) / rho.
     if scene.lubricated and scene.friction_coefficient > 0.0:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
     if scene.friction_coefficient > 0.0:

@@ -19,22 +19,7 @@ MAX_TIME_POINTS = 20_000  # points of a drawn line
 
 
 def escape_for_matplotlib(text: str) -> str:
-    r"""
-    Escape a text of a scene for matplotlib, which would read dollar signs as the marks of a formula.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> print(escape_for_matplotlib("price in $"))
-    price in \$
-    """
+    """Escape a text of a scene for matplotlib, which would read dollar signs as the marks of a formula."""
     return text.replace("$", r"\$")
 
 
@@ -77,7 +62,7 @@ def write_half_turns(phase: float) -> str:
     """
     Write a multiple of pi / 2.
 
-    >>> [in_half_turns(quarters * np.pi / 2.0) for quarters in (-1, 0, 1, 2, 3, 4)]
+    >>> [write_half_turns(quarters * np.pi / 2.0) for quarters in (-1, 0, 1, 2, 3, 4)]
     ['-π/2', '0', 'π/2', 'π', '3π/2', '2π']
     """
     quarters = round(2.0 * phase / np.pi)

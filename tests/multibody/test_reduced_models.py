@@ -8,7 +8,8 @@ from scenes_at_hand import assert_agree
 
 import multibody
 from multibody import surface
-from reference.problem import Scene, load_scene, planar, untilted
+from reference.problem import Scene, load_scene
+from reference.problem.reductions import planar, untilted
 
 PHASES = [(2.0, 0.7), (0.3, 1.1)]
 LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]}  # with the depressions

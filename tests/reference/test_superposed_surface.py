@@ -6,7 +6,8 @@ from chains import chain
 
 import reference
 from reference import surface
-from reference.problem import GRAVITY, Outcome, Scene, linear, load_scene, phase_grid
+from reference.problem import GRAVITY, Outcome, Scene, load_scene, phase_grid
+from reference.problem.reductions import linear
 
 PHASES = np.vstack([(0.0, np.pi), phase_grid(4) + 0.1])
 TWO = {"masses": [1.0, 0.5], "stiffness": [[20.0, 30.0]], "amplitudes": [[0.3, 0.1], [-0.2, 0.2]], "duration": 6.0}

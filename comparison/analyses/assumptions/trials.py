@@ -23,7 +23,8 @@ from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
 from comparison.study.models import Model
-from reference.problem import Scene, SceneError, untilted
+from reference.problem import Scene, SceneError
+from reference.problem.reductions import untilted
 
 DURATION = 6.0  # s: the loading is strongest in its first seconds
 WITHIN = (0.01, 0.05)  # limits on the change of mu_i

@@ -8,7 +8,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from comparison.result_types import result
-from reference.problem import Scene, half_turn, mirror_symmetric, own_axes, planar
+from reference.problem import Scene
+from reference.problem.reductions import half_turn, mirror_symmetric, own_axes, planar
 
 ROUNDING = 1e-9  # share of the radius of the ring, or of a right angle: what is that close is in the plane
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"

@@ -27,7 +27,8 @@ from comparison.study.models import (
 )
 from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
-from reference.problem import Scene, load_scene, mirror_symmetric
+from reference.problem import Scene, load_scene
+from reference.problem.reductions import mirror_symmetric
 
 GRID = 4
 

@@ -9,12 +9,11 @@ import pytest
 from chains import chain
 
 import reference
-from reference.problem import (
+from reference.problem import Scene, load_scene
+from reference.problem.reductions import (
     Reduction,
-    Scene,
     half_turn,
     linear,
-    load_scene,
     mirror_symmetric,
     no_friction,
     own_axes,

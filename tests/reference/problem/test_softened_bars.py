@@ -10,8 +10,9 @@ from elastic_chain import beam_column
 
 import multibody
 import reference
-from reference.problem import GRAVITY, Scene, SceneError, in_plane, load_scene, planar
+from reference.problem import GRAVITY, Scene, SceneError, load_scene
 from reference.problem.beam_column import buckling_load, load_factors
+from reference.problem.reductions import in_plane, planar
 
 PHASES = [(0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (1.0, 3.0)]
 FIG3 = load_scene("fig3-I")

@@ -8,7 +8,8 @@ import pytest
 from chains import refusal
 
 from comparison.evidence.scaling.analysis import scale_scene
-from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_family, load_scene
+from reference.problem import Scene, SceneError, builtin_scenes, load_family, load_scene
+from reference.problem.reductions import in_plane
 from reference.problem.scene_file import scene_text
 
 FIG3 = load_scene("fig3-I")
