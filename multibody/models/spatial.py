@@ -71,38 +71,21 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     Raises ValueError if the scene has no data of supports or bodies.
     """
     units = units_of(scene)
-    ring, radius, centers, sizes = _geometry(scene, units)
-    masses = scene.masses / units.mass
-    inertias, axes = _inertias(masses, sizes), rotation_matrices(scene.yaws[:, None] * [0.0, 0.0, 1.0])
-    distances = np.hypot(*ring.T) if isinstance(scene.isolator.supports, list) else np.hypot(*ring[:1].T)
+    building = _measure_building(scene, units)
+    masses, centers = building.masses, building.centers
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    nodes, numbers = _add_boxes(mbs, masses, centers, inertias, axes)
-    bodies = RigidBodies(numbers, masses, centers)
-    directions = axes[1:, :2, :2]
-    shear, damping = (
-        directions @ (values[:, :, None] * directions.swapaxes(1, 2))
-        for values in (link_stiffness(scene, units), link_damping(scene, units))
-    )
-    square_distance = float((distances**2).mean())
-    links = add_links(mbs, scene, units, bodies, shear, damping, square_distance)
+    nodes, numbers = _add_boxes(mbs, building)
+    links = _add_links(mbs, scene, units, building, numbers)
     ground = make_ground(mbs, scene, units)
-    bearings = scene.isolator.support_stiffness
-    bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
-    shared = not bearing_penetration and len(ring) > DETERMINATE
-    elastic = scene.dry_friction.elastic
-    turning = add_turning_spheres(mbs, scene, units, ring, radius, SPHERES_MASS if shared else 0.0)
-    plate = mbs.AddObject(items.ObjectGround())
-    if elastic:
-        supports = make_turning_supports(mbs, ring, turning, shared)
-    else:
-        supports = add_sharing_supports(mbs, ring) if shared else add_fixed_supports(mbs, plate, ring)
+    bearings, count = scene.isolator.support_stiffness, len(building.places)
+    bearing_penetration = 0.0 if bearings is None else units.force / (count * bearings * units.length)
+    shared = not bearing_penetration and count > DETERMINATE
+    supports = _add_supports(mbs, scene, units, building, shared)
     engine_law = contact_law(scene, regularization, units)
-    depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
-    contacts, contact_nodes = _add_contacts(
-        mbs, supports.markers, numbers[0], depressions, radius, engine_law, scene.flat
-    )
-    _add_weights(mbs, nodes, masses)
+    contacts, contact_nodes = _add_contacts(mbs, supports.markers, numbers[0], building, engine_law, scene.flat)
+    for mass, node in zip(masses, nodes):
+        add_coordinate_load(mbs, node, 2, -float(mass))
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
     expressions = load_coordinates(mbs, ground, pushed)
     forces = contacts if contact_force or scene.dry_friction.needs_load else []
@@ -112,21 +95,17 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     index = BODY_COORDINATES * np.arange(len(masses))[:, None] + np.arange(3)
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, engine_law.threshold, contacts, ground)
-    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
+    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, building.radius, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
-    under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
-    restitution = scene.isolator.restitution or 0.0
+    underside = FlatUnderside if scene.flat else Depressions
+    under_platform = underside(building.places, centers[0], building.radius, vertical)
     springs = make_friction_springs(mbs, scene, units, contacts, parts.body_coordinates, under_platform)
     law = DryFriction(engine_law.friction, engine_law.friction, 0.0) if varying is None else varying.law
     law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # a spring has no impulse
-    rigid = np.array([link.bars is None for link in links], dtype=bool)
-    impact_law = ImpactLaw(
-        under_platform, masses, inertias, axes, centers, restitution, law, engine_law.threshold, rigid
-    )
-    tensors = (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)
+    impact_law = _make_impact_law(scene, building, under_platform, links, law, engine_law.threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     # positions round in proportion to the distance, and so do the moments of the forces that they make
-    farthest_place = max(1.0, float(distances.max()), float(centers[:, 2].max()))
+    farthest_place = max(1.0, float(building.distances.max()), float(centers[:, 2].max()))
     return EngineModel(
         mbs=mbs,
         units=units,
@@ -145,14 +124,121 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
         warping_displacement=parts.warping_displacement,
         bearing_penetration=bearing_penetration,
         depressions=under_platform,
-        critical_tilt=_critical_tilt(ring, radius, masses, centers),
+        critical_tilt=_critical_tilt(building.places, building.radius, masses, centers),
         impact=None if bearing_penetration else impact_law,
         bar_lags=parts.bar_lags,
         take_out_open_contacts=parts.take_out_open_contacts,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
         springs=springs,
-        fastest_bar_frequency=fastest_bar_frequency(links, masses, tensors, centers),
+        fastest_bar_frequency=fastest_bar_frequency(links, masses, building.tensors, centers),
+    )
+
+
+@dataclass(frozen=True)
+class _Building:
+    """
+    Bodies and places of supports, in units of the model.
+
+    places: of the supports, (K, 2). distances: of supports from the axis of the links, (K,), or one for a ring. radius:
+    of the spheres. masses: (N,). centers: of mass, (N, 3). inertias: about the axes of the boxes, (N, 3). axes: of the
+    boxes at rest, columns, (N, 3, 3).
+    """
+
+    places: Array
+    distances: Array
+    radius: float
+    masses: Array
+    centers: Array
+    inertias: Array
+    axes: Array
+
+    @property
+    def tensors(self) -> Array:
+        """Tensors of inertia, (N, 3, 3)."""
+        turned: Array = (self.axes * self.inertias[:, None, :]) @ self.axes.swapaxes(1, 2)
+        return turned
+
+
+def _measure_building(scene: Scene, units: Units) -> _Building:
+    """Return bodies and supports of a scene. Raises ValueError where the scene lacks data of them."""
+    isolator = scene.isolator
+    required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
+    if not isinstance(isolator.supports, list):
+        required["isolator.ring"] = isolator.ring
+    for number, body in enumerate(scene.bodies):
+        required |= {f"bodies.{number}.{key}": getattr(body, key) for key in ("height", "size")}
+    missing = [key for key, value in required.items() if value is None]
+    if missing:
+        raise ValueError(f"model: 'spatial': {scene.name} needs {', '.join(missing)}")
+    assert isolator.sphere_radius is not None
+    if isinstance(isolator.supports, list):
+        places = np.array(isolator.supports) / units.length
+        distances = np.hypot(*places.T)
+    else:
+        assert isolator.supports is not None
+        assert isolator.ring is not None
+        places = ring_places(isolator.supports, isolator.ring / units.length)
+        distances = np.hypot(*places[:1].T)
+    masses, radius = scene.masses / units.mass, isolator.sphere_radius / units.length
+    sizes = np.array([body.size for body in scene.bodies]) / units.length
+    inertias = masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)  # of homogeneous boxes
+    heights = np.array([body.height for body in scene.bodies])
+    centers = np.column_stack([scene.offsets, heights]) / units.length
+    if scene.flat:
+        height_of_plane = 1.0 + radius
+        centers[:, 2] += height_of_plane
+    axes = rotation_matrices(scene.yaws[:, None] * [0.0, 0.0, 1.0])
+    return _Building(places, distances, radius, masses, centers, inertias, axes)
+
+
+def _add_boxes(mbs: Any, building: _Building) -> tuple[list[Any], list[Any]]:
+    """Add the bodies; return their nodes and numbers."""
+    nodes, bodies = [], []
+    for mass, center, tensor in zip(building.masses, building.centers, building.tensors):
+        nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*center, 0.0, 0.0, 0.0])))
+        moments = [*np.diag(tensor), tensor[1, 2], tensor[0, 2], tensor[0, 1]]
+        bodies.append(mbs.AddObject(items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=moments)))
+    return nodes, bodies
+
+
+def _add_links(mbs: Any, scene: Scene, units: Units, building: _Building, numbers: list[Any]) -> list[Link]:
+    """Add the links between the bodies, along the axes of the upper one."""
+    directions = building.axes[1:, :2, :2]
+    shear, damping = (
+        directions @ (values[:, :, None] * directions.swapaxes(1, 2))
+        for values in (link_stiffness(scene, units), link_damping(scene, units))
+    )
+    bodies = RigidBodies(numbers, building.masses, building.centers)
+    return add_links(mbs, scene, units, bodies, shear, damping, float((building.distances**2).mean()))
+
+
+def _add_supports(mbs: Any, scene: Scene, units: Units, building: _Building, shared: bool) -> Supports:
+    """Add the spheres: fixed, or sharing the load elastically, or turning on springs where friction yields."""
+    places = building.places
+    if scene.dry_friction.elastic:
+        moved = SPHERES_MASS if shared else 0.0
+        turning = add_turning_spheres(mbs, scene, units, places, building.radius, moved)
+        return make_turning_supports(mbs, places, turning, shared)
+    return add_sharing_supports(mbs, places) if shared else add_fixed_supports(mbs, places)
+
+
+def _make_impact_law(
+    scene: Scene, building: _Building, under_platform: Depressions, links: list[Link], law: DryFriction, corner: float
+) -> ImpactLaw:
+    """Return the law of contacts that close, with friction by `law` above the slip speed `corner`."""
+    restitution = scene.isolator.restitution or 0.0
+    rigid = np.array([link.bars is None for link in links], dtype=bool)
+    return ImpactLaw(
+        under_platform,
+        building.masses,
+        building.inertias,
+        building.axes,
+        building.centers,
+        restitution,
+        law,
+        corner,
+        rigid,
     )
 
 
@@ -244,22 +330,6 @@ class _SpatialSystem:
         return largest
 
 
-def _add_boxes(mbs: Any, masses: Array, centers: Array, inertias: Array, axes: Array) -> tuple[list[Any], list[Any]]:
-    """Add nodes and bodies with moments of inertia (N, 3) about `axes` (N, 3, 3), columns."""
-    nodes, bodies = [], []
-    for mass, center, tensor in zip(masses, centers, (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)):
-        nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*center, 0.0, 0.0, 0.0])))
-        moments = [*np.diag(tensor), tensor[1, 2], tensor[0, 2], tensor[0, 1]]
-        bodies.append(mbs.AddObject(items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=moments)))
-    return nodes, bodies
-
-
-def _inertias(masses: Array, sizes: Array) -> Array:
-    """Moments of inertia of homogeneous boxes about their axes, (N, 3)."""
-    inertias: Array = masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
-    return inertias
-
-
 def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) -> float:
     """Angle from the nearest edge of the supports to the center of mass over it, from the vertical, rad."""
     center = masses @ centers / masses.sum()
@@ -269,15 +339,11 @@ def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) ->
 
 
 def _add_contacts(
-    mbs: Any,
-    supports: list[Any],
-    platform: Any,
-    depressions: Array,
-    radius: float,
-    law: ContactLaw,
-    flat: bool,
+    mbs: Any, supports: list[Any], platform: Any, building: _Building, law: ContactLaw, flat: bool
 ) -> tuple[list[Any], list[Any]]:
-    """Add contacts of the spheres in the platform's depressions (K, 3), or under its plane, and their data nodes."""
+    """Add contacts of the spheres in the platform's depressions, or under its plane, and their data nodes."""
+    radius, ring = building.radius, building.places
+    depressions = np.column_stack([ring, np.zeros(len(ring))]) - building.centers[0]
     contacts, nodes = [], []
     for place, support in zip(depressions, supports):
         nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))
@@ -296,36 +362,3 @@ def _add_contacts(
         )
         contacts.append(mbs.AddObject(contact))
     return contacts, nodes
-
-
-def _add_weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
-    """Load every body by its weight."""
-    for mass, node in zip(masses, nodes):
-        add_coordinate_load(mbs, node, 2, -float(mass))
-
-
-def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
-    """Supports (K, 2), sphere radius, centers (N, 3) and sizes (N, 3), in units of length. Raises ValueError."""
-    isolator = scene.isolator
-    required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
-    if not isinstance(isolator.supports, list):
-        required["isolator.ring"] = isolator.ring
-    for number, body in enumerate(scene.bodies):
-        required |= {f"bodies.{number}.{key}": getattr(body, key) for key in ("height", "size")}
-    missing = [key for key, value in required.items() if value is None]
-    if missing:
-        raise ValueError(f"model: 'spatial': {scene.name} needs {', '.join(missing)}")
-    assert isolator.sphere_radius is not None
-    if isinstance(isolator.supports, list):
-        ring = np.array(isolator.supports) / units.length
-    else:
-        assert isolator.supports is not None
-        assert isolator.ring is not None
-        ring = ring_places(isolator.supports, isolator.ring / units.length)
-    heights = np.array([body.height for body in scene.bodies])
-    sizes = np.array([body.size for body in scene.bodies]) / units.length
-    centers, radius = np.column_stack([scene.offsets, heights]) / units.length, isolator.sphere_radius / units.length
-    if scene.flat:
-        height_of_plane = 1.0 + radius
-        centers[:, 2] += height_of_plane
-    return ring, radius, centers, sizes

@@ -75,8 +75,9 @@ def warping_projection(ring: Array) -> Array:
     return projection
 
 
-def add_fixed_supports(mbs: Any, plate: Any, ring: Array) -> Supports:
+def add_fixed_supports(mbs: Any, ring: Array) -> Supports:
     """Add spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
+    plate = mbs.AddObject(items.ObjectGround())
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate, localPosition=[*place, 1.0])) for place in ring]
     return Supports(markers, [], 0, np.empty(0, np.int_), np.zeros((0, len(ring))), lambda penetration, share: None)
 

@@ -189,51 +189,57 @@ def with_bounds(data: dict[str, Any], bounds: tuple[float, float] | None) -> dic
 
 def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
     """Return the family of tables; label: their file, for errors and records. Raises as `load_family`."""
-    name = Path(label).stem
-    combine, given = data.get("combine"), data
-    data = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
-    try:
-        data, bounds = _take_bounds(data, label)
-    except SceneError as wrong:
-        raise _with_other_faults(wrong, given, label) from None
-    places = list(islice(running_values((), data), MAX_KEYS + 1))
-    if len(places) > MAX_KEYS:
-        path, table = places[-1]
-        raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
-    motions = _motion_names(data, label)
-    running = [_Key(label, path, table, motions) for path, table in places]
+    name, combine = Path(label).stem, data.get("combine")
+    tables, bounds, running = _find_running_keys(data, label)
     _check_combine(label, combine, running)
-    if not running and not bounds:
-        scene = make_scene(data, label, name)
-        return Family(name, (scale_loading(scene, amplitude),))
+    keys = [*bounds, *running]
+    if not keys:
+        return Family(name, (scale_loading(make_scene(tables, label, name), amplitude),))
     steps = [range(len(key.values)) for key in running]
-    inner = list(product(*steps) if combine == "product" or not running else zip(*steps))
+    inner = list(zip(*steps) if combine == "zip" else product(*steps))
     rows = [(*outer, *row) for outer in product(*(range(len(key.values)) for key in bounds)) for row in inner]
-    running = [*bounds, *running]
-    _check_bodies(label, data.get("bodies"), len(rows))
-    scenes = []
-    for row in rows:
-        tables = data
-        for key, step in zip(running, row):
-            tables = _replace_value(tables, key.path, key.listed[step])
-        texts = ", ".join(key.entries[step] for key, step in zip(running, row))
-        try:
-            member = make_scene(tables, label, f"{name}[{texts}]")
-        except SceneError as error:
-            if bounds and error.key.startswith("isolator.friction"):
-                error = _as_written(error, tables, data, label, bounds[0].values)
-            raise error from None
-        scenes.append(scale_loading(member, amplitude))
-    columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(running)}
-    values = [", ".join(key.texts[step] for key, step in zip(running, row)) for row in rows]
+    _check_bodies(label, tables.get("bodies"), len(rows))
+    scenes = [scale_loading(_make_member(tables, label, name, list(zip(keys, row))), amplitude) for row in rows]
+    columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(keys)}
+    values = [", ".join(key.texts[step] for key, step in zip(keys, row)) for row in rows]
     return Family(
         name,
         tuple(scenes),
         ", ".join(columns),
-        columns[running[0].name] if len(running) == 1 else tuple(values),
+        columns[keys[0].name] if len(keys) == 1 else tuple(values),
         columns,
-        {key.name: tuple(key.labels[row[n]] for row in rows) for n, key in enumerate(running)},
+        {key.name: tuple(key.labels[row[n]] for row in rows) for n, key in enumerate(keys)},
     )
+
+
+def _find_running_keys(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_Key], list[_Key]]:
+    """Return the tables of the scenes, the bounds of friction, none or one key, and the keys that run in the file."""
+    tables = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
+    try:
+        tables, bounds = _take_bounds(tables, label)
+    except SceneError as wrong:
+        raise _with_other_faults(wrong, data, label) from None
+    places = list(islice(running_values((), tables), MAX_KEYS + 1))
+    if len(places) > MAX_KEYS:
+        path, table = places[-1]
+        raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
+    motions = _motion_names(tables, label)
+    return tables, bounds, [_Key(label, path, table, motions) for path, table in places]
+
+
+def _make_member(tables: dict[str, Any], label: str, name: str, chosen: Sequence[tuple[_Key, int]]) -> Scene:
+    """Return the scene in which each of the keys has the value of its step. Raises SceneError."""
+    changed = tables
+    for key, step in chosen:
+        changed = _replace_value(changed, key.path, key.listed[step])
+    texts = ", ".join(key.entries[step] for key, step in chosen)
+    try:
+        return make_scene(changed, label, f"{name}[{texts}]")
+    except SceneError as error:
+        first, _ = chosen[0]
+        if isinstance(first, _Bounds) and error.key.startswith("isolator.friction"):
+            raise _as_written(error, changed, tables, label, first.values) from None
+        raise
 
 
 def _with_other_faults(wrong: SceneError, data: dict[str, Any], label: str) -> SceneError:

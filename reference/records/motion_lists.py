@@ -98,26 +98,14 @@ def read_motion_list(folder: Path) -> MotionList | None:
         text = decode_text(read_file(file, LARGEST))
     except (OSError, RecordError) as error:
         raise RecordError(f"{FILE}: {getattr(error, 'strerror', None) or error}") from None
-    lines = [line for line in text.splitlines() if line.strip()]
-    if not lines:
-        raise RecordError(f"{FILE}: empty: must have the columns {', '.join(COLUMNS)}")
-    mark = next((mark for mark in "\t;," if mark in lines[0]), ",")
-    rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
-    heads = [head.lower() for head in rows[0]]
-    twice = any(heads.count(head) > 1 for head in heads if head)
-    if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, *STATED, MAGNITUDE, ""}:
-        optional = ", ".join((*STATED, MAGNITUDE))
-        rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {optional}"
-        raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
-    if not rows[1:]:
-        raise RecordError(f"{FILE}: no motions: must have a line for each")
+    heads, *rows = _split_cells(text)
     motions: dict[str, Motion] = {}
     faults = []
-    for number, row in enumerate(rows[1:], 2):
+    for number, row in enumerate(rows, 2):
         try:
             if any(row[len(heads) :]):
                 raise RecordError(f"{len(row)} cells, and {len(heads)} columns: a decimal comma needs quotes")
-            motion = _motion(dict(zip(heads, row)), folder)
+            motion = _read_motion(dict(zip(heads, row)), folder)
             if motion.name in motions:
                 raise RecordError(f"{brief(motion.name)}: two motions have one name")
             motions[motion.name] = motion
@@ -129,13 +117,45 @@ def read_motion_list(folder: Path) -> MotionList | None:
     return MotionList(tuple(motions.values()), listed=True)
 
 
-def _motion(row: Mapping[str, str], folder: Path) -> Motion:
-    """One line of the file. Raises RecordError."""
+def _split_cells(text: str) -> list[list[str]]:
+    """Return the columns of the file in small letters, and the cells of its other lines. Raises RecordError."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    if not lines:
+        raise RecordError(f"{FILE}: empty: must have the columns {', '.join(COLUMNS)}")
+    mark = next((mark for mark in "\t;," if mark in lines[0]), ",")
+    first, *rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
+    heads = [head.lower() for head in first]
+    twice = any(heads.count(head) > 1 for head in heads if head)
+    if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, *STATED, MAGNITUDE, ""}:
+        optional = ", ".join((*STATED, MAGNITUDE))
+        rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {optional}"
+        raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
+    if not rows:
+        raise RecordError(f"{FILE}: no motions: must have a line for each")
+    return [heads, *rows]
+
+
+def _read_motion(row: Mapping[str, str], folder: Path) -> Motion:
+    """Read one line of the file, whose cells are given by column. Raises RecordError."""
+    columns = [_whole_number("column", word) for word in (row.get("column") or "").split()]
+    files = _find_files(row, folder, columns)
+    stated = {"step": _number(row, "step", MAX_STEP), "unit": row.get("unit") or None}
+    stated["skip"] = _whole_number("skip", row["skip"]) if row.get("skip") else None
+    axes = [""] if list(files) == ["x"] else list(files)
+    options: dict[str, Any] = {axis: {key: part for key, part in stated.items() if part is not None} for axis in axes}
+    for place, axis in enumerate(axes if columns else ()):
+        options[axis]["column"] = columns[min(place, len(columns) - 1)]
+    factor, magnitude = _number(row, "factor", MAX_FACTOR) or 1.0, _number(row, MAGNITUDE, MAX_MAGNITUDE)
+    known = {axis: given for axis, given in options.items() if given}
+    return Motion(row["name"], dict(zip(axes, files.values())), factor, magnitude, known)
+
+
+def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) -> dict[str, Path]:
+    """Return the files of a motion by axis: one file along each axis of several columns. Raises RecordError."""
     files = {axis: folder / row[axis] for axis in AXES if row.get(axis)}
     if not row.get("name") or not files:
         raise RecordError("must have a name, and a file along x, y or z")
-    columns = [_whole_number("column", word) for word in (row.get("column") or "").split()]
-    if list(files) == ["x"] and len(columns) > 1:  # all directions stand in one file
+    if list(files) == ["x"] and len(columns) > 1:
         files = dict.fromkeys(AXES[: len(columns)], files["x"])
     if len(columns) > 1 and len(columns) != len(files):
         rule = f"must be one column, or one for each of {', '.join(files)}"
@@ -143,18 +163,7 @@ def _motion(row: Mapping[str, str], folder: Path) -> Motion:
     for file in files.values():
         if not _is_file(file):
             raise RecordError(f"{brief(file.name)}: no such file in the folder")
-    factor = _number(row, "factor", MAX_FACTOR) or 1.0
-    magnitude = _number(row, MAGNITUDE, MAX_MAGNITUDE)
-    stated: dict[str, Any] = {} if (step := _number(row, "step", MAX_STEP)) is None else {"step": step}
-    stated |= {"unit": row["unit"]} if row.get("unit") else {}
-    stated |= {"skip": _whole_number("skip", row["skip"])} if row.get("skip") else {}
-    axes = [""] if list(files) == ["x"] else list(files)
-    options = {
-        axis: stated | ({"column": columns[min(place, len(columns) - 1)]} if columns else {})
-        for place, axis in enumerate(axes)
-    }
-    known = {axis: given for axis, given in options.items() if given}
-    return Motion(row["name"], dict(zip(axes, files.values())), factor, magnitude, known)
+    return files
 
 
 def _whole_number(name: str, text: str) -> int:

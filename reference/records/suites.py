@@ -148,25 +148,27 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
         return found
     kinds = {file: _kind_of_other_file(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
-    ignored = Counter(kind for kind in kinds.values() if kind)
-    names = {kind: [file.name for file, own in kinds.items() if own == kind] for kind in MAYBE_RECORDS}
     proposal = propose_motion([file for file, kind in kinds.items() if kind in MAYBE_RECORDS])
     if not records:
         raise SuiteError("suite", f"has no CSV or .AT2 files: {proposal or SUITE_RULE}")
     proposal += "; --write-motions writes the lines of the other motions." if proposal else ""
-    if components == 1:
-        upright = find_vertical_components(records)
-        if upright:
-            ignored["vertical components"] = len(upright)
-        single = [Motion(file.stem, {"x": file}) for file in records if file not in upright]
-        return MotionList(_with_own_names(single), ignored, names, proposal)
+    upright = find_vertical_components(records) if components == 1 else set()
+    ignored = Counter(kind for kind in kinds.values() if kind)
+    ignored += Counter({"vertical components": len(upright)})
+    names = {kind: [file.name for file, own in kinds.items() if own == kind] for kind in MAYBE_RECORDS}
+    level = [Motion(file.stem, {"x": file}) for file in records if file not in upright]
+    motions = level if components == 1 else _pair_records(records)
+    return MotionList(_with_own_names(motions), ignored, names, proposal)
+
+
+def _pair_records(records: Sequence[Path]) -> list[Motion]:
+    """Return the motions of files that hold a component each, or a whole motion each. Raises SuiteError."""
     whole = [file for file in records if _holds_directions(file)]
     parts = [file for file in records if file not in whole]
     if whole and parts:
         shown = f"{brief(whole[0].name)} holds whole motions, {brief(parts[0].name)} a component"
         raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE}")
-    motions = pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
-    return MotionList(_with_own_names(motions), ignored, names, proposal)
+    return pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
 
 
 def propose_motion(files: Sequence[Path]) -> str:

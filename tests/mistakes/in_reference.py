@@ -236,7 +236,7 @@ MISTAKES = (
     Mistake(PROBLEM + "families.py", 'for key in ("slow", "fast") if', 'for key in ("fast",) if',
             "Bounds multiply fast friction alone.",
             (BOUNDS + "test_bounds_multiply_slow_and_fast_friction_alike_and_nothing_else",)),
-    Mistake(PROBLEM + "families.py", "running = [*bounds, *running]", "running = [*running, *bounds]",
+    Mistake(PROBLEM + "families.py", "keys = [*bounds, *running]", "keys = [*running, *bounds]",
             "Bounds and the other values that run are mixed up.",
             (BOUNDS + "test_bounds_are_combined_with_every_value_that_runs",)),
     Mistake(PROBLEM + "families.py", '{**isolator, "bounds": [*bounds]}', '{"bounds": [*bounds], **isolator}',

@@ -210,20 +210,15 @@ def _header_column(place: int, cell: str) -> HeaderCell:
 
 def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
     """The columns by axis, or one under "" that names no direction. Raises RecordError."""
-    for column in columns:
-        if sum(one.word.lower() == column.word.lower() for one in columns) > 1:
-            name = column.word or "of the acceleration"
-            raise RecordError(f"line {line}: column {name} is there twice")
-    if len(columns) == 1 and not columns[0].word:
-        return {"": columns[0]}
-    words = [FUSED.fullmatch(column.word) for column in columns]
-    told = [parse_direction(word[1] if word else column.word) for word, column in zip(words, columns)]
-    known: list[Direction] = [one for one in told if one is not None]
+    words = [column.word.lower() for column in columns]
+    if twice := [column.word for column in columns if words.count(column.word.lower()) > 1]:
+        raise RecordError(f"line {line}: column {twice[0] or 'of the acceleration'} is there twice")
+    known = [one for one in map(_direction_of, columns) if one is not None]
     axes = {one.axis: column for one, column in zip(known, columns)}
     if len(known) == len(columns) == len(axes) and set(axes) <= set(AXES):
         return {axis: axes[axis] for axis in AXES if axis in axes}
     if len(columns) == 1:
-        return {"": columns[0]}  # an azimuth alone
+        return {"": columns[0]}  # without a name, or an azimuth alone
     places = assign_axes(known) if len(known) == len(columns) else None
     if places is None:
         listed = ", ".join(brief(column.text) for column in columns)
@@ -231,6 +226,12 @@ def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, Head
             f"line {line}: columns {listed}: two have one direction, or none is told: name them ax, ay, az"
         )
     return {axis: columns[number] for axis, number in places.items()}
+
+
+def _direction_of(column: HeaderCell) -> Direction | None:
+    """Return the direction that a column of the header names; None for none."""
+    fused = FUSED.fullmatch(column.word)
+    return parse_direction(fused[1] if fused else column.word)
 
 
 def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:

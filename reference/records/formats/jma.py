@@ -32,11 +32,7 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     factor, sampling = unit_factor(unit[1]), parse_number(1, rate[1])
     if factor is None or sampling <= 0.0:
         raise RecordError(f"UNIT = {brief(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
-    heads = [[word.strip() for word in line.split(",")] for line in lines[:MAX_HEADER_LINES]]
-    top = next((at for at, words in enumerate(heads) if len(words) > 1 and all(map(_axis_of_direction, words))), None)
-    if top is None:
-        raise RecordError("the header must have a line 'NS,EW,UD'")
-    words = heads[top]
+    top, words = _find_header(lines)
     rows = [(at, line.split(",")) for at, line in enumerate(lines[top + 1 :], top + 2) if line.strip(" ,")]
     for at, cells in rows:
         if len(cells) < len(words) or any(cell.strip() for cell in cells[len(words) :]):
@@ -47,6 +43,15 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     names = {_axis_of_direction(word): word for word in words}
     step = 1.0 / sampling
     return RecordSamples(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
+
+
+def _find_header(lines: Sequence[str]) -> tuple[int, list[str]]:
+    """Return the line of the header that names directions alone, from 0, and its words. Raises RecordError."""
+    for at, line in enumerate(lines[:MAX_HEADER_LINES]):
+        words = [word.strip() for word in line.split(",")]
+        if len(words) > 1 and all(map(_axis_of_direction, words)):
+            return at, words
+    raise RecordError("the header must have a line 'NS,EW,UD'")
 
 
 def _axis_of_direction(word: str) -> str:

@@ -114,12 +114,19 @@ def propose_options(text: str) -> Proposal | str:
     step, unit = _read_step(header), NAMED_UNIT.search(header)
     known = step if step is not None else time
     stated = unit[0].strip("()[]") if unit else None
-    side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MOST_COLUMNS
-    alone = side_by_side and not any(map(COUNT_AND_STEP.fullmatch, lines[:start]))
-    first = 2 if time is not None else 1
-    columns = tuple(range(first, min(len(rows[0]), first + 2) + 1)) if time is not None or alone else ()
+    counted = any(map(COUNT_AND_STEP.fullmatch, lines[:start]))
     missing = tuple(word for word, value in (("step", known), ("unit", stated)) if value is None)
+    columns = _propose_columns(rows, time is not None, counted)
     return Proposal(0.01 if known is None else known, stated or "g", start, columns, missing)
+
+
+def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool) -> tuple[int, ...]:
+    """Return the columns of accelerations, from 1, behind that of the time; () for all values in their order."""
+    side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MOST_COLUMNS
+    if not timed and (counted or not side_by_side):
+        return ()
+    first = 2 if timed else 1
+    return tuple(range(first, min(len(rows[0]), first + 2) + 1))
 
 
 def propose_line(text: str, name: str) -> str:
