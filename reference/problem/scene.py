@@ -105,7 +105,23 @@ class Scene(Table):
             raise MisfitError(error.key, error.value, error.rule) from None
 
     @model_validator(mode="after")
-    def _check_links(self) -> Scene:
+    def _check_together(self) -> Scene:
+        """Check what no table can check alone."""
+        self._check_links()
+        self._check_bars()
+        self._check_superstructure()
+        self._check_derived()
+        self._check_duration()
+        self._check_isolator()
+        self._check_supports()
+        self._check_measured()
+        self._check_upright()
+        if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
+            raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
+        return self
+
+    def _check_links(self) -> None:
+        """Check that every body but the platform has one link to the body below."""
         platform, *others = self.bodies
         for name in (*LINKS, "damping"):
             if (value := getattr(platform, name)) is not None:
@@ -115,15 +131,6 @@ class Scene(Table):
                 exactly_one(body, *LINKS)
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
-        self._check_bars()
-        self._check_superstructure()
-        self._check_derived()
-        self._check_supports()
-        self._check_measured()
-        self._check_upright()
-        if not np.isfinite(self.record if isinstance(self.excitation, Record) else self.amplitudes).all():
-            raise MisfitError("excitation.scale", self.excitation.scale, "must leave every acceleration finite")
-        return self
 
     def _check_bars(self) -> None:
         """Check that bars softened by the weight do not buckle under it."""
@@ -152,30 +159,36 @@ class Scene(Table):
 
     def _check_derived(self) -> None:
         """Check that values which follow from several others are within their ranges."""
+        for name, (value, span) in self._derive_values().items():
+            lowest, highest = span.lowest * (1.0 - DERIVED_ROUNDING), span.highest * (1.0 + DERIVED_ROUNDING)
+            if not (lowest <= value <= highest or value in span):
+                raise MisfitError(name, value, span.rule)
+
+    def _derive_values(self) -> dict[str, tuple[float, Range]]:
+        """Return the values that follow from several others, by what an error calls them, with their ranges."""
         derived = {
             "isolator: radius in m": (self.radius, range_of(Isolator, "radius")),
             "bodies: total mass in kg": (self.total_mass, range_of(Body, "mass")),
         }
+        law = self.dry_friction
+        if law.exponent != 0.0:
+            derived["isolator.friction: under the weight"] = law.slow, range_of(VelocityFriction, "slow")
+        if law.elastic:
+            for name, value in (("initial_stiffness", law.stiffness), ("yield_displacement", self.yield_displacement)):
+                derived[f"isolator.friction: {name}"] = value, range_of(VelocityFriction, name)
         with np.errstate(over="ignore", divide="ignore"):
             periods = 2.0 * np.pi * np.sqrt(self.masses[1:, None] / self.stiffness)
-        if self.dry_friction.exponent != 0.0:
-            derived["isolator.friction: under the weight"] = self.dry_friction.slow, range_of(VelocityFriction, "slow")
-        if self.dry_friction.elastic:
-            for name, value in (
-                ("initial_stiffness", self.dry_friction.stiffness),
-                ("yield_displacement", self.yield_displacement),
-            ):
-                derived[f"isolator.friction: {name}"] = value, range_of(VelocityFriction, name)
         allowed = {name: range_of(Body, name) for name in ("stiffness", "period", "damping")}
         for (i, axis), k in np.ndenumerate(self.stiffness):
-            derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), allowed["stiffness"]
-            derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), allowed["period"]
+            link, along = f"bodies.{i + 1}: ", "xy"[axis]
             ratio = float(self.damping[i, axis] / (2.0 * np.sqrt(k * self.masses[i + 1])))
-            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, allowed["damping"]
-        for name, (value, span) in derived.items():
-            lowest, highest = span.lowest * (1.0 - DERIVED_ROUNDING), span.highest * (1.0 + DERIVED_ROUNDING)
-            if not (lowest <= value <= highest or value in span):
-                raise MisfitError(name, value, span.rule)
+            derived[f"{link}k^{along} in N/m"] = float(k), allowed["stiffness"]
+            derived[f"{link}period along {along} in s"] = float(periods[i, axis]), allowed["period"]
+            derived[f"{link}damping ratio along {along}"] = ratio, allowed["damping"]
+        return derived
+
+    def _check_duration(self) -> None:
+        """Check that the motion has no more periods than a run follows."""
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
             shortest = min(shortest, *self.excitation.periods)
@@ -183,17 +196,11 @@ class Scene(Table):
             rule = f"must be at most {MAX_CYCLES:g} periods of {shortest:.4g} s, the shortest of loading and pendulum"
             raise MisfitError("duration", self.duration, rule)
 
-        travel = self.isolator.travel
+    def _check_isolator(self) -> None:
+        """Check that travel and compliance of the supports are small against the radius."""
+        travel, bearings = self.isolator.travel, self.isolator.support_stiffness
         if travel is not None and not travel < self.radius:
             raise MisfitError("isolator.travel", travel, f"must be below the radius, rho = {self.radius:.6g} m")
-        bearings, restitution = self.isolator.support_stiffness, self.isolator.restitution
-        if bearings is not None and restitution is not None:
-            rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
-            raise MisfitError("isolator.restitution", restitution, rule)
-        damping = self.isolator.support_damping
-        if bearings is None and damping is not None:
-            rule = "damps supports with a support_stiffness: state that, too, or remove this key"
-            raise MisfitError("isolator.support_damping", damping, rule)
         if bearings is not None:
             share = self.total_mass * GRAVITY / ((self.isolator.support_count or 1) * bearings * self.radius)
             if not share <= MAX_SUPPORT_DEFLECTION:

@@ -38,6 +38,7 @@ from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_
 from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
 from reference.records.samples import check_samples
 from reference.support.arguments import Range
+from reference.support.scene_error import MisfitError
 
 
 def _check_damping(value: Any) -> Any:
@@ -122,6 +123,13 @@ class Isolator(Table):
     def _check_alternatives(self) -> Isolator:
         exactly_one(self, "period", "radius")
         exactly_one(self, "friction", "lubrication")
+        bearings = self.support_stiffness
+        if bearings is not None and self.restitution is not None:
+            rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
+            raise MisfitError("isolator.restitution", self.restitution, rule)
+        if bearings is None and self.support_damping is not None:
+            rule = "damps supports with a support_stiffness: state that, too, or remove this key"
+            raise MisfitError("isolator.support_damping", self.support_damping, rule)
         return self
 
     @property
