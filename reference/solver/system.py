@@ -119,23 +119,11 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)
     )
     damping_rate = float(2.0 * (damping_below + damping_above).max())
-    # Without friction the lubricated law with f_c = 0 is the same, and has no corner.
-    dry = scene.dry_friction
-    smooth = dry.largest == 0.0
-    heat = None if smooth else dry.heat
-    stiffness = float(dry.stiffness / masses[0])
-    shear = stiffness if dry.elastic else 0.0
-    law = YIELDING if dry.elastic else SET_VALUED if v_reg is None else REGULARIZED
+    shear = float(scene.dry_friction.stiffness / masses[0]) if scene.dry_friction.elastic else 0.0
     return System(
         small=small,
-        law=LUBRICATED if smooth else law,
         rest_condition=PRINTED if printed_rest else CONSISTENT,
-        friction=scene.friction_coefficient if scene.lubricated else dry.slow,
-        rise=dry.fast - dry.slow if dry.varies else 0.0,
-        rate=dry.rate if dry.varies else 0.0,
-        exponent=None if smooth or (dry.exponent == 0.0 and dry.heat is None) else dry.exponent,
-        stiffness=stiffness,
-        v_reg=0.0 if v_reg is None else float(v_reg),
+        **_pack_friction(scene, v_reg),
         mass_ratio=float(scene.total_mass / masses[0]),
         radius=float(scene.radius),
         travel=float(np.inf if scene.isolator.travel is None else scene.isolator.travel),
@@ -147,15 +135,33 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         amplitudes=np.zeros((3, 2)) if scene.recorded else scene.amplitudes,
         exponents=np.zeros(2, np.complex128) if scene.recorded else exponents(scene),
         record=scene.record,
-        heat=np.array([] if heat is None else [heat.initial, heat.rise * masses[0], heat.cover]),
         k_t=np.zeros((0, 3 + STAGES)),
         kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
-        fastest=float(np.sqrt(2.0 * (below + above).max() + shear))
-        + damping_rate,  # Gershgorin's bounds of the eigenvalues
+        # Gershgorin's bounds of the eigenvalues
+        fastest=float(np.sqrt(2.0 * (below + above).max() + shear)) + damping_rate,
         damping_rate=damping_rate,
     )
+
+
+def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
+    """Return the fields of the law of friction."""
+    # Without friction the lubricated law with f_c = 0 is the same, and has no corner.
+    dry, mass = scene.dry_friction, scene.masses[0]
+    smooth = dry.largest == 0.0
+    heat = None if smooth else dry.heat
+    law = YIELDING if dry.elastic else SET_VALUED if v_reg is None else REGULARIZED
+    return {
+        "law": LUBRICATED if smooth else law,
+        "friction": scene.friction_coefficient if scene.lubricated else dry.slow,
+        "rise": dry.fast - dry.slow if dry.varies else 0.0,
+        "rate": dry.rate if dry.varies else 0.0,
+        "exponent": dry.exponent if dry.by_load and not smooth else None,
+        "stiffness": float(dry.stiffness / mass),
+        "v_reg": 0.0 if v_reg is None else float(v_reg),
+        "heat": np.array([] if heat is None else [heat.initial, heat.rise * mass, heat.cover]),
+    }
 
 
 def law_of(system: System) -> DryFriction:

@@ -99,14 +99,9 @@ def follow_phase(
             return UNSOLVED, contact
         code = solve_step(system, work, contact, settings, h)
         if code != SOLVED:
-            if code != UNSOLVED and is_too_short(work, contact, settings, h, code):
+            code, following = shorten_failed_step(system, work, contact, settings, h, code)
+            if code != SOLVED:
                 return code, contact
-            if contact == SLIDING:
-                code, following = recover_failed_slide(system, work, settings, h)
-                if code != SOLVED:
-                    return code, contact
-            if following == contact:
-                set_length(work, contact, FAILURE_SHORTENING * h)
             continue
         angle = vibration_angle(system, contact, h)
         damps = angle > MAX_VIBRATION_ANGLE
@@ -123,12 +118,7 @@ def follow_phase(
             following = contact
             continue
         parts = mark_counted_parts(system, work, contact, settings, end, since)
-        reached = instant_of_travel(system, work, contact, end)
-        if angle > MIN_DRIFT_ANGLE:
-            add_drift(system, work, end, angle)
-        commit_step(system, work, record, end, contact, parts)
-        if reached < inf:
-            work.time = reached
+        if commit_within_travel(system, work, record, end, contact, parts, angle) == TRAVEL:
             return TRAVEL, contact
         following = prepare_next_step(system, work, contact, following, settings, end, factor)
         if contact != STOPPING and work.time > work.look_time:
@@ -136,6 +126,38 @@ def follow_phase(
     if contact in (REST, CREEPING):
         record_stick(record, since, work.time)
     return SOLVED, following
+
+
+@compiled
+def shorten_failed_step(
+    system: System, work: Workspace, contact: int, settings: RunSettings, h: float, code: int
+) -> tuple[int, int]:
+    """Prepare another try at a step that was not solved; return SOLVED, or why there is none, and the next contact."""
+    following = contact
+    if code != UNSOLVED and is_too_short(work, contact, settings, h, code):
+        return code, contact
+    if contact == SLIDING:
+        code, following = recover_failed_slide(system, work, settings, h)
+        if code != SOLVED:
+            return code, contact
+    if following == contact:
+        set_length(work, contact, FAILURE_SHORTENING * h)
+    return SOLVED, following
+
+
+@compiled
+def commit_within_travel(
+    system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
+) -> int:
+    """Make the end of the step the new state; return TRAVEL, at the instant in work.time, where its travel ends."""
+    reached = instant_of_travel(system, work, contact, h)
+    if angle > MIN_DRIFT_ANGLE:
+        add_drift(system, work, h, angle)
+    commit_step(system, work, record, h, contact, parts)
+    if reached < inf:
+        work.time = reached
+        return TRAVEL
+    return SOLVED
 
 
 @compiled
