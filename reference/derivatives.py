@@ -94,15 +94,6 @@ class _Numbers(NamedTuple):
     law: str
 
 
-class _Corner(NamedTuple):
-    """Change of slope of a number between `low` and `high`, with a jump or 0."""
-
-    low: float
-    high: float
-    slopes: tuple[float, float]
-    jump: float
-
-
 @takes_scene
 def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Sensitivity]:
     """
@@ -236,8 +227,9 @@ def _find_sensitivity(line: _Line) -> Sensitivity:
     kink, slopes, jump = Estimate(nowhere, nowhere), (nowhere, nowhere), 0.0
     warning = ""
     if corner is not None:
-        kink = Estimate(float(0.5 * (corner.low + corner.high)), float(0.5 * (corner.high - corner.low)))
-        slopes, jump = corner.slopes, corner.jump
+        bracket, jump = corner
+        kink = Estimate(0.5 * (bracket.low.at + bracket.high.at), 0.5 * bracket.width)
+        slopes = bracket.below, bracket.beyond
         warning = describe_kink(line.key, line.value, kink, slopes, jump)
     elif contradicted:
         warning = f"the mean slope over 5 % of {line.key} departs by {departure:.2g} from the derivative: no kink found"
@@ -315,16 +307,57 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     return place, float(np.nan_to_num(departure[-1, place])), bool(excess[place] > 0.0)
 
 
-def _locate_corner(line: _Line, place: int) -> _Corner | None:
-    """Return the kink or jump of one element within the finite changes; None for a smooth or noisy slope."""
+class _Point(NamedTuple):
+    """One element of the quantity at a value of the key."""
 
-    def point(at: float) -> tuple[float, float, float]:
+    at: float
+    value: float
+    error: float
+
+
+class _Bracket(NamedTuple):
+    """Two points on the two sides of a corner, with the slopes outside them."""
+
+    low: _Point
+    high: _Point
+    below: float
+    beyond: float
+
+    @property
+    def width(self) -> float:
+        """Distance of the points."""
+        return self.high.at - self.low.at
+
+    @property
+    def turn(self) -> float:
+        """Change of slope between the points."""
+        return self.beyond - self.below
+
+    @property
+    def gap(self) -> float:
+        """Change between the points less that by the mean of the slopes outside them."""
+        return self.high.value - self.low.value - 0.5 * (self.below + self.beyond) * self.width
+
+
+def _locate_corner(line: _Line, place: int) -> tuple[_Bracket, float] | None:
+    """Return where one element has a kink within the finite changes, and its jump; None for a smooth or noisy slope."""
+
+    def point(at: float) -> _Point:
         numbers = line.answer_at(at)
-        return at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place])
+        return _Point(at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place]))
 
     points = [each for each in (point(at) for at in sorted(line.known)) if np.isfinite(each).all()]
-    if len(points) < 4:
+    first = _find_turn(points, point) if len(points) >= 4 else None
+    last = None if first is None else _halve(first, point, KINK_WIDTH * abs(line.value))
+    if first is None or last is None or last.width > LEAST_SHRINKING * first.width:
         return None
+    if abs(last.gap) > max(LEAST_REMAINDER * abs(first.gap), 10.0 * (last.low.error + last.high.error)):
+        return last, last.gap
+    return (last, 0.0) if abs(last.turn) > LEAST_REMAINDER * abs(first.turn) else None
+
+
+def _find_turn(points: Sequence[_Point], point: Callable[[float], _Point]) -> _Bracket | None:
+    """Return the neighbors of the point at which the slope changes most; None where errors explain the change."""
     x, f, e = np.array(points).T
     slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
     turn = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # at the points between two intervals
@@ -336,22 +369,27 @@ def _locate_corner(line: _Line, place: int) -> _Corner | None:
         low = point(x[0] + 0.1 * (x[1] - x[0]))
     if node == len(points) - 2:
         high = point(x[-1] - 0.1 * (x[-1] - x[-2]))
-    below = slope[node - 2] if node > 1 else (low[1] - f[0]) / (low[0] - x[0])
-    beyond = slope[node + 1] if node < len(points) - 2 else (f[-1] - high[1]) / (x[-1] - high[0])
-    turned, gapped, width = float(beyond - below), _gap_between(low, high, below, beyond), high[0] - low[0]
+    below = slope[node - 2] if node > 1 else (low.value - f[0]) / (low.at - x[0])
+    beyond = slope[node + 1] if node < len(points) - 2 else (f[-1] - high.value) / (x[-1] - high.at)
+    return _Bracket(low, high, float(below), float(beyond))
+
+
+def _halve(bracket: _Bracket, point: Callable[[float], _Point], enough: float) -> _Bracket | None:
+    """Halve a bracket to the width `enough`, or as far as errors permit; None where a value is missing."""
+    low, high, below, beyond = bracket
     for _ in range(MAX_HALVINGS):
-        if high[0] - low[0] <= KINK_WIDTH * abs(line.value):
+        if high.at - low.at <= enough:
             break
-        middle = point(0.5 * (low[0] + high[0]))
-        left, right = ((b[1] - a[1]) / (b[0] - a[0]) for a, b in ((low, middle), (middle, high)))
+        middle = point(0.5 * (low.at + high.at))
+        left, right = ((b.value - a.value) / (b.at - a.at) for a, b in ((low, middle), (middle, high)))
         if not np.isfinite(left + right):
             return None
-        noise = (low[2] + 2.0 * middle[2] + high[2]) / (middle[0] - low[0])
+        noise = (low.error + 2.0 * middle.error + high.error) / (middle.at - low.at)
         apart = max(abs(left - below), abs(right - beyond))
         if apart <= noise < 0.1 * abs(beyond - below):  # both halves are straight: the kink is at the middle
-            near = max(noise / abs(beyond - below) * (high[0] - low[0]), 0.5 * KINK_WIDTH * abs(line.value))
-            low = middle[0] - near, middle[1] - below * near, middle[2]
-            high = middle[0] + near, middle[1] + beyond * near, middle[2]
+            near = max(noise / abs(beyond - below) * (high.at - low.at), 0.5 * enough)
+            low = _Point(middle.at - near, middle.value - below * near, middle.error)
+            high = _Point(middle.at + near, middle.value + beyond * near, middle.error)
             break
         if noise > 0.2 * apart:
             break
@@ -359,40 +397,33 @@ def _locate_corner(line: _Line, place: int) -> _Corner | None:
             high, beyond = middle, right
         else:
             low, below = middle, left
-    if high[0] - low[0] > LEAST_SHRINKING * width:
-        return None
-    gap, slopes = _gap_between(low, high, below, beyond), (float(below), float(beyond))
-    if abs(gap) > max(LEAST_REMAINDER * abs(gapped), 10.0 * (low[2] + high[2])):
-        return _Corner(low[0], high[0], slopes, gap)
-    return _Corner(low[0], high[0], slopes, 0.0) if abs(beyond - below) > LEAST_REMAINDER * abs(turned) else None
-
-
-def _gap_between(low: tuple[float, ...], high: tuple[float, ...], below: float, beyond: float) -> float:
-    """Return the change between two points less that by the mean of the slopes outside them."""
-    return float(high[1] - low[1] - 0.5 * (below + beyond) * (high[0] - low[0]))
+    return _Bracket(low, high, below, beyond)
 
 
 def _numbers_of(found: Any) -> _Numbers:
     """Return value and error of whatever a quantity returns, with its reading of (5.1) and its law of friction."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
-    numbers: Any = None
-    if isinstance(found, Amplification):
-        numbers = found.mu, found.error
-    elif all(hasattr(part, "value") and hasattr(part, "error") for part in parts):
-        numbers = [part.value for part in parts], [part.error for part in parts]
-        numbers = numbers if several else (found.value, found.error)
-    elif isinstance(found, tuple) and len(found) == 2:
-        numbers = found
-    else:
-        raise _refusal_of(found)
     try:
-        value, error = (np.asarray(part, dtype=float) for part in numbers)
+        value, error = (np.asarray(part, dtype=float) for part in _value_and_error(found, parts))
     except (TypeError, ValueError):
         raise _refusal_of(found) from None
     if value.shape != error.shape or not value.size:
         raise _refusal_of(found)
     return _Numbers(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
+
+
+def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
+    """Return what stands for value and error in what a quantity returned. Raises TypeError for anything else."""
+    if isinstance(found, Amplification):
+        return found.mu, found.error
+    if all(hasattr(part, "value") and hasattr(part, "error") for part in parts):
+        if not isinstance(found, tuple | list):
+            return found.value, found.error
+        return [part.value for part in parts], [part.error for part in parts]
+    if isinstance(found, tuple) and len(found) == 2:
+        return found
+    raise TypeError("neither value nor error")
 
 
 def _refusal_of(found: Any) -> TypeError:

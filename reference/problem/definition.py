@@ -109,6 +109,30 @@ def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, 
     return best
 
 
+@njit(nogil=True)
+def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound: Array) -> None:
+    """Fill what all phases share at sample n: exp(s t) of both harmonics, and a bound of |u|^2 from there on."""
+    largest = 0.0
+    for harmonic in range(2):
+        size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
+        grown[n, harmonic, 0], grown[n, harmonic, 1] = size * math.cos(angle), size * math.sin(angle)
+        largest += weights[harmonic] * size
+    bound[n] = largest**2
+
+
+@njit(nogil=True)
+def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
+    """Return |u|^2 at a sample, rounded otherwise than `_square_and_slopes` does; turn: exp(i phase), (2, 2)."""
+    value = 0.0
+    for k in range(3):
+        u = 0.0
+        for harmonic in range(2):
+            real, imaginary = grown[harmonic]
+            u += amplitudes[k, harmonic] * (turn[harmonic, 0] * real - turn[harmonic, 1] * imaginary)
+        value += u * u
+    return value
+
+
 @cache_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, duration: float, step: float) -> Array:
     """Return peaks (M,) for phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): their exponents."""
@@ -118,7 +142,7 @@ def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, du
     bound = np.empty(count)  # bound of |u|^2 from each sample on
     turn = np.empty((2, 2))  # real and imaginary part of exp(i phase)
     known = 0  # number of samples that some phase has needed
-    square = np.empty(count)  # |u|^2 of one phase, rounded otherwise than `_square_and_slopes` does
+    square = np.empty(count)  # |u|^2 of one phase
     for m in range(phases.shape[0]):
         phase = phases[m]
         for harmonic in range(2):
@@ -127,22 +151,9 @@ def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, du
         end = count
         for n in range(count):
             if n == known:
-                t = min(n * step, duration)
-                largest = 0.0
-                for harmonic in range(2):
-                    size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
-                    grown[n, harmonic, 0], grown[n, harmonic, 1] = size * math.cos(angle), size * math.sin(angle)
-                    largest += weights[harmonic] * size
-                bound[n] = largest**2
+                _fill_sample(n, min(n * step, duration), weights, s, grown, bound)
                 known += 1
-            value = 0.0
-            for k in range(3):
-                u = 0.0
-                for harmonic in range(2):
-                    real, imaginary = grown[n, harmonic]
-                    u += amplitudes[k, harmonic] * (turn[harmonic, 0] * real - turn[harmonic, 1] * imaginary)
-                value += u * u
-            square[n] = value
+            value = square[n] = _square_at_sample(turn, amplitudes, grown[n])
             highest = max(highest, value) if math.isfinite(value) else math.inf
             if bound[n] < highest:
                 end = n + 1

@@ -125,54 +125,72 @@ def far_conduction_integral(theta: float, power: Array) -> float:
     return total
 
 
+@njit(**OPTIONS)
+def past_temperature(
+    time: float,
+    piece: int,
+    initial: float,
+    start: Array,
+    length: Array,
+    heat: Array,
+    coefficients: Array,
+    moments: Array,
+) -> float:
+    """Return the temperature at a time within a piece by the heat of all pieces before it."""
+    # That sums over all pieces before. Long past, only the sum, mean time and variance of a block's heat count: with d
+    # the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...) / sqrt(d), whose linear term vanishes
+    # about the mean. Row l of the moments holds blocks of 2^l pieces; walking back in time the blocks grow with the
+    # distance, which leaves of the order of log K terms. Near pieces are integrated exactly, those at a middle distance
+    # by quadrature.
+    past, j = initial, piece
+    while j > 0:
+        level, size, first = 0, 1, j - 1
+        while j % (2 * size) == 0 and time - start[j - 2 * size] > BLOCK_DISTANCE * (start[j] - start[j - 2 * size]):
+            level, size, first = level + 1, 2 * size, j - 2 * size
+        theta = (time - start[first]) / length[first]
+        moment = moments[level, first // size]
+        if moment[0] == 0.0:
+            pass
+        elif level > 0 or theta > BLOCK_DISTANCE:
+            distance = time - moment[1]
+            past += moment[0] * (1.0 + 0.375 * moment[2] / (distance * distance)) / np.sqrt(distance)
+        elif theta > FAR_DISTANCE:
+            past += np.sqrt(length[first]) * far_conduction_integral(theta, heat[first])
+        else:
+            past += np.sqrt(length[first]) * conduction_integral(theta, coefficients[first])
+        j = first
+    return past
+
+
+@njit(**OPTIONS)
+def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficients: Array, k_t: Array) -> None:
+    """Fill heat, its polynomial and k_T of a piece: power and k_T depend on each other, by the heat of one piece."""
+    for _ in range(MAX_ITERATIONS):
+        change = 0.0
+        heat[:] = power * k_t
+        for k in range(STAGES):
+            coefficients[k] = 0.0
+            for m in range(STAGES):
+                coefficients[k] += MONOMIALS[k, m] * heat[m]
+        for m in range(STAGES):
+            now = temperature_factor(past[m] + np.sqrt(length) * conduction_integral(NODES[m], coefficients))
+            change, k_t[m] = max(change, abs(now - k_t[m])), now
+        if change < MAX_LAST_CHANGE:
+            break
+
+
 @cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
-    """
-    Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature.
-    """
-    # The temperature at a node sums the heat of all pieces before it: K^2 terms. Long past, only the sum, mean time and
-    # variance of a block's heat count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
-    # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
-    # back in time the blocks grow with the distance, which leaves of the order of log K terms a node. Near pieces are
-    # integrated exactly, those at a middle distance by quadrature. Within its own piece power and k_T depend on each
-    # other: a fixed-point iteration, which contracts by the heat of one short piece.
+    """Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature."""
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))
     for i in range(count):
         for m in range(STAGES):
-            time, past[m], j = start[i] + NODES[m] * length[i], initial, i
-            while j > 0:
-                level, size, first = 0, 1, j - 1
-                while j % (2 * size) == 0 and time - start[j - 2 * size] > BLOCK_DISTANCE * (
-                    start[j] - start[j - 2 * size]
-                ):
-                    level, size, first = level + 1, 2 * size, j - 2 * size
-                theta = (time - start[first]) / length[first]
-                moment = moments[level, first // size]
-                if moment[0] == 0.0:
-                    pass
-                elif level > 0 or theta > BLOCK_DISTANCE:
-                    distance = time - moment[1]
-                    past[m] += moment[0] * (1.0 + 0.375 * moment[2] / (distance * distance)) / np.sqrt(distance)
-                elif theta > FAR_DISTANCE:
-                    past[m] += np.sqrt(length[first]) * far_conduction_integral(theta, heat[first])
-                else:
-                    past[m] += np.sqrt(length[first]) * conduction_integral(theta, coefficients[first])
-                j = first
+            time = start[i] + NODES[m] * length[i]
+            past[m] = past_temperature(time, i, initial, start, length, heat, coefficients, moments)
             k_t[i, m] = temperature_factor(past[m])
-        for _ in range(MAX_ITERATIONS):
-            change = 0.0
-            heat[i] = power[i] * k_t[i]
-            for k in range(STAGES):
-                coefficients[i, k] = 0.0
-                for m in range(STAGES):
-                    coefficients[i, k] += MONOMIALS[k, m] * heat[i, m]
-            for m in range(STAGES):
-                now = temperature_factor(past[m] + np.sqrt(length[i]) * conduction_integral(NODES[m], coefficients[i]))
-                change, k_t[i, m] = max(change, abs(now - k_t[i, m])), now
-            if change < MAX_LAST_CHANGE:
-                break
+        solve_piece(past, length[i], power[i], heat[i], coefficients[i], k_t[i])
         if power[i, 0] > 0.0:
             share = WEIGHTS * heat[i] / (WEIGHTS * heat[i]).sum()
             center = (share * NODES).sum()
