@@ -143,45 +143,46 @@ class _Progress:
 
     def advance(self) -> bool:
         """Make one chunk of steps and accept what is accurate; return whether the run goes on."""
-        at, level, openings = self.at, self.level, self.openings
+        at, level, springs = self.at, self.level, self.model.springs
         asked, step, count = self._choose_steps()
         motion = self._integrate(step, count)
         if motion is None:
             return self._divide_after_failure()
-        if openings is not None:
-            motion = openings.fill_gaps_of_open_contacts(motion)
         size = absolute_accelerations(self.model, motion, self.integration.ground)
         step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step, at.state)
-        last = len(motion.time) - 1
-        failing = find_first_row(step_ratio > 1.0)
-        rejected = at.divisions < level.max_divisions and failing <= last
-        if rejected:
-            last = max(failing - 1, 0)
-        event = None if openings is None else openings.find_first_event(motion.cut_at(last))
-        change = self._find_change(motion.cut_at(last)) if event is None else None
-        if event is not None:
-            last, rejected = event.row, False
-        elif change is not None:
-            last, rejected = change.row, False
-        before = at.state
-        if last > 0 and not self._accept_steps(
-            motion.cut_at(last), size[: last + 1], settle=rejected or change is not None
-        ):
+        last, failing, event, change = self._find_end(motion, step_ratio)
+        before, settle = at.state, failing is not None or change is not None
+        if last > 0 and not self._accept_steps(motion.cut_at(last), size[: last + 1], settle=settle):
             return False
-        if openings is not None and event is not None:
-            return self._pass_event(openings, event, step)
-        springs = self.model.springs
+        if event is not None:
+            return self._pass_event(event, step)
         if springs is not None:
             rates = self._rates_of_limits(springs, motion, last)
             at.state = springs.settle(at.state, before, motion.accelerations[last], rates, level.slide_end)
             if change is not None:
                 return self._pass_change(springs, change, step, rates)
-        if rejected:
+        if failing is not None:
             at.divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             at.divisions = min(at.divisions, level.max_divisions)
         elif not self.integration.solver.stopped:
             self._enlarge_steps(motion, step_ratio, asked)
         return True
+
+    def _find_end(
+        self, motion: EngineMotion, step_ratio: Array
+    ) -> tuple[int, int | None, Event | None, ContactChange | None]:
+        """Find the last row that holds, and what is behind it: a step that is too large, an event or a change."""
+        failing, last = find_first_row(step_ratio > 1.0), len(motion.time) - 1
+        if self.at.divisions >= self.level.max_divisions or failing > last:
+            too_large = None
+        else:
+            too_large, last = failing, max(failing - 1, 0)
+        rows = motion.cut_at(last)
+        event = None if self.openings is None else self.openings.find_first_event(rows)
+        if event is not None:
+            return event.row, None, event, None
+        change = self._find_change(rows)
+        return (last, too_large, None, None) if change is None else (change.row, None, None, change)
 
     def _choose_steps(self) -> tuple[int, float, int]:
         """Choose the next chunk: the number of steps wanted, and length and number of those that end at knots."""
@@ -205,7 +206,9 @@ class _Progress:
         if budget.left < 0.0:
             self.run.terminate(Outcome.STEP_LIMIT, self.at.time)
             return None
-        return motion if motion is not None and np.isfinite(motion.accelerations).all() else None
+        if motion is None or not np.isfinite(motion.accelerations).all():
+            return None
+        return motion if self.openings is None else self.openings.fill_gaps_of_open_contacts(motion)
 
     def _divide_after_failure(self) -> bool:
         """Divide the step that the engine could not solve; return whether the run goes on."""
@@ -238,9 +241,10 @@ class _Progress:
             self.at.state = self.model.settle(self.at.state, gap_rate_at_end(motion), self.level.penetration)
         return True
 
-    def _pass_event(self, openings: Openings, event: Event, step: float) -> bool:
+    def _pass_event(self, event: Event, step: float) -> bool:
         """Pass an opening or closing of supports, which lies within the next step; return whether the run goes on."""
-        at, run = self.at, self.run
+        at, run, openings = self.at, self.run, self.openings
+        assert openings is not None
         motion = openings.locate_event(at.state, at.time, step, event)
         self.integration.budget.left -= 1.0
         if motion is not None:

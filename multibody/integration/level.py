@@ -241,38 +241,29 @@ def levels(
 
 def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """Plan all levels for a relative error of `tolerance`."""
-    # Step and change of the slip velocity follow from the level's number alone. The penetration is bounded from both
-    # sides. A softer contact than `softest` would lag behind friction at a stop, join in the motion of stiff links, or
-    # not have followed by the end. A stiffer one than `stiffest` would round its force, a position over a penetration,
-    # by more than a share of the tolerance. So the penetration falls by COMPLIANCE_RATIO as often as there is room
-    # between the two, and then the levels share it: `refine` adds a run on a softer contact in place of what they
-    # cannot show. A weak loading is compared with its own strength, and its contact may be softer.
+    # Step and change of the slip velocity follow from the level's number alone. The penetration falls by
+    # COMPLIANCE_RATIO as often as there is room between its bounds, and then the levels share it: `refine` adds a run
+    # on a softer contact in place of what they cannot show.
     period = shortest_period(scene, model)
     step = largest_step(period, model)
     # a tower tilts on soft contacts, so that its contact stays stiff under a weak loading
     strength = 1.0 if model.allows_liftoff else weak_strength(scene)
-    peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
-    followed, force_change = (
-        MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time,
-        largest_contact_change(scene, model),
-    )
+    followed = MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time
+    force_change = largest_contact_change(scene, model)
     slowest = followed if force_change == math.inf else 1.0
-    most = min(most, COMPLIANCE_RATIO * slowest**2)
-    rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, LOOSEST_FOR_ROUNDING)
-    stiffest = min(model.rounding / rounding, most / COMPLIANCE_RATIO)
-    share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
-    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), slowest)
-    softest = max(min(slowest**2, MAX_PENETRATION), stiffest)
+    softest, stiffest = _bound_penetration(model, tolerance, strength, period, slowest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
     first = -1 if scene.recorded and tolerance >= LOOSE else 0
     numbers = range(first, first + MAX_LEVELS)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in numbers]
     brief = list_brief_motions(scene, model, step)
     smallest = min([MIN_STEP_AT_STOP * MAX_SLIP_CHANGE * model.relaxation, *(needed for _, needed in brief)])
-    precision = 1.0 if model.springs is None else PRECISION_OF_SPRINGS
     max_divisions = MIN_DIVISIONS
     if smallest < step:
         max_divisions = max(MIN_DIVISIONS, math.ceil(math.log(step / smallest, STEP_RATIO)))
+    precision, slide_end = 1.0, 0.0
+    if model.springs is not None:
+        precision, slide_end = PRECISION_OF_SPRINGS, model.springs.slide_end
     return [
         Level(
             step=step / 2.0**level,
@@ -289,10 +280,27 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
             flat=scene.flat,
             softest=followed**2,
             force_change=force_change,
-            slide_end=0.0 if model.springs is None else model.springs.slide_end / 2.0**level,
+            slide_end=slide_end / 2.0**level,
         )
         for level, penetration in zip(numbers, penetrations)
     ]
+
+
+def _bound_penetration(
+    model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
+) -> tuple[float, float]:
+    """Return the softest and the stiffest contact that a model may have; slowest: time in which it must follow."""
+    # A softer contact than the softest would lag behind friction at a stop, join in the motion of stiff links, or not
+    # have followed by the end. A stiffer one than the stiffest would round its force, a position over a penetration, by
+    # more than a share of the tolerance. A weak loading is compared with its own strength, and its contact may be
+    # softer.
+    peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
+    most = min(most, COMPLIANCE_RATIO * slowest**2)
+    rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, LOOSEST_FOR_ROUNDING)
+    stiffest = min(model.rounding / rounding, most / COMPLIANCE_RATIO)
+    share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
+    slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), slowest)
+    return max(min(slowest**2, MAX_PENETRATION), stiffest), stiffest
 
 
 def newton_tolerance(number: int, step: float, penetration: float) -> float:

@@ -298,7 +298,7 @@ MISTAKES = (
     Mistake("reference/problem/friction.py", "math.sqrt(diffusivity / math.pi) / (conductivity",
             "math.sqrt(diffusivity) / (conductivity",
             "The kernel of conduction lacks the root of pi.", (HEATED,)),
-    Mistake(SOLVER + "heating.py", "NODES[m] * length[i], initial, i", "NODES[m] * length[i], 0.0, i",
+    Mistake(SOLVER + "heating.py", "past_temperature(time, i, initial, start", "past_temperature(time, i, 0.0, start",
             "The surface is at 0 degrees C before the motion.", (HEATED,)),
     Mistake(SOLVER + "contact/friction.py", "tz = rz - normal * nz", "tz = 0.0 * rz",
             "The force that holds the platform at rest has no vertical part.", (ORACLE,)),
