@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from reference.records.directions import parse_direction
+from reference.records.directions import axis_of_word
 from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import brief
@@ -33,7 +33,7 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     if factor is None or sampling <= 0.0:
         raise RecordError(f"UNIT = {brief(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
     heads = [[word.strip() for word in line.split(",")] for line in lines[:MAX_HEADER_LINES]]
-    top = next((at for at, words in enumerate(heads) if len(words) > 1 and all(map(_axis_of_direction, words))), None)
+    top = next((at for at, words in enumerate(heads) if len(words) > 1 and all(map(axis_of_word, words))), None)
     if top is None:
         raise RecordError("the header must have a line 'NS,EW,UD'")
     words = heads[top]
@@ -43,13 +43,7 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
             raise RecordError(f"line {at}: {len(cells)} values: the header names {len(words)} columns")
     table = np.array([[parse_number(at, cell.strip()) for cell in cells[: len(words)]] for at, cells in rows])
     table = table.reshape(-1, len(words))
-    columns = {_axis_of_direction(word): factor * table[:, at] for at, word in enumerate(words)}
-    names = {_axis_of_direction(word): word for word in words}
+    columns = {axis_of_word(word): factor * table[:, at] for at, word in enumerate(words)}
+    names = {axis_of_word(word): word for word in words}
     step = 1.0 / sampling
     return RecordSamples(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
-
-
-def _axis_of_direction(word: str) -> str:
-    """The axis of a direction such as NS; "" of any other word."""
-    direction = parse_direction(word)
-    return "" if direction is None else direction.axis
