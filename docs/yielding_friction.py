@@ -83,7 +83,7 @@ def compare_frame(runs: list[frame.Cycles], recorded: dict[str, dict[str, Any]])
                 motion = move_frame(run, ratio, yields)
                 curve = frame.last_cycle(motion, run.frequency)
                 values = frame.read_cycle(curve, run.frequency)
-                name = f"frame, {weight} g" + (frame.LOADED if "load" in law and weight != 250 else "")
+                name = f"frame, {weight} g" + (table.LOADED if "load" in law and weight != 250 else "")
                 for number, quantity in enumerate(frame.NAMES):
                     within = recorded[f"{name}: {quantity}"]
                     error = values[number] - within["measured"]

@@ -20,7 +20,7 @@ from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
 from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, mastodon
 from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, with_error, word_explanations, word_page
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import publish_made
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -57,8 +57,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
     def write() -> list[Path]:
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
-        text = attempt(PAGE, partial(word_page, table))
-        return files + publish_files(out, {} if text is None else {PAGE: text.encode()}, "comparison.benchmarks")
+        return files + publish_made(out, PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
 
     files = write_and_show(out, write, partial(print_benchmarks, console, table))
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)

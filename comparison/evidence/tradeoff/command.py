@@ -22,7 +22,7 @@ from comparison.evidence.tradeoff.analysis import TradeOff
 from comparison.evidence.tradeoff.growth import CostSeries, Growth, MeasuredGrowth, measure_by_workers
 from comparison.evidence.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load_trades
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import publish_made
 from comparison.runner.output import netcdf_content, publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -70,9 +70,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
-            name = _values_file(each.trade.scene)
-            values = attempt(name, partial(netcdf_content, each.values))
-            publish_files(out, {} if values is None else {name: values}, COMMAND)
+            publish_made(out, _values_file(each.trade.scene), partial(netcdf_content, each.values), COMMAND)
         return files
 
     def show() -> None:

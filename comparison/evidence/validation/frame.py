@@ -31,6 +31,7 @@ from comparison.evidence.validation.table import (
     DEGREES,
     INPUT,
     LAW,
+    LOADED,
     OPEN,
     SIDES,
     ComputedValues,
@@ -46,7 +47,6 @@ CYCLES = 12  # computed, of which the last is read
 REGULARIZATION = 1e-4  # m/s, of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
 SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
-LOADED = ", friction of the load"  # behind the name of a run
 STEP = 0.005  # step of ratio and scale in difference quotients
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", CYCLE, DEGREES, DEGREES)

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.evidence.validation.frame import LOADED
-from comparison.evidence.validation.table import MeasuredQuantity, Validation
+from comparison.evidence.validation.table import LOADED, MeasuredQuantity, Validation
 from comparison.verdicts import (
     MET,
     NOT_COMPARED,

@@ -21,6 +21,7 @@ from reference.problem import Scene, State, Trajectory
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE = 2.0  # standard deviations of an expanded uncertainty
 LAW, INPUT, OPEN = "the friction law", "an input", "not explained"  # begin the explanation of what is not met
+LOADED = ", friction of the load"  # behind the name of a run of the frame
 DEGREES, CYCLE = "deg", "% of a cycle"
 ABSOLUTE = (DEGREES, CYCLE)  # units of which a share says nothing
 
