@@ -1,6 +1,6 @@
 """
-A question that a report answers, entered once: one folder of comparison/analyses or comparison/evidence, and one line
-of the registry.
+A question that a report answers, registered once: one folder of comparison/analyses or comparison/evidence, and one
+line of the registry.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class Feature:
     key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
     scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and
     --also know it. on_request, of_the_paper, needs: as of a `Selectable`. page_data: what the script of the page reads
-    of a scene, by name. packed_data: numbers that the script reads beside them. dataset: surfaces.nc with what the
+    of a scene, by name. packed_data: further numbers that the script reads. dataset: surfaces.nc with what the
     analysis found. figures: files for the folder of the figures. clause: what it adds to the statement on measurements,
     "" for nothing.
     """
@@ -113,7 +113,7 @@ class Feature:
 
     @property
     def stored(self) -> list[ResultField[Any]]:
-        """The fields that a command leaves beside a report."""
+        """The fields that a command leaves next to a report."""
         return [field for field in self.fields if field.load]
 
     @property

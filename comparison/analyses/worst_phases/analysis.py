@@ -32,7 +32,6 @@ from reference.problem import Scene
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
-ENGINE_POINTS = 6  # phase pairs: the middle and the corners of the square, and where it is predicted to be largest
 SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
 NOWHERE = (math.nan, math.nan)
 

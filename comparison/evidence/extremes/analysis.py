@@ -86,17 +86,12 @@ def _judge_point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float,
 
 
 def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> MatrixEntry:
-    """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
+    """Judge a value with its error estimate."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
     unconfirmed = MatrixEntry(CellVerdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
     if np.isfinite(mu).all() and np.isnan(error).all():
-        if not known:
-            return unconfirmed
-        with np.errstate(divide="ignore", invalid="ignore"):
-            difference = float(np.nan_to_num(np.abs(mu - known[0][0]) / np.abs(known[0][0]), nan=0.0).max())
-        verdict = CellVerdict.CONVERGED if difference <= tolerance else CellVerdict.LIMIT
-        return MatrixEntry(verdict, f"states no error, off by {difference:.1e}", status)
+        return _judge_without_error(status, mu, known[0][0], tolerance) if known else unconfirmed
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
         return MatrixEntry(CellVerdict.FAILED, f"{status}, but no finite number", status)
     share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
@@ -116,6 +111,14 @@ def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[Finer], t
     if status == Outcome.TOLERANCE_NOT_MET:
         return MatrixEntry(CellVerdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
     return replace(unconfirmed, error=claimed)
+
+
+def _judge_without_error(status: str, mu: Array, value: Array, tolerance: float) -> MatrixEntry:
+    """Judge a value that states no error, by whether it is as close to that of a finer run as was asked."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        difference = float(np.nan_to_num(np.abs(mu - value) / np.abs(value), nan=0.0).max())
+    verdict = CellVerdict.CONVERGED if difference <= tolerance else CellVerdict.LIMIT
+    return MatrixEntry(verdict, f"states no error, off by {difference:.1e}", status)
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from comparison.evidence.tradeoff import growth, trade
 from comparison.evidence.tradeoff.growth import CostSeries, MeasuredGrowth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import MAX_CURVES, Panel
+from comparison.report.panels import MAX_CURVES, Panel, make_panel
 from comparison.report.section import Report, Section
 from comparison.wording import scientific
 

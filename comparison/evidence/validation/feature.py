@@ -8,8 +8,7 @@ from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
 from comparison.evidence.validation.statements import verdict_line
 from comparison.evidence.validation.table import STORED, Validation
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import Panel
+from comparison.report.panels import Panel, make_panel
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES, MEANING
 

@@ -18,7 +18,7 @@ from known_analyses import collected
 from places import ROOT, limited_scene, scene_text
 from report_texts import data_of, page_of, summary_of
 from runs import Run
-from studies import difference_rows, solved
+from studies import body_comparisons, difference_rows, solved
 
 import reference
 from comparison.cli.user_models import as_words, look_at, user_models
@@ -35,11 +35,10 @@ from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, amplification, user_model
-from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.budget import budget_entries
 from comparison.surfaces.headline import make_headline
+from comparison.surfaces.missing_values import list_missing_values, study_of_results
 from comparison.surfaces.surfaces import surface_tasks
-from comparison.surfaces.unanswered import list_unanswered, study_of_results
 from comparison.surfaces.waterfall import make_waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
@@ -262,7 +261,7 @@ def test_a_user_engine_changes_no_other_number(function: str) -> None:
     assert repr(theirs) == repr(difference_rows(alone, without))
     keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
     assert keys == [task.key for task in surface_tasks(alone)]
-    assert {gap.model for gap in list_unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
+    assert {gap.model for gap in list_missing_values(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
 
