@@ -26,7 +26,7 @@ from scipy.optimize import least_squares
 
 import reference
 from comparison.evidence.benchmarks import cases
-from comparison.evidence.sides import EQUATIONS
+from comparison.evidence.sides import EQUATIONS, spline_along
 from comparison.evidence.validation import frame, pendulum, table
 from comparison.evidence.validation.files import Swing, read_folder
 from multibody.models.surface_heat import SurfaceHeat
@@ -121,7 +121,7 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
         made = Scene.model_validate(scene)
         place = np.array([made.radius * np.sin(measured[0])])
         motion = table.motion_of(EQUATIONS, made, (0.0, 0.0), place, 1e-5, 1e-4, "exact")
-        track = table.spline(motion)
+        track = spline_along(motion)
         ends = [0.0, *pendulum._zeros(motion), float(motion.time[-1])]
         sizes = [(track(np.linspace(a, b, 2001)) * (-1.0) ** k).max() for k, (a, b) in enumerate(pairwise(ends))]
         rest = [float(track(ends[-1])) * (-1.0) ** k for k in range(len(sizes), len(numbers))]

@@ -84,6 +84,7 @@ def build_report(
 def _scene_fields(findings: Findings, scene: Scene, missing: Sequence[MissingValues]) -> dict[str, Any]:
     """Return what the surfaces of a scene say; missing: the values of the study that are."""
     study, surfaces = findings.study, findings.surfaces
+    models = models_of(scene, study.hierarchy)
     comparisons = compare_bodies(study, surfaces, scene)
     waterfalls = [make_waterfall(comparison) for comparison in comparisons]
     return {
@@ -95,9 +96,7 @@ def _scene_fields(findings: Findings, scene: Scene, missing: Sequence[MissingVal
         "recorded": scene.recorded,
         "analyses": [name for name in study.selection.names if study.selection.has(name, scene.name)],
         "acceptance": scene.acceptance,
-        "models": {
-            model.key: _model_outcome(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)
-        },
+        "models": {model.key: _model_outcome(study, surfaces, scene, model) for model in models},
         "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
         "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
         "budget": budget_entries(comparisons),
@@ -105,9 +104,9 @@ def _scene_fields(findings: Findings, scene: Scene, missing: Sequence[MissingVal
         "headlines": [make_headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
         "unchecked": pairs_without_limit(study, scene),
-        "distributions": [] if scene.recorded else compute_distributions(study, surfaces, scene),
-        "grid_maxima": grid_maxima(study, surfaces, scene),
-        "values": _record_values(study, surfaces, scene) if scene.recorded else [],
+        "distributions": [] if scene.recorded else compute_distributions(surfaces, scene, models),
+        "grid_maxima": grid_maxima(surfaces, scene, models),
+        "values": _record_values(surfaces, scene, models) if scene.recorded else [],
     }
 
 
@@ -127,10 +126,10 @@ def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Mode
     )
 
 
-def _record_values(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[RecordValue]:
+def _record_values(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[RecordValue]:
     """mu under the record, by model and body."""
     listed = []
-    for model in models_of(scene, study.hierarchy):
+    for model in models:
         mu, error, status = (
             values_of(surfaces, name, scene.name, model)[..., 0, 0] for name in ("mu", "error", "status")
         )

@@ -12,6 +12,7 @@ from typing import Any, Generic, TypeVar
 
 import xarray as xr
 
+from comparison.json_file import StoredFile
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
@@ -59,6 +60,11 @@ class ResultField(Generic[Value]):
         value = self.get(results)
         assert value is not None, f"{self.name} is shown only where it was found"
         return value
+
+
+def stored_field(stored: StoredFile[Value], name: str, meaning: str) -> ResultField[Value]:
+    """Return the field that shows what a command left next to the report."""
+    return ResultField(name, stored.kind, stored.word_field(meaning), load=stored.load)
 
 
 @dataclass(frozen=True)

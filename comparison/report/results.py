@@ -23,7 +23,7 @@ SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
 
 
-# What measured motions say of the models, for every report: `word_what_is_validated` of comparison.evidence.validation
+# What measured motions say of the models, for every report: `word_what_is_validated` of docs/measured_statements.py
 # words it from the record, which the gate repeats; the report itself knows no analysis.
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"

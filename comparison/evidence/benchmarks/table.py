@@ -17,7 +17,6 @@ from comparison.verdicts import (
     count_verdicts,
     judge_error,
     word_counts_and_largest,
-    word_error,
     word_verdict,
 )
 
@@ -120,15 +119,12 @@ class Benchmarks:
 
 def verdict_line(table: Benchmarks) -> str:
     """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
-    off = [(row, side, each) for each, row, side, number in table.iterate_numbers() if number.verdict == NOT_MET]
-    off = [each for each in off if each[0].published]
-    largest = max(off, key=lambda each: abs((each[0].error_of(each[1]) or 0.0) / each[0].published), default=None)
-    where = ""
-    if largest:
-        row, side, each = largest
-        size = word_error(row.error_of(side) or 0.0, row.published, row.unit)
-        where = f"{each.name}, {row.quantity}, {side}, {size}"
-    return word_counts_and_largest(table.counts(), where, "published number")
+    off = [
+        (row.error_of(side) or 0.0, row.published, f"{each.name}, {row.quantity}, {side}")
+        for each, row, side, number in table.iterate_numbers()
+        if number.verdict == NOT_MET
+    ]
+    return word_counts_and_largest(table.counts(), off, "published number")
 
 
 STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
 from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold, read_cycle
 from comparison.evidence.validation.files import Shaken
@@ -105,7 +105,7 @@ def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
 def last_cycle(motion: Trajectory, frequency: float) -> Array:
     """The last computed cycle, (SAMPLES,), mm about its mean."""
     grid = (CYCLES - 1 + np.arange(SAMPLES) / SAMPLES) / frequency
-    place = 1e3 * table.spline(motion)(grid)
+    place = 1e3 * spline_along(motion)(grid)
     about: Array = place - place.mean()
     return about
 

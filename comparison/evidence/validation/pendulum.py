@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import ellipk
 
-from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import DECAY, LARGE, Swing, wrong_file
 from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, ComputedValues, Data, Found
@@ -177,13 +177,13 @@ def _half_period_near(sizes: Array, periods: Array, angle: float) -> tuple[float
 
 
 def _zeros(motion: Trajectory) -> Array:
-    zeros: Array = table.spline(motion).roots(extrapolate=False)
+    zeros: Array = spline_along(motion).roots(extrapolate=False)
     return zeros
 
 
 def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
     """Instants and angles, towards the side of each turn, of the turning points from the first on; at last the rest."""
-    place, end = table.spline(motion), float(motion.time[-1])
+    place, end = spline_along(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
     for begin, stop in pairwise([0.0, *_zeros(motion), end]):
         dense = np.linspace(begin, stop, PARTS)

@@ -15,6 +15,7 @@ from comparison.runner.task import result_without_value
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
 from comparison.study.study import Study
+from comparison.surfaces.distribution import GridMaximum
 from reference.phase_maximum import GRID
 from reference.problem import Amplification, Outcome, Scene
 
@@ -162,7 +163,8 @@ def test_the_spatial_engine_has_the_larger_of_its_grid_and_the_worst_phases(
 
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: steady)
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.2, 1e-6, (1.0, 2.0), "smooth")
-    found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, grid, 0.03, (0.5, 0.25)), 1e-3)
+    largest = GridMaximum("spatial", 1, grid, 0.03, (0.5, 0.25))
+    found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, largest), 1e-3)
     assert (found.model, found.kind, found.value) == ("spatial", kind, pytest.approx(value))
     assert found.phases == ((1.0, 2.0) if kind == "nearby" else (0.5, 0.25))
     assert found.error == pytest.approx(0.02 if kind == "nearby" else 0.03)
