@@ -134,8 +134,7 @@ def fingerprint(value: Any) -> Any:
         content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
         return ["array", str(value.dtype), value.shape, content]
     if isinstance(value, xr.Dataset):
-        value = {str(name): variable.values for name, variable in value.variables.items()}
-        return ["data", fingerprint(value)]
+        return ["data", fingerprint(_arrays_of(value))]
     if isinstance(value, tuple | list):
         return [fingerprint(part) for part in value]
     if hasattr(value, "identity"):
@@ -147,6 +146,10 @@ def fingerprint(value: Any) -> Any:
     if callable(value):
         return name_of_function(value)
     raise TypeError(f"a task that holds {type(value).__name__} has no name in the store")
+
+
+def _arrays_of(data: xr.Dataset) -> dict[str, Any]:
+    return {str(name): variable.values for name, variable in data.variables.items()}
 
 
 def _fingerprint_of_dataclass(value: Any) -> Any:

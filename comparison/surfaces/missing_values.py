@@ -63,9 +63,9 @@ class MissingValues:
     def where(self) -> str:
         """At how many phase pairs there is no value, or only one whose error is above half of it."""
         parts = ("no value", self.points), ("only values with errors above half of them", self.unusable)
-        return ", ".join(f"{what}{self._at(count)}" for what, count in parts if count)
+        return ", ".join(f"{what}{self._word_count(count)}" for what, count in parts if count)
 
-    def _at(self, count: int) -> str:
+    def _word_count(self, count: int) -> str:
         if self.asked == 1:
             return ""
         return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"

@@ -33,7 +33,6 @@ from reference.problem import Scene
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
-SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
 NOWHERE = (math.nan, math.nan)
 
 
@@ -83,7 +82,7 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
     """Return model, engine of the same equations, quantity and body of every search."""
-    equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
+    equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
     searched = [model for model in equations if model.key in (SMALL.key, SMALL_RESOLVED.key, *engines)]

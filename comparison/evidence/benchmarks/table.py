@@ -104,7 +104,7 @@ class Benchmarks:
         """Numbers of the equations and of the engine by verdict."""
         return count_verdicts(number.verdict for _, _, _, number in self.iterate_numbers())
 
-    def explained(self) -> dict[str, int]:
+    def count_explanations(self) -> dict[str, int]:
         """Return how many of the numbers that are not met each explanation has, "" for those that have none."""
         found = [number.explanation for _, _, _, number in self.iterate_numbers() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION, MODEL, "")}
@@ -145,7 +145,7 @@ def word_page(table: Benchmarks) -> str:
 
 def word_explanations(table: Benchmarks) -> list[str]:
     """Return one sentence for the counts, and one for each explanation that any number has."""
-    found = table.explained()
+    found = table.count_explanations()
     sentences = [verdict_line(table), *(f"{count} not met: {why}" for why, count in found.items() if why and count)]
     return [*sentences, f"{found['']} not met and not explained"]
 

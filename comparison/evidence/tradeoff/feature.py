@@ -33,7 +33,7 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     for question in trade.questions:
         parts = []
         for target in TARGETS:
-            listed = [entry for entry in trade.of(question.key) if entry.complete and not entry.model_error]
+            listed = [entry for entry in trade.entries_of(question.key) if entry.complete and not entry.model_error]
             able = [entry for entry in listed if all(size is not None and size <= target for size in entry.most)]
             estimated = [entry for entry in able if entry.controlled]
             if not able:

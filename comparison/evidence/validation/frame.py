@@ -23,7 +23,7 @@ import numpy as np
 
 from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
-from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold, read_cycle
+from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold_run, read_cycle
 from comparison.evidence.validation.files import Shaken
 from comparison.evidence.validation.table import (
     COVERAGE,
@@ -182,7 +182,7 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedR
 
 def compare_frame(runs: Sequence[Shaken]) -> Found:
     """Compare all runs of a folder: by one ratio, and by friction of the load where there are runs to predict."""
-    folded = [fold(run) for run in runs]
+    folded = [fold_run(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
     setup, varied = fitted.setup, fitted.variations()

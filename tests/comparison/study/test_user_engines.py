@@ -14,7 +14,7 @@ import pytest
 import user_engines
 import xarray as xr
 from fake_models import fake_hierarchy, smooth
-from known_analyses import collected
+from known_analyses import computed
 from places import ROOT, limited_scene, scene_text
 from report_texts import data_of, page_of, summary_of
 from runs import Run
@@ -497,7 +497,7 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
     models = (user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
-    tasks = TradeOff(True, models).tasks(Study((SCENE,), 1, 1e-3))
+    tasks = TradeOff([SCENE], True, models).tasks()
     mine = [task.timeout / len(task.argument.phases) for task in tasks if task.group]
     assert set(mine) == {7.0}
 
@@ -507,9 +507,7 @@ def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})
-    (measured,) = collected(
-        TradeOff(True, models), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
-    )
+    (measured,) = computed(TradeOff([scene], True, models), lambda jobs: ThreadPoolExecutor(1))
     good, bad = measured.trade.entries
     assert (good.answered, bad.answered) == (good.points, 0)
     assert bad.error_message == f"RuntimeError: the matrix is singular (user_engines.py, line {RAISES})"
