@@ -18,6 +18,7 @@ from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
+from comparison.study.costs import seconds_of_model
 from comparison.study.levels import StudyLevel, levels_of
 from comparison.study.selection import Selection
 from comparison.study.study import Study
@@ -91,6 +92,12 @@ def select_analyses(study: Study) -> list[Analysis[Any]]:
 def seconds_by_stage(study: Study) -> dict[str, float]:
     """Rough processor time of every stage of the analyses of a study, s."""
     return {each.stage: each.estimate_seconds(study.selecting(each.key)) for each in select_analyses(study)}
+
+
+def seconds_of_study(study: Study) -> float:
+    """Rough processor time of all models and analyses of a study, s."""
+    models = sum(seconds_of_model(study, model) for model in study.hierarchy)
+    return models + sum(seconds_by_stage(study).values())
 
 
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:

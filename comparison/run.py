@@ -30,7 +30,7 @@ from comparison.cli.reports import CompleteLevel, Reports, compute_level
 from comparison.cli.start import Clock, command_start
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.cli.user_models import Engines, as_words
-from comparison.registry import first_tasks, seconds_by_stage, select_analyses, study_levels
+from comparison.registry import first_tasks, seconds_by_stage, seconds_of_study, select_analyses, study_levels
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
@@ -38,7 +38,7 @@ from comparison.runner.progress import Deadline, TimeUpError, show_progress, wid
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.costs import WRITING, seconds_of_model
+from comparison.study.costs import WRITING
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
@@ -127,15 +127,14 @@ class StudyRun:
             clear_dead(options.out)
             surfaces = surface_tasks(self._study)
             results = self._open_results(surfaces)
-            stages = seconds_by_stage(self._study)
-            models_seconds = sum(seconds_of_model(self._study, model) for model in self._study.hierarchy)
-            total = WRITING + sum(stages.values()) + models_seconds
+            total = WRITING + seconds_of_study(self._study)
             reports = Reports(options, jobs, self._words, self._began)
             with (
                 show_progress(self._console, total, jobs) as display,
                 Deadline(self._began.wall, options.budget) as deadline,
             ):
-                stop = self._compute_levels(Runner(results, jobs, pool, display, stages), surfaces, reports, deadline)
+                runner = Runner(results, jobs, pool, display, seconds_by_stage(self._study))
+                stop = self._compute_levels(runner, surfaces, reports, deadline)
             return self._close(reports, jobs, stop)
 
     def _close(self, reports: Reports, jobs: int, stop: KeyboardInterrupt | None) -> int:

@@ -3,7 +3,7 @@ Gates for the tests of users: do the equations and an engine, Exudyn or the user
 demands of a building meet their limits?
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.study.batches import execute_batch
+from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
 from comparison.study.study import STUDY_TOLERANCE, Study
 from comparison.study.user_models import LAWS, user_model
+from comparison.surfaces.missing_values import MissingValues, list_missing_values
 from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import label_surfaces
-from comparison.surfaces.unanswered import list_unanswered
 from reference.problem import Scene, load_family
 from reference.problem.acceptance import DemandLimits
 from reference.problem.keys import range_of
@@ -133,11 +133,15 @@ def _broken_limits(
         for compared, measure, _ in [name.partition("_maximum")]
         for line in _word_breaches(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
-    gaps = list_unanswered(study, surfaces)
-    if sum(gap.points + gap.unusable for gap in gaps) > failed:
-        why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
-        broken += [f"{gap.sentence.removesuffix('.')}; {failed} allowed" for gap in gaps] + list(why)
-    return broken
+    return broken + _word_missing_values(list_missing_values(study, surfaces), answers, failed)
+
+
+def _word_missing_values(gaps: Sequence[MissingValues], answers: Sequence[BatchResult], failed: int) -> list[str]:
+    """Return a line for each model without some of its values, and what the solvers said; none if as few as allowed."""
+    if not sum(gap.points + gap.unusable for gap in gaps) > failed:
+        return []
+    why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
+    return [f"{gap.sentence.removesuffix('.')}; {failed} allowed" for gap in gaps] + list(why)
 
 
 def assert_demands(

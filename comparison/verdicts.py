@@ -66,7 +66,13 @@ def word_counts(counts: Mapping[Verdict, int], what: str = "comparison") -> str:
     return f"{total} {what}{'' if total == 1 else 's'}: " + ", ".join(f"{n} {verdict}" for verdict, n in counts.items())
 
 
-def word_counts_and_largest(counts: Mapping[Verdict, int], largest: str, what: str = "comparison") -> str:
-    """Return the counts in words, with the largest error that is not met: where it is, and how large."""
+def word_counts_and_largest(
+    counts: Mapping[Verdict, int], off: Iterable[tuple[float, float, str]], what: str = "comparison"
+) -> str:
+    """Return the counts in words with the largest relative error of those not met; off: error, stated value, place."""
     words = word_counts(counts, what)
-    return words.replace(" not met", f" not met (largest: {largest})", 1) if largest and counts[NOT_MET] else words
+    relative = [(error / stated, place) for error, stated, place in off if stated]
+    if not relative:
+        return words
+    size, place = max(relative, key=lambda each: abs(each[0]))
+    return words.replace(" not met", f" not met (largest: {place}, {signed(size)})", 1)

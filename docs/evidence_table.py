@@ -20,15 +20,15 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
+import measured_statements as statements
 import yielding_friction
 
 from comparison.evidence.benchmarks.table import STORED as PUBLISHED
 from comparison.evidence.benchmarks.table import Benchmarks, word_page
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.evidence.validation import statements
 from comparison.evidence.validation.command import compare_folder
 from comparison.evidence.validation.table import STORED as MEASURED
-from comparison.evidence.validation.table import load_record
+from comparison.evidence.validation.table import load_record, verdict_line
 from comparison.report.verification import CHECKS, Check
 from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge_error, word_counts, word_verdict
 
@@ -162,7 +162,7 @@ def explanations() -> str:
 
 def counts() -> str:
     """Return the counts of the verdicts on measured quantities."""
-    return f"{statements.verdict_line(load_record())}."
+    return f"{verdict_line(load_record())}."
 
 
 def facts() -> str:

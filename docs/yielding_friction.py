@@ -26,7 +26,7 @@ from scipy.optimize import least_squares
 
 import reference
 from comparison.evidence.benchmarks import cases
-from comparison.evidence.sides import EQUATIONS
+from comparison.evidence.sides import EQUATIONS, spline_along
 from comparison.evidence.validation import frame, pendulum, table
 from comparison.evidence.validation.files import Swing, read_folder
 from multibody.models.surface_heat import SurfaceHeat
@@ -83,7 +83,7 @@ def compare_frame(runs: list[frame.Cycles], recorded: dict[str, dict[str, Any]])
                 motion = move_frame(run, ratio, yields)
                 curve = frame.last_cycle(motion, run.frequency)
                 values = frame.read_cycle(curve, run.frequency)
-                name = f"frame, {weight} g" + (frame.LOADED if "load" in law and weight != 250 else "")
+                name = f"frame, {weight} g" + (table.LOADED if "load" in law and weight != 250 else "")
                 for number, quantity in enumerate(frame.NAMES):
                     within = recorded[f"{name}: {quantity}"]
                     error = values[number] - within["measured"]
@@ -96,7 +96,7 @@ def compare_frame(runs: list[frame.Cycles], recorded: dict[str, dict[str, Any]])
 
 def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[str, Any]:
     """Fit loss and yield displacement to turning points 0 to 10, and judge those behind."""
-    instants, turns = pendulum._turns(swing, pendulum.STEPS * float(np.min(np.diff(np.unique(swing.angle)))))
+    instants, turns = pendulum._find_turns(swing, pendulum.STEPS * float(np.min(np.diff(np.unique(swing.angle)))))
     numbers = np.arange(pendulum.SHOWN[-1] + 1)
     sides = (-1.0) ** numbers
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
@@ -121,8 +121,8 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
         made = Scene.model_validate(scene)
         place = np.array([made.radius * np.sin(measured[0])])
         motion = table.motion_of(EQUATIONS, made, (0.0, 0.0), place, 1e-5, 1e-4, "exact")
-        track = table.spline(motion)
-        ends = [0.0, *pendulum._zeros(motion), float(motion.time[-1])]
+        track = spline_along(motion)
+        ends = [0.0, *pendulum._find_zeros(motion), float(motion.time[-1])]
         sizes = [(track(np.linspace(a, b, 2001)) * (-1.0) ** k).max() for k, (a, b) in enumerate(pairwise(ends))]
         rest = [float(track(ends[-1])) * (-1.0) ** k for k in range(len(sizes), len(numbers))]
         return np.arcsin(np.array([*sizes, *rest][: len(numbers)]) / made.radius)
@@ -156,7 +156,7 @@ def compute_mastodon(path: Path, yields: float, step: float) -> list[float]:
     The equations refuse heat with friction that yields. The restoring force is theirs, N y / sqrt(R^2 - y^2) along each
     axis. Velocity Verlet with the closest point on the circle.
     """
-    case = cases.mastodon(path)
+    case = cases.mastodon_case(path)
     scene = case.scene
     law, weight = scene.dry_friction, scene.total_mass * GRAVITY
     assert law.heat is not None
@@ -392,7 +392,7 @@ def main(folder: Path, mastodon: Path) -> None:
     }
     files = read_folder(folder)
     found = json.loads(STORED.read_text()) if STORED.exists() else {}
-    found["frame"] = compare_frame([frame.fold(run) for run in files.runs], recorded)
+    found["frame"] = compare_frame([frame.fold_run(run) for run in files.runs], recorded)
     found["pendulum"] = compare_pendulum(files.decay, recorded)
     found["mastodon"] = {
         "published": list(cases.LIMITS),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from reference.building import Building, describe_building, word_force
+from reference.building import Building, word_force
 from reference.problem import GRAVITY, Scene
 from reference.support.arguments import Range
 
@@ -25,9 +25,8 @@ LARGEST_DRIFT_RATIO = 0.1
 MASS_SHARE = Range(0.01, 100.0)  # mass of a body over the mean of the others
 
 
-def implausible_values(scene: Scene) -> list[str]:
-    """Return one line for every kind of value that is hardly meant."""
-    building = describe_building(scene)
+def implausible_values(scene: Scene, building: Building) -> list[str]:
+    """Return one line for every kind of value that is hardly meant; building: as `describe_building` read it."""
     lines = _implausible_modes(building)
     if scene.total_mass > NORMALIZED:
         lines += [*_implausible_masses(scene, building), *_implausible_supports(scene, building)]

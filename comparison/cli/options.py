@@ -1,5 +1,6 @@
 """The command line, checked before anything is computed."""
 
+import argparse
 import signal
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -50,11 +51,9 @@ def parse_options(argv: Sequence[str]) -> Options:
     """Options of `python -m comparison.run`, all checked. Raises SceneError, UsageError."""
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
-    amplitude = None if words.amplitude is None else read_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
+    amplitude = _read_optional_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
     families = tuple(load_family(name, amplitude, read_bounds(words)) for name in names)
-    only, skip, also = (_read_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
-    if only is not None and skip is not None:
-        raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
+    selection = _read_selection(words, families)
     options = Options(
         families=families,
         grid=DEFAULT_GRID if words.grid is None else read_whole_number("--grid", words.grid, 2, 512),
@@ -69,21 +68,24 @@ def parse_options(argv: Sequence[str]) -> Options:
         full=words.full,
         max_work=_read_optional_number("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
         scheduler=words.scheduler,
-        selection=make_selection(
-            SELECTABLE, (scene for family in families for scene in family.scenes), only, skip, also
-        ),
+        selection=selection,
         models=user_models(words.model, words.model_limit, words.scheduler),
     )
+    _refuse_contradictions(options, names)
+    return options
+
+
+def _refuse_contradictions(options: Options, sources: Sequence[str]) -> None:
+    """Refuse options that do not fit together, to the system or to the folder of the report. Raises SceneError."""
     if options.check:
         _refuse_limits_of_no_engine(options.scenes, [model.key for model in options.models])
-    sources = list(zip(names, options.families))
-    refuse_same_names((source, family.name) for source, family in sources)
-    refuse_same_names((source, scene.name) for source, family in sources for scene in family.scenes)
+    loaded = list(zip(sources, options.families))
+    refuse_same_names((source, family.name) for source, family in loaded)
+    refuse_same_names((source, scene.name) for source, family in loaded for scene in family.scenes)
     if options.budget is not None and not hasattr(signal, "setitimer"):
-        raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
+        raise SceneError("command line", "--budget", options.budget, "needs a timer that this system does not have")
     if not options.plan:
         _refuse_unusable_folder(options.out)
-    return options
 
 
 def _refuse_unusable_folder(out: Path) -> None:
@@ -153,6 +155,14 @@ def _parser() -> CommandParser:
         "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"
     )
     return parser
+
+
+def _read_selection(words: argparse.Namespace, families: Sequence[Family]) -> Selection:
+    """The analyses that --only, --skip and --also leave of every scene. Raises SceneError."""
+    only, skip, also = (_read_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
+    if only is not None and skip is not None:
+        raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
+    return make_selection(SELECTABLE, (scene for family in families for scene in family.scenes), only, skip, also)
 
 
 def _read_analyses(option: str, text: str | None) -> list[str] | None:

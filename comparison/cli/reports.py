@@ -26,8 +26,8 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.levels import StudyLevel
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
+from comparison.surfaces.missing_values import study_of_results
 from comparison.surfaces.surfaces import batch_results, label_surfaces, surface_tasks
-from comparison.surfaces.unanswered import study_of_results
 
 PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last
 

@@ -67,14 +67,14 @@ class Clock(NamedTuple):
     @classmethod
     def now(cls) -> Clock:
         """This instant."""
-        return cls(time.monotonic(), sum(os.times()[:4]) + _of_children())
+        return cls(time.monotonic(), sum(os.times()[:4]) + _processor_time_of_children())
 
     def since(self, earlier: Clock) -> Clock:
         """The times that have passed since another instant."""
         return Clock(self.wall - earlier.wall, self.processor - earlier.processor)
 
 
-def _of_children() -> float:
+def _processor_time_of_children() -> float:
     """Processor time of the worker processes that run, s; 0 where the system does not tell."""
     seconds = 0.0
     for child in sys.modules["multiprocessing"].active_children() if "multiprocessing" in sys.modules else ():

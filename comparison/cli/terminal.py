@@ -2,26 +2,24 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import first_tasks, seconds_by_stage, select_analyses, study_levels
-from comparison.runner.analysis import Analysis
+from comparison.registry import seconds_of_study, select_analyses, study_levels
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
-from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
+from comparison.study.costs import COMPILING, STARTING, WRITING
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.records import describe_records
 from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.building import describe_building, word_buildings
+from reference.building import Building, describe_building, word_buildings
 from reference.plausibility import implausible_values
 from reference.problem import Family, Scene
 from reference.support.arguments import name_some
@@ -34,8 +32,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     for reason, of in _list_refusals(study).items():
         console.print(f"{name_some(of, NAMES)}: {reason}.", soft_wrap=True)
     _print_models(console, study, options.families)
-    analyses = select_analyses(study)
-    _print_analyses(console, study, analyses)
+    first = _print_analyses(console, study)
     _print_levels(console, study)
     _print_reductions(console, study)
     if study.absent:
@@ -44,12 +41,10 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
     results = TaskResults(Cache(locate_store(options.out)), options.fresh)
-    print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
-    seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
-    seconds += sum(seconds_by_stage(study).values())
-    wall = STARTING + seconds / options.jobs + WRITING
-    first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
-    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
+    print_stored(console, results, surface_tasks(study), first)
+    wall = STARTING + seconds_of_study(study) / options.jobs + WRITING
+    compiling = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
+    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{compiling}; nothing was computed.")
     console.print(f"The report would go to {options.out}.", soft_wrap=True)
 
 
@@ -67,13 +62,15 @@ def _print_models(console: Console, study: Study, families: Sequence[Family]) ->
     console.print(table)
 
 
-def _print_analyses(console: Console, study: Study, analyses: Sequence[Analysis[Any]]) -> None:
-    """Print the number of tasks of every analysis, where it is known before the surfaces are."""
-    counted = {
-        each.stage: "chosen by the surfaces" if each.needs_surfaces else len(each.tasks(study.selecting(each.key)))
-        for each in analyses
-    }
-    console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counted.items()) or 'none'}.")
+def _print_analyses(console: Console, study: Study) -> list[Task]:
+    """Print the number of tasks of every analysis, where it is known before the surfaces are; return those tasks."""
+    first, counts = [], {}
+    for each in select_analyses(study):
+        tasks = [] if each.needs_surfaces else each.tasks(study.selecting(each.key))
+        counts[each.stage] = "chosen by the surfaces" if each.needs_surfaces else len(tasks)
+        first += tasks
+    console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counts.items()) or 'none'}.")
+    return first
 
 
 def _print_levels(console: Console, study: Study) -> None:
@@ -99,11 +96,11 @@ def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> Non
     buildings = [replace(describe_building(scene), name=name) for name, scene in named]
     for line in word_buildings(buildings):
         console.print(line, soft_wrap=True, markup=False, highlight=False)
-    strongest: dict[str, tuple[float, Scene]] = {}
+    strongest: dict[str, tuple[Scene, Building]] = {}
     for building, (name, scene) in zip(buildings, named):
-        if name not in strongest or building.ground_peak > strongest[name][0]:
-            strongest[name] = building.ground_peak, scene
-    said = {line: name for name in reversed(strongest) for line in implausible_values(strongest[name][1])}
+        if name not in strongest or building.ground_peak > strongest[name][1].ground_peak:
+            strongest[name] = scene, building
+    said = {line: name for name in reversed(strongest) for line in implausible_values(*strongest[name])}
     for line, name in said.items():
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 

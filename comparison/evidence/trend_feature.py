@@ -7,8 +7,7 @@ from typing import Any
 
 from comparison.evidence.trends import Trend, word_trends
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import MAX_CURVES, Panel, json_numbers
+from comparison.report.panels import MAX_CURVES, Panel, json_numbers, make_panel
 from comparison.report.section import Section
 from comparison.runner.mapped_analysis import MappedAnalysis
 

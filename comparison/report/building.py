@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import chain
 from typing import Any, get_args
 
 import xarray as xr
@@ -15,13 +16,13 @@ from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits, pairs_without_limit
 from comparison.surfaces.alerts import Alert, list_alerts
-from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
+from comparison.surfaces.body_comparison import compare_bodies
 from comparison.surfaces.budget import budget_entries
 from comparison.surfaces.completion import CompletedSurfaces, complete_surfaces, with_completed
 from comparison.surfaces.distribution import compute_distributions, grid_maxima
 from comparison.surfaces.headline import make_headline
+from comparison.surfaces.missing_values import MissingValues, advise_on_outcome, list_missing_values
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts, values_of
-from comparison.surfaces.unanswered import advise_on_outcome, list_unanswered
 from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Family, Outcome, Scene
 
@@ -44,38 +45,27 @@ def build_report(
     """
     parts_lost = LostParts(lost)
 
-    def compute(name: str, *words: Any, function: Callable[..., Any]) -> Any:
+    def compute(name: str, function: Callable[..., Any], *words: Any) -> Any:
         return parts_lost.attempt(f"section {name}", partial(function, *words))
 
-    comparisons, lacking = body_comparisons(study, surfaces), list_unanswered(study, surfaces)
-    completed = [
-        each
-        for scene in study.scenes
-        for each in complete_surfaces(study, surfaces, scene, found.get(CompletedSurfaces.key))
-    ]
-    surfaces = with_completed(surfaces, completed)
-    limits = check_limits(comparisons, lacking)
-    parts: dict[str, Sequence[Any]] = {
-        "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
-        "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
-        "budget": budget_entries(comparisons), "completions": completed, "limits": limits,
-    }  # fmt: skip
-    findings = Findings(study, surfaces, found, families)
-    fields = [field for feature in features for field in feature.scene_fields]
+    missing = list_missing_values(study, surfaces)
+    held_out = found.get(CompletedSurfaces.key)
+    completed = {scene.name: complete_surfaces(study, surfaces, scene, held_out) for scene in study.scenes}
+    completions = list(chain.from_iterable(completed.values()))
+    findings = Findings(study, with_completed(surfaces, completions), found, families)
+    scene_fields = [field for feature in features for field in feature.scene_fields]
     (scene_kind,) = get_args(kind.model_fields["scenes"].annotation)
     scenes = []
     for scene in study.scenes:
-        of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
-        more = {field.name: compute(field.name, findings, scene, function=field.compute) or [] for field in fields}
-        bodies = [comparison for comparison in comparisons if comparison.scene is scene]
-        scenes.append(scene_kind(**_scene_fields(study, surfaces, scene, bodies), **of_scene, **more))
-    summaries: dict[str, Any] = {
-        field.name: compute(field.name, findings, scenes, function=field.compute)
-        if field.compute
-        else findings.found.get(field.name)
-        for feature in features
-        for field in feature.fields
-    }
+        about = _scene_fields(findings, scene, missing) | {"completions": completed[scene.name]}
+        more = {field.name: compute(field.name, field.compute, findings, scene) or [] for field in scene_fields}
+        scenes.append(scene_kind(**about, **more))
+    summaries: dict[str, Any] = {}
+    for field in (field for feature in features for field in feature.fields):
+        summaries[field.name] = (
+            compute(field.name, field.compute, findings, scenes) if field.compute else found.get(field.name)
+        )
+    limits = [limit for scene in scenes for limit in scene.limits]
     results = kind(
         run=Run.model_validate(run),
         grid=study.grid,
@@ -83,18 +73,19 @@ def build_report(
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
         scenes=scenes,
         absent=study.absent,
-        unanswered=lacking,
-        alerts=list_alerts(study, surfaces, lacking, limits, faults),
+        unanswered=missing,
+        alerts=list_alerts(study, surfaces, missing, limits, faults),
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
-    return Report(study, surfaces, completed, results, found, features, parts_lost.lines)
+    return Report(study, findings.surfaces, completions, results, found, features, parts_lost.lines)
 
 
-def _scene_fields(
-    study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]
-) -> dict[str, Any]:
-    """Return what the surfaces of a scene say."""
+def _scene_fields(findings: Findings, scene: Scene, missing: Sequence[MissingValues]) -> dict[str, Any]:
+    """Return what the surfaces of a scene say; missing: the values of the study that are."""
+    study, surfaces = findings.study, findings.surfaces
+    models = models_of(scene, study.hierarchy)
+    comparisons = compare_bodies(study, surfaces, scene)
     waterfalls = [make_waterfall(comparison) for comparison in comparisons]
     return {
         "name": scene.name,
@@ -105,15 +96,17 @@ def _scene_fields(
         "recorded": scene.recorded,
         "analyses": [name for name in study.selection.names if study.selection.has(name, scene.name)],
         "acceptance": scene.acceptance,
-        "models": {
-            model.key: _model_outcome(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)
-        },
+        "models": {model.key: _model_outcome(study, surfaces, scene, model) for model in models},
+        "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
+        "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
+        "budget": budget_entries(comparisons),
+        "limits": check_limits(comparisons, [gap for gap in missing if gap.scene == scene.name]),
         "headlines": [make_headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
         "unchecked": pairs_without_limit(study, scene),
-        "distributions": [] if scene.recorded else compute_distributions(study, surfaces, scene),
-        "grid_maxima": grid_maxima(study, surfaces, scene),
-        "values": _record_values(study, surfaces, scene) if scene.recorded else [],
+        "distributions": [] if scene.recorded else compute_distributions(surfaces, scene, models),
+        "grid_maxima": grid_maxima(surfaces, scene, models),
+        "values": _record_values(surfaces, scene, models) if scene.recorded else [],
     }
 
 
@@ -133,10 +126,10 @@ def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Mode
     )
 
 
-def _record_values(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[RecordValue]:
+def _record_values(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[RecordValue]:
     """mu under the record, by model and body."""
     listed = []
-    for model in models_of(scene, study.hierarchy):
+    for model in models:
         mu, error, status = (
             values_of(surfaces, name, scene.name, model)[..., 0, 0] for name in ("mu", "error", "status")
         )

@@ -1,6 +1,6 @@
 """
-A question that a report answers, entered once: one folder of comparison/analyses or comparison/evidence, and one line
-of the registry.
+A question that a report answers, registered once: one folder of comparison/analyses or comparison/evidence, and one
+line of the registry.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any, Generic, TypeVar
 
 import xarray as xr
 
+from comparison.json_file import StoredFile
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
@@ -61,6 +62,11 @@ class ResultField(Generic[Value]):
         return value
 
 
+def stored_field(stored: StoredFile[Value], name: str, meaning: str) -> ResultField[Value]:
+    """Return the field that shows what a command left next to the report."""
+    return ResultField(name, stored.kind, stored.word_field(meaning), load=stored.load)
+
+
 @dataclass(frozen=True)
 class SceneField(Generic[Value]):
     """A field of the results of every scene. name, kind, meaning: as of a `ResultField`. compute: makes it."""
@@ -84,7 +90,7 @@ class Feature:
     key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
     scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and
     --also know it. on_request, of_the_paper, needs: as of a `Selectable`. page_data: what the script of the page reads
-    of a scene, by name. packed_data: numbers that the script reads beside them. dataset: surfaces.nc with what the
+    of a scene, by name. packed_data: further numbers that the script reads. dataset: surfaces.nc with what the
     analysis found. figures: files for the folder of the figures. clause: what it adds to the statement on measurements,
     "" for nothing.
     """
@@ -113,7 +119,7 @@ class Feature:
 
     @property
     def stored(self) -> list[ResultField[Any]]:
-        """The fields that a command leaves beside a report."""
+        """The fields that a command leaves next to a report."""
         return [field for field in self.fields if field.load]
 
     @property

@@ -1,7 +1,6 @@
 """Words of the field that a reader of the first screen may not know, explained at the pointer and the keyboard."""
 
 import re
-from collections.abc import Callable, Iterable
 
 from markupsafe import Markup
 
@@ -50,24 +49,13 @@ def mark_term(word: str, text: str = "") -> Markup:
     return Markup('<span class="term" tabindex="0" data-tip="{}">{}</span>').format(tip, shown)
 
 
-def explain_words(sentence: str, seen: set[str] | None = None) -> Markup:
+def explain_words(sentence: str) -> Markup:
     """The sentence with every word of the glossary explained where it stands first."""
-    seen = set() if seen is None else seen
-
-    def mark_first_mention(word: str) -> Markup:
-        known = word in seen
+    parts: list[Markup] = []
+    seen, end = set(), 0
+    for match in WORDS.finditer(sentence):
+        word = match.group()
+        parts += [symbols(sentence[end : match.start()]), symbols(word) if word in seen else mark_term(word)]
         seen.add(word)
-        return symbols(word) if known else mark_term(word)
-
-    return _by_parts(WORDS.finditer(sentence), sentence, mark_first_mention, symbols)
-
-
-def _by_parts(
-    found: Iterable[re.Match[str]], text: str, inside: Callable[[str], Markup], outside: Callable[[str], Markup]
-) -> Markup:
-    """The text with what was found written by `inside`, and the rest by `outside`."""
-    parts, end = [], 0
-    for match in found:
-        parts += [outside(text[end : match.start()]), inside(match.group())]
         end = match.end()
-    return Markup("").join([*parts, outside(text[end:])])
+    return Markup("").join([*parts, symbols(sentence[end:])])

@@ -155,7 +155,7 @@ def render_page(
     """
     Return a page that is whole by itself: style, script and data inside it.
 
-    sections: each with what stands below its heading and the line beside that. lost: a line for every part that could
+    sections: each with what stands below its heading, and its verdict. lost: a line for every part that could
     not be made.
     """
     templates = resources.files("comparison.report") / "templates"
@@ -183,7 +183,7 @@ def render_template(template: str, context: Mapping[str, Any]) -> Markup:
 
 
 def word_section(section: Section, results: Results) -> str:
-    """Return the line beside the title of a section, "" for none."""
+    """Return the verdict of a section, in its title; "" for none."""
     return section.verdict(results) if section.verdict else ""
 
 

@@ -1,28 +1,30 @@
-"""Panels: plots described once, drawn by plot.js on the page and by `draw_panels` as a picture."""
+"""Panels: the plots of the page's sections, described as plot.js draws them."""
 
-from __future__ import annotations
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
 
-from collections.abc import Mapping, Sequence
-from itertools import cycle, zip_longest
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-
-from comparison.report.plots import Panel, json_numbers
+from comparison.json_file import finite_or_none
 from comparison.report.results import Results
 from comparison.surfaces.distribution import CURVE
-from comparison.wording import mathtext
-from reference.support.drawing import escape_for_matplotlib
+from reference.measures.distribution import FRACTILES
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+Panel = dict[str, Any]  # title, and plot: see plot.js
 
-COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c", "#b3124b", "#5b9bd5")
+MAX_CURVES = 6  # in one panel: more cannot be told apart
+# demands that are drawn: key, body (0: of the isolator), name, unit, and the unit in those of the results
+DEMANDS = (
+    ("displacement", 0, "isolator displacement", "mm", 1e3),
+    ("residual", 0, "residual displacement", "mm", 1e3),
+    ("base_shear", 0, "base shear", "N", 1.0),
+    ("acceleration", 1, "platform acceleration", "m/s²", 1.0),
+    ("drift", 2, "drift of the lowest story", "mm", 1e3),
+    ("contact_force_min", 0, "smallest contact force", "N", 1.0),
+    ("contact_force_max", 0, "largest contact force", "N", 1.0),
+    ("support_force_max", 0, "largest support force", "N", 1.0),
+    ("friction_energy", 0, "energy dissipated by friction", "J", 1.0),
+)
 DASHES = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")  # curves that lie on each other: the later ones leave gaps
-GRAYS = {"ink": "#222222", "gray": "0.5"}
-LEGEND_ROWS, LEGEND_ROW = 4, 11.5  # rows of a legend in one column; height of a row, points
-MARKERS = "os^Dv<>PX*"  # told apart without colors, too
 
 
 def make_panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: Any, **more: Any) -> Panel:
@@ -43,59 +45,11 @@ def distribution_panels(results: Results, scene: str, quantity: str, unit: str, 
     return [make_panel(title, label, *axes, series)] if series else []
 
 
-def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 3, height: float = 4.0) -> None:
-    """Write the panels below a title to `path`, PNG, and as PDF."""
-    from matplotlib.figure import Figure  # matplotlib: only what draws needs it
-
-    from comparison.surfaces.figures.pairs import save_figure
-
-    columns = min(columns, max(len(panels), 1))
-    rows = -(-len(panels) // columns) or 1
-    figure = Figure(figsize=(5.0 * columns, height * rows + 0.6), dpi=110, layout="constrained")
-    figure.suptitle(escape_for_matplotlib(title), fontsize=12)
-    for axes, each in zip_longest(figure.subplots(rows, columns, squeeze=False).flat, panels):
-        if each is None:
-            axes.set_axis_off()
-        else:
-            _draw_series(axes, each)
-    save_figure(figure, path)
+def json_numbers(values: Sequence[float]) -> list[float | None]:
+    """Return what JSON can hold: NaN is null."""
+    return [finite_or_none(value) for value in values]
 
 
-def _draw_series(axes: Axes, each: Panel) -> None:
-    plot = each["plot"]
-    axes.grid(color="0.92")
-    for line in plot["series"]:
-        number = line.get("color", 0)
-        look: dict[str, Any] = {"color": GRAYS.get(number) or COLORS[number % len(COLORS)]}
-        x, y, low, high = (np.array(line.get(key, ()), dtype=float) for key in ("x", "y", "low", "high"))
-        if line.get("band"):
-            axes.fill_between(x, low, high, alpha=0.18, lw=0.0, **look)
-        elif low.size:
-            axes.vlines(x, low, high, lw=3.0, alpha=0.4, **look)
-        marker = MARKERS[0 if number in GRAYS else number % len(MARKERS)] if line.get("marks") else ""
-        style = "none" if line.get("line") is False else "--" if "dash" in line else "-"
-        label = mathtext(line["name"]) if line.get("legend", True) else "_"
-        axes.plot(x, y, ls=style, marker=marker, ms=4.5, lw=line.get("width", 1.4), label=label, **look)
-    for name in "xy":
-        axis = plot[name]
-        scale = "log" if axis.get("log") and has_positive(plot["series"], name) else "linear"
-        axes.set(**{f"{name}label": mathtext(axis["title"]), f"{name}scale": scale})
-        if "ticks" in axis:
-            places, names = zip(*axis["ticks"])
-            axes.set(**{f"{name}ticks": places, f"{name}ticklabels": [mathtext(text) for text in names]})
-        if "range" in axis:
-            axes.set(**{f"{name}lim": axis["range"]})
-    bottom, top = axes.get_ylim()
-    for band in plot.get("bands", ()):
-        axes.axhspan(*np.clip([band["from"], band["to"]], bottom, top), color="0.93", lw=0.0, zorder=0)
-    axes.set_ylim(bottom, top)
-    named = len(axes.get_legend_handles_labels()[1])
-    columns = 1 if named <= LEGEND_ROWS else 2
-    axes.set_title(mathtext(each["title"]), fontsize=10, pad=6.0 + LEGEND_ROW * -(-named // columns))
-    axes.legend(fontsize=7.5, frameon=False, ncols=columns, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderpad=0.0)
-
-
-def has_positive(series: Sequence[Mapping[str, Any]], axis: str) -> bool:
-    """Return whether some point of the series is on a logarithmic axis: without any Matplotlib raises."""
-    points = (pair for line in series for pair in zip(line[axis], line["y"]))
-    return any(place is not None and place > 0.0 and value is not None for place, value in points)
+def fractile_heads() -> list[str]:
+    """Heads of the columns of fractiles, in percent."""
+    return [f"{100.0 * probability:g}" for probability in FRACTILES]

@@ -16,14 +16,14 @@ from comparison.report.scene_result import SceneResult
 from comparison.result_types import Part, Text
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alerts import Alert
+from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.statements import word_gate
-from comparison.surfaces.unanswered import Unanswered
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
 
 
-# What measured motions say of the models, for every report: `word_what_is_validated` of comparison.evidence.validation
+# What measured motions say of the models, for every report: `word_what_is_validated` of docs/measured_statements.py
 # words it from the record, which the gate repeats; the report itself knows no analysis.
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
@@ -98,7 +98,7 @@ class Results(Part):
     models: list[ModelDescription] = Field(description="the model hierarchy, in order")
     scenes: list[SceneResult] = Field(description="in the order of the command")
     absent: dict[str, str] = Field(description="analyses that were made of no scene, with the reason")
-    unanswered: list[Unanswered] = Field(description="models without a value at some or all phase pairs of a scene")
+    unanswered: list[MissingValues] = Field(description="models without a value at some or all phase pairs of a scene")
     alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
     faults: list[Text] = Field(description="error messages of the solvers")
     features: ClassVar[Sequence[Any]] = ()  # the registry enters them

@@ -7,9 +7,10 @@ exit code is as without it.
 
 import errno
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TypeVar
 
-from comparison.runner.output import on_stderr
+from comparison.runner.output import on_stderr, publish_files
 from comparison.wording import exception_line
 from reference.support.command import OutputError
 
@@ -31,6 +32,12 @@ def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = on_s
             raise
         say(f"{what} could not be shown: {exception_line(error)[:LONGEST]}")
         return None
+
+
+def publish_made(folder: Path, name: str, make: Callable[[], bytes], command: str) -> list[Path]:
+    """Publish the file of a command that `make` returns; where that raises say so, and leave it out."""
+    content = attempt(name, make)
+    return [] if content is None else publish_files(folder, {name: content}, command)
 
 
 class LostParts:

@@ -222,7 +222,7 @@ def _install_report(new: Path, place: Path) -> Path:
         for path, is_folder in walk_folder(new)
         if not is_folder
     }
-    why = _in_the_way(place)
+    why = _find_obstacle(place)
     there = next(name for name in iterate_names(place) if not os.path.lexists(name)) if why else place
     there.mkdir(exist_ok=True)
     old = read_manifest(there)
@@ -243,7 +243,7 @@ def _install_report(new: Path, place: Path) -> Path:
     return there
 
 
-def _in_the_way(place: Path) -> str:
+def _find_obstacle(place: Path) -> str:
     """Return what keeps a report from its place, in words; empty if nothing does."""
     if not os.path.lexists(place):
         return ""

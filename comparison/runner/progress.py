@@ -103,7 +103,7 @@ class Deadline:
 
     def __enter__(self) -> Deadline:
         if self._end is not None:
-            self._before = signal.signal(signal.SIGALRM, _up)
+            self._before = signal.signal(signal.SIGALRM, _raise_time_up)
             self.keep_free(0.0)
         return self
 
@@ -118,5 +118,5 @@ class Deadline:
             signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), SOON))
 
 
-def _up(number: int, frame: FrameType | None) -> NoReturn:
+def _raise_time_up(number: int, frame: FrameType | None) -> NoReturn:
     raise TimeUpError

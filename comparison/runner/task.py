@@ -134,7 +134,7 @@ def fingerprint(value: Any) -> Any:
         content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
         return ["array", str(value.dtype), value.shape, content]
     if isinstance(value, xr.Dataset):
-        return ["data", [[str(name), fingerprint(value[name].values)] for name in sorted(map(str, value.variables))]]
+        return ["data", fingerprint(_arrays_of(value))]
     if isinstance(value, tuple | list):
         return [fingerprint(part) for part in value]
     if hasattr(value, "identity"):
@@ -142,11 +142,20 @@ def fingerprint(value: Any) -> Any:
     if isinstance(value, Mapping):
         return [[key, fingerprint(part)] for key, part in sorted(value.items())]
     if is_dataclass(value) and not isinstance(value, type):
-        held = {part.name: getattr(value, part.name) for part in fields(value)}
-        if isinstance(value, Model):
-            del held["most"]  # at which phases a model is asked does not change what it answers
-        source = environment_fingerprint(value.amplification) if isinstance(value, Model) else {}
-        return [type(value).__qualname__, fingerprint(source), fingerprint(held)]
+        return _fingerprint_of_dataclass(value)
     if callable(value):
         return name_of_function(value)
     raise TypeError(f"a task that holds {type(value).__name__} has no name in the store")
+
+
+def _arrays_of(data: xr.Dataset) -> dict[str, Any]:
+    return {str(name): variable.values for name, variable in data.variables.items()}
+
+
+def _fingerprint_of_dataclass(value: Any) -> Any:
+    """Return the type of a dataclass and all that it holds; a model also depends on its source."""
+    held, source = {part.name: getattr(value, part.name) for part in fields(value)}, {}
+    if isinstance(value, Model):
+        del held["most"]  # at which phases a model is asked does not change what it answers
+        source = environment_fingerprint(value.amplification)
+    return [type(value).__qualname__, fingerprint(source), fingerprint(held)]

@@ -28,7 +28,6 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
-    level: int = 0  # the first of the nested grids that has these phases
     timeout: float | None = None  # most processor time of the call, s
     group: str = ""  # group of workers that it may use; of an engine of the user, whose error may be unknown
 

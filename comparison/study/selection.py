@@ -78,6 +78,15 @@ def refuse_unknown(names: Iterable[str], analyses: Sequence[Selectable]) -> None
             raise ValueError(f"{name!r} is no analysis; {suggestion}")
 
 
+def _refuse_unknown_in_scene(scene: Scene, analyses: Sequence[Selectable]) -> None:
+    """Raise SceneError where a scene names an unknown analysis."""
+    for key, listed in scene.analyses:
+        try:
+            refuse_unknown(listed or (), analyses)
+        except ValueError as error:
+            raise SceneError(scene.name, f"analyses.{key}", listed, str(error)) from None
+
+
 def select_names(
     analyses: Sequence[Selectable],
     only: Sequence[str] | None,
@@ -110,11 +119,7 @@ def make_selection(
     on_request = {each.name for each in analyses if each.on_request}
     by_scene, unnamed = {}, set(of_the_paper)
     for scene in scenes:
-        for key, listed in scene.analyses:
-            try:
-                refuse_unknown(listed or (), analyses)
-            except ValueError as error:
-                raise SceneError(scene.name, f"analyses.{key}", listed, str(error)) from None
+        _refuse_unknown_in_scene(scene, analyses)
         asked = (only, skip) if (only, skip) != (None, None) else (scene.analyses.only, scene.analyses.skip)
         added = (scene.analyses.also if also is None else also) or ()
         names = select_names(analyses, *asked, added)

@@ -177,10 +177,10 @@ class Study:
         settings = model.arguments(self.tolerance, self.full)
         group = model.key if model.side == "user" else ""  # engines of the user share no worker with anything else
         batches, first = [], 0
-        for level, places in enumerate(self.places_by_level(scene, model)):
+        for places in self.places_by_level(scene, model):
             for start in range(0, len(places), model.batch):
                 part = phases[places[start : start + model.batch]]
-                about = first + start, part, level
+                about = first + start, part
                 batches.append(Batch(scene, model.key, model.amplification, settings, *about, model.timeout, group))
             first += len(places)
         return batches

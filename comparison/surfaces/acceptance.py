@@ -1,7 +1,6 @@
 """The limits of a study, stated by its scenes or held by every engine of the user, compared with what was found."""
 
 from collections.abc import Iterator, Sequence
-from itertools import groupby
 from math import isnan
 from typing import Annotated
 
@@ -13,8 +12,8 @@ from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.budget import closure_error
 from comparison.surfaces.differences import AGREEMENT, Difference
+from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.statements import word_breach
-from comparison.surfaces.unanswered import Unanswered
 from reference.problem import Scene
 
 NAN = float("nan")
@@ -53,15 +52,6 @@ class Limit:
         return [f"{self.scene}: {text}" for text in self.breach_texts]
 
 
-def check_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unanswered]) -> list[Limit]:
-    """Return every limit of the scenes of a study, compared with what was found, in the order of scenes and keys."""
-    limits: list[Limit] = []
-    for scene, bodies in groupby(comparisons, lambda comparison: comparison.scene):
-        gaps = [gap for gap in lacking if gap.scene == scene.name]
-        limits += _check_limit(list(bodies), gaps)
-    return limits
-
-
 def pairs_without_limit(study: Study, scene: Scene) -> list[str]:
     """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
     stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.differences()]
@@ -78,8 +68,18 @@ def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
     return [model.key for model in models if model.side == "user" and model.key not in stated]
 
 
-def _check_limit(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -> Iterator[Limit]:
-    """Every limit of a scene."""
+def check_limits(bodies: Sequence[BodyComparison], gaps: Sequence[MissingValues]) -> list[Limit]:
+    """Return every limit of a scene, compared with its bodies and with what is missing, in the order of its keys."""
+    closure = bodies[0].scene.acceptance.closure
+    limits = list(_check_differences(bodies, gaps))
+    if closure is not None:
+        remainders = [(body.body, closure_error(body), None) for body in bodies]
+        limits.append(Limit(bodies[0].scene.name, "closure", closure, _breaches_beyond(remainders, closure)))
+    return [*limits, *_check_missing_points(bodies[0].study, bodies[0].scene, gaps)]
+
+
+def _check_differences(bodies: Sequence[BodyComparison], gaps: Sequence[MissingValues]) -> Iterator[Limit]:
+    """The limits on the differences of models, and those of engines of the user by default."""
     study, scene = bodies[0].study, bodies[0].scene
     stated, rows = scene.acceptance, [row for body in bodies for row in body.rows.values()]
     engines = _engines_without_limits(study, scene)
@@ -92,9 +92,11 @@ def _check_limit(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -
         else:
             breaches = (Breach(0, NAN, f"nothing to compare ({_why_not(study, scene, pair, gaps)})"),)
         yield Limit(scene.name, key, allowed, breaches, pair in engines)
-    if stated.closure is not None:
-        remainders = [(body.body, closure_error(body), None) for body in bodies]
-        yield Limit(scene.name, "closure", stated.closure, _breaches_beyond(remainders, stated.closure))
+
+
+def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValues]) -> Iterator[Limit]:
+    """The limit on points without an answer; an engine of the user may lack none by default."""
+    stated, engines = scene.acceptance, _engines_without_limits(study, scene)
     allowed_points = 0 if engines and stated.failures is None else stated.failures
     if allowed_points is not None:
         counted = [gap for gap in gaps if stated.failures is not None or gap.model in engines]
@@ -126,7 +128,7 @@ def _name_of_same_pair(study: Study, scene: Scene, pair: str) -> str:
     return "total" if alone else pair
 
 
-def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[Unanswered]) -> str:
+def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[MissingValues]) -> str:
     """Why a pair of models is not compared."""
     wanted = next((known for known in pairs_of(scene, study.hierarchy) if known.key == pair), None)
     if wanted is None and pair in scene.acceptance.of_engines:

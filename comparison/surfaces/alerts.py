@@ -10,8 +10,8 @@ from comparison.result_types import Part, Text
 from comparison.study.models import models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit
+from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
-from comparison.surfaces.unanswered import Unanswered
 
 NEARLY_ALL = 0.9  # share of the travel from which on a reader is told
 WIDE = 0.5  # share of rho from which on a displacement from the middle is told
@@ -44,7 +44,7 @@ class Alert(Part):
 def list_alerts(
     study: Study,
     surfaces: xr.Dataset,
-    unanswered: Sequence[Unanswered],
+    unanswered: Sequence[MissingValues],
     limits: Sequence[Limit],
     faults: Sequence[Alert],
 ) -> list[Alert]:
@@ -53,22 +53,21 @@ def list_alerts(
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
-def _alerts_of_gaps(unanswered: Sequence[Unanswered]) -> list[Alert]:
+def _alerts_of_gaps(unanswered: Sequence[MissingValues]) -> list[Alert]:
     rows = []
-    for lacking in unanswered:
-        refused = lacking.points + lacking.unusable == lacking.asked
-        rest = "" if lacking.used else "; comparisons leave this model out"
+    for gap in unanswered:
+        refused = gap.points + gap.unusable == gap.asked
+        rest = "" if gap.used else "; comparisons leave this model out"
         outcomes = ", ".join(
-            note.outcome if note.count == lacking.asked else f"{note.count} × {note.outcome}"
-            for note in lacking.outcomes
+            note.outcome if note.count == gap.asked else f"{note.count} × {note.outcome}" for note in gap.outcomes
         )
         rows.append(
             Alert(
                 level="red" if refused else "amber",
                 kind="refused" if refused else "lacking",
-                scene=lacking.scene,
-                text=f"{lacking.title}: {lacking.where}{f': {outcomes}' if outcomes else ''}{rest}",
-                help="; ".join(note.advice for note in lacking.outcomes),
+                scene=gap.scene,
+                text=f"{gap.title}: {gap.where}{f': {outcomes}' if outcomes else ''}{rest}",
+                help="; ".join(note.advice for note in gap.outcomes),
             )
         )
     return rows

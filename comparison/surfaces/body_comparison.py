@@ -37,7 +37,7 @@ class BodyComparison:
 
     @cached_property
     def effect_pairs(self) -> list[Pair]:
-        """A pair for each effect: of the chain first, then beside it, then the readings."""
+        """A pair for each effect: of the chain, then outside it, then between the readings."""
         return effect_pairs_of(self.scene, self.study.hierarchy, self.study.left_out(self.scene))
 
     @cached_property
@@ -84,13 +84,9 @@ class BodyComparison:
         return difference_row(self.scene.name, replace(difference, pair=pair), independent, not_ok)
 
 
-def body_comparisons(study: Study, surfaces: xr.Dataset) -> list[BodyComparison]:
-    """Return one for every body of every scene, in their order."""
-    return [
-        BodyComparison(study, surfaces, scene, body)
-        for scene in study.scenes
-        for body in range(1, len(scene.bodies) + 1)
-    ]
+def compare_bodies(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[BodyComparison]:
+    """Return one for every body of a scene, in their order."""
+    return [BodyComparison(study, surfaces, scene, body) for body in range(1, len(scene.bodies) + 1)]
 
 
 def independent_phases(

@@ -190,13 +190,13 @@ def complete_surfaces(
     """A completion for every body of every model that lacks phases, or is spatial on few, in their order."""
     if scene.recorded:
         return []
-    models, listed = study.compared(scene), []
-    for model in models:
+    listed = []
+    for model in study.compared(scene):
         few = len(study.phase_indices(model)) < MIN_SPATIAL_PER_AXIS
         if study.stride(model) > 1 or (few and model.is_spatial):
             finer, unused = _finer_model(study, scene, model), (held_out or {}).get((scene.name, model.key))
             for body in range(1, len(scene.bodies) + 1):
-                listed.append(_complete_body(study, surfaces, scene, models[0], finer, model, body, unused))
+                listed.append(_complete_body(study, surfaces, scene, finer, model, body, unused))
     return listed
 
 
@@ -226,41 +226,32 @@ def _complete_body(
     study: Study,
     surfaces: xr.Dataset,
     scene: Scene,
-    first: Model,
     finer: Model | None,
     model: Model,
     body: int,
     unused: HeldOut | None,
 ) -> Completion:
-    count, asked = len(study.phase_indices(model)), model.tolerance(study.tolerance)
-
+    """The surface of a model as the finer one with the interpolated difference of the two, or why there is none."""
+    asked, nan = model.tolerance(study.tolerance), float("nan")
     about = scene.name, model.key, finer.key if finer else "", body
-
-    def refuse(reason: str, computed: int) -> Completion:
-        nothing, nan = np.full((study.grid, study.grid), np.nan), float("nan")
-        return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
 
     def mu(of: Model, on: Model) -> Array:
         values: Array = usable_mu(surfaces, scene.name, of, on)[body - 1]
         return values
 
-    values = mu(model, model)
-    if finer is None:
-        return refuse("no model before it has all phases", int(np.isfinite(values).sum()))
-    fine = mu(finer, finer)
-    gap = values - mu(finer, model)
+    gap = mu(model, model) - mu(finer, model) if finer else mu(model, model)
     computed = int(np.isfinite(gap).sum())
-    if model.is_spatial:
-        if count < MIN_SPATIAL_PER_AXIS:
-            return refuse(f"{count} × {count} phases are too few for a surface", computed)
-        return refuse("its supports stop one by one: between the computed phases it is not smooth", computed)
-    if computed < MIN_VALUES:
-        return refuse(f"{computed} values are too few for a surface", computed)
-    if unused is None:
-        return refuse("no phase pairs were held out to check an interpolation", computed)
-    surface = fine + interpolate_on_phases(
-        gap, phase_axis(study.grid)[study.phase_indices(model)], phase_axis(study.grid)
-    )
+
+    def refuse(reason: str) -> Completion:
+        nothing = np.full((study.grid, study.grid), nan)
+        return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
+
+    if reason := _why_not_interpolated(study, finer, model, computed, unused):
+        return refuse(reason)
+    assert finer is not None
+    assert unused is not None
+    every = phase_axis(study.grid)
+    surface = mu(finer, finer) + interpolate_on_phases(gap, every[study.phase_indices(model)], every)
     truth_error = unused.error[:, body - 1]
     truth = drop_worthless(unused.mu[:, body - 1], truth_error)
     missed = np.abs(surface.ravel()[choose_held_out(study, scene, model)] - truth) / truth
@@ -268,21 +259,35 @@ def _complete_body(
     held_out = int(checked.sum())
     share = largest_share(held_out)
     if share > MAX_SHARE:
-        return refuse(f"{held_out} held-out phase pairs with a value are too few", computed)
+        return refuse(f"{held_out} held-out phase pairs with a value are too few")
     error, model_error = float(missed[checked].max()), float((truth_error / truth)[checked].max())
-    base = mu(first, first)
-    distance = np.abs(surface - base) / base
+    first = study.compared(scene)[0]
+    distance = np.abs(surface - mu(first, first)) / mu(first, first)
     known_distance = distance[np.isfinite(distance)]
-    difference = fractile(known_distance, 0.95) if known_distance.size else float("nan")
-    reason = ""
+    difference = fractile(known_distance, 0.95) if known_distance.size else nan
     if not error <= asked:
-        reason = (
-            f"interpolation misses held-out phase pairs by up to {100.0 * error:.2g} %, {100.0 * asked:.2g} % asked"
-        )
-        surface = np.full_like(surface, np.nan)
+        off, allowed = f"{100.0 * error:.2g} %", f"{100.0 * asked:.2g} %"
+        reason = f"interpolation misses held-out phase pairs by up to {off}, {allowed} asked"
+        surface = np.full_like(surface, nan)
     return Completion(
         *about, computed, held_out, error, model_error, share, CONFIDENCE, asked, difference, reason, surface
     )
+
+
+def _why_not_interpolated(
+    study: Study, finer: Model | None, model: Model, computed: int, unused: HeldOut | None
+) -> str:
+    """Return why the difference of two models is not interpolated, "" where it is; computed: values of both."""
+    count = len(study.phase_indices(model))
+    if finer is None:
+        return "no model before it has all phases"
+    if model.is_spatial and count < MIN_SPATIAL_PER_AXIS:
+        return f"{count} × {count} phases are too few for a surface"
+    if model.is_spatial:
+        return "its supports stop one by one: between the computed phases it is not smooth"
+    if computed < MIN_VALUES:
+        return f"{computed} values are too few for a surface"
+    return "no phase pairs were held out to check an interpolation" if unused is None else ""
 
 
 def interpolate_on_phases(values: Array, phase: Array, every: Array) -> Array:

@@ -1,16 +1,15 @@
 """mu of every model as a random variable over uniform phases, and its highest point, on the phases computed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated
 
 import numpy as np
 import xarray as xr
 
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
-from comparison.study.models import Model, models_of
-from comparison.study.study import Study
+from comparison.study.models import Model
 from comparison.surfaces.model_difference import usable_mu
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.surfaces import stride_of, values_of
 from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
@@ -51,10 +50,10 @@ class GridMaximum:
     phases: Annotated[Phases, "(alpha1, alpha2), rad; null under a record"]
 
 
-def compute_distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Distribution]:
+def compute_distributions(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[Distribution]:
     """One for each model and body with an answer, in this order."""
     listed = []
-    for model, body, mu, error in _usable_values(study, surfaces, scene):
+    for model, body, mu, error in _usable_values(surfaces, scene, models):
         known = mu[np.isfinite(mu)]
         if known.size:
             taken = phase_distribution(mu, error)
@@ -65,23 +64,25 @@ def compute_distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> l
     return listed
 
 
-def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMaximum]:
+def grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[GridMaximum]:
     """One per model and body, in this order. Of phase pairs with the same value it is the first."""
     maxima, nan = [], float("nan")
-    for model, body, mu, error in _usable_values(study, surfaces, scene):
+    for model, body, mu, error in _usable_values(surfaces, scene, models):
         if not np.isfinite(mu).any():
             maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
             continue
         row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
-        phase = surfaces["alpha1"].values[:: study.stride(model, scene)]
+        phase = surfaces["alpha1"].values[:: stride_of(surfaces, scene.name, model)]
         phases = (nan, nan) if scene.recorded else (float(phase[row]), float(phase[column]))
         maxima.append(GridMaximum(model.key, body, float(mu[row, column]), float(error[row, column]), phases))
     return maxima
 
 
-def _usable_values(study: Study, surfaces: xr.Dataset, scene: Scene) -> Iterator[tuple[Model, int, Array, Array]]:
+def _usable_values(
+    surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]
+) -> Iterator[tuple[Model, int, Array, Array]]:
     """Every model and body with its usable values and their errors, on the phases that the model was asked for."""
-    for model in models_of(scene, study.hierarchy):
+    for model in models:
         of_bodies = zip(usable_mu(surfaces, scene.name, model), values_of(surfaces, "error", scene.name, model))
         for body, (mu, error) in zip(range(1, len(scene.bodies) + 1), of_bodies):
             yield model, body, mu, error

@@ -15,7 +15,7 @@ from comparison.surfaces.waterfall import NAN, Waterfall
 from reference.problem.readings import BOTH_READINGS
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
-# the same effect in another order: key of the pair in the chain; of the pair beside it, and what is different there
+# the same effect in another order: key of the pair in the chain; of the other pair, and what is different there
 ELSEWHERE = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
@@ -181,8 +181,8 @@ def engine_sentences(comparison: BodyComparison) -> tuple[str, ...]:
             sentences.append(word_engine(comparison.rows[engine.key], engine.title, like.title))
             continue
         like = partner_of(engine, scene, study.hierarchy)
-        lacking, name = (engine, name_engine(engine.title)) if engine.key in left_out else (like, f"the {like.title}")
-        outcomes = outcome_counts(comparison.surfaces, scene.name, lacking)
+        missing, name = (engine, name_engine(engine.title)) if engine.key in left_out else (like, f"the {like.title}")
+        outcomes = outcome_counts(comparison.surfaces, scene.name, missing)
         sentences.append(word_engine_without_values(engine.title, like.title, name, outcomes))
     return tuple(sentences)
 

@@ -40,13 +40,9 @@ def word_total(numbers: Headline) -> str:
     if not numbers.points:
         where = "" if numbers.phases_per_axis == 1 else " at any phase pair"
         return f"the models from {first} to {second} have no value in common{where}."
-    size = difference_with_error(numbers.mean, numbers.error)
     if numbers.phases_per_axis == 1:
-        if numbers.resolved:
-            return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
-        if numbers.within_error:
-            return f"{second} and {first} agree within the numerical error under the record (difference {size})."
-        return f"{second} and {first} differ by {size} under the record, {UNRESOLVED}."
+        return _word_total_under_record(numbers)
+    size = difference_with_error(numbers.mean, numbers.error)
     grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
     over = grid if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of {grid}"
     ends = word_range(numbers)
@@ -63,6 +59,17 @@ def word_total(numbers: Headline) -> str:
     if numbers.within_error and numbers.beyond_error == 0.0:
         return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
     return f"{second} and {first} differ by {UNRESOLVED} over {over} (mean {size}; {ends})."
+
+
+def _word_total_under_record(numbers: Headline) -> str:
+    """Return by how much the last model differs from the first under a record."""
+    first, second = numbers.first_name, numbers.second_name
+    size = difference_with_error(numbers.mean, numbers.error)
+    if numbers.resolved:
+        return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
+    if numbers.within_error:
+        return f"{second} and {first} agree within the numerical error under the record (difference {size})."
+    return f"{second} and {first} differ by {size} under the record, {UNRESOLVED}."
 
 
 def word_range(numbers: Headline) -> str:
@@ -130,7 +137,7 @@ def word_supremum(numbers: Headline) -> str:
 
 
 def name_engine(title: str) -> str:
-    """Return how a sentence names an engine of the user, which Exudyn stands beside."""
+    """Return how a sentence names an engine of the user, next to Exudyn."""
     return f"{title} (your engine)"
 
 
@@ -146,9 +153,9 @@ def word_engine(row: Difference, title: str, like: str) -> str:
         return f"{name_engine(title)} differs from the {like} by {signed(row.largest)}{under}: {verdict}."
     places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
     pairs = "1 phase pair lacks" if row.unanswered == 1 else f"{row.unanswered} phase pairs lack"
-    lacking = f", as {pairs} a usable value" if row.unanswered else ""
+    missing = f", as {pairs} a usable value" if row.unanswered else ""
     mean = difference_with_error(row.mean, row.error)
-    sizes = f"{mean} in the mean over {places}{lacking}, and by {signed(row.largest)} at most,{where}"
+    sizes = f"{mean} in the mean over {places}{missing}, and by {signed(row.largest)} at most,{where}"
     return f"{name_engine(title)} differs from the {like} by {sizes}: {verdict}."
 
 
@@ -161,11 +168,11 @@ def word_engine_verdict(row: Difference, title: str) -> str:
     return f"{what} met (at most {times})" if row.agrees else f"{what} not met (by {times}, 2 allowed)"
 
 
-def word_engine_without_values(title: str, like: str, lacking: str, outcomes: Mapping[str, int]) -> str:
-    """Return that an engine of the user is not compared; lacking: which of the two has no usable value."""
+def word_engine_without_values(title: str, like: str, missing: str, outcomes: Mapping[str, int]) -> str:
+    """Return that an engine of the user is not compared; missing: which of the two has no usable value."""
     counts = ", ".join(f"{count} × {outcome}" for outcome, count in outcomes.items() if outcome != "ok")
     why = counts or "errors above half of the values"
-    return f"{name_engine(title)} is not compared with the {like}: no usable value by {lacking} ({why})."
+    return f"{name_engine(title)} is not compared with the {like}: no usable value by {missing} ({why})."
 
 
 def word_breach(limit: Limit, breach: Breach) -> str:
@@ -206,8 +213,8 @@ def word_gate(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) 
 
 def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
     """Return which pairs of models of which scenes no limit holds; "" where all are checked."""
-    lacking = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
-    groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(lacking, lambda each: each[0])]
+    without_limit = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
+    groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(without_limit, lambda each: each[0])]
     listed = "; ".join(f"{', '.join(pairs)} of {name_some(scenes, NAMED)}" for pairs, scenes in groups)
     return f"not checked, as no limit is stated: {listed}" if listed else ""
 

@@ -65,33 +65,11 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
     bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant` (s) when it
     arose; `displacement` is the largest of the platform, m, `cap_share` the same over rho. `cost` (scene, model) is s.
     """
-    names = [scene.name for scene in study.scenes]
-    models = [model.key for model in study.hierarchy]
-    bodies = max(len(scene.bodies) for scene in study.scenes)
-    square, points = (len(names), len(models)), study.grid**2
-    values: dict[str, Any] = {name: np.full((*square, bodies, points), np.nan) for name in ("mu", "error")}
-    values |= {name: np.full((*square, points), np.nan) for name in ("instant", "displacement")}
-    values["status"] = np.full((*square, points), NOT_APPLICABLE, dtype=object)
-    cost, solved = np.zeros(square), {}
-    for row, scene in enumerate(study.scenes):
-        for model in models_of(scene, study.hierarchy):
-            values["status"][row, models.index(model.key)] = NOT_ASKED
-            solved[scene.name, model.key] = study.solved(scene, model)
-    for batch, answer in zip(batches, answers, strict=True):
-        where = names.index(batch.scene.name), models.index(batch.model)
-        span = solved[batch.scene.name, batch.model][batch.first : batch.first + len(batch.phases)]
-        for name, array in values.items():
-            found = np.asarray(getattr(answer, name))
-            array[where][(slice(found.shape[1]), span) if found.ndim > 1 else span] = found.T
-        cost[where] += answer.cost
-    for row, scene in enumerate(study.scenes):
-        for model in models_of(scene, study.hierarchy):
-            place, source = study.places(model, scene), study.symmetric_sources(scene, model)
-            for array in values.values():
-                of_model = array[row, models.index(model.key)]
-                of_model[..., place] = of_model[..., source]
+    bodies, axis = max(len(scene.bodies) for scene in study.scenes), phase_axis(study.grid)
+    values, cost = _place_answers(study, batches, answers, bodies)
+    copy_to_mirror_images(study, list(values.values()))
     values["cap_share"] = values["displacement"] / np.array([scene.radius for scene in study.scenes])[:, None, None]
-    axis, variables = phase_axis(study.grid), {}
+    variables = {}
     for name, array in values.items():
         dims = ("scene", "model", *(("body",) if array.ndim > 3 else ()), "alpha1", "alpha2")
         variables[name] = dims, array.reshape(*array.shape[:-1], study.grid, study.grid), MEANING[name]
@@ -109,14 +87,48 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
             **{name: ("scene", listed, {"long_name": meaning}) for name, (listed, meaning) in of_scenes.items()},
         },
         coords={
-            "scene": names,
-            "model": models,
+            "scene": [scene.name for scene in study.scenes],
+            "model": [model.key for model in study.hierarchy],
             "body": ("body", np.arange(1, bodies + 1), {"long_name": "body i of mu_i, 1 is the platform"}),
             "alpha1": ("alpha1", axis, {"units": "rad", "long_name": "initial phase of the first harmonic"}),
             "alpha2": ("alpha2", axis, {"units": "rad", "long_name": "initial phase of the second harmonic"}),
         },
         attrs={"title": "phase-resonance surfaces", "tolerance": study.tolerance},
     )
+
+
+def _place_answers(
+    study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult], bodies: int
+) -> tuple[dict[str, NDArray[Any]], NDArray[np.float64]]:
+    """The answers by name, (scene, model, [body,] place on the grid), and the cost of each surface, s."""
+    names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
+    square, points = (len(names), len(models)), study.grid**2
+    values: dict[str, NDArray[Any]] = {name: np.full((*square, bodies, points), np.nan) for name in ("mu", "error")}
+    values |= {name: np.full((*square, points), np.nan) for name in ("instant", "displacement")}
+    values["status"] = np.full((*square, points), NOT_APPLICABLE, dtype=object)
+    cost, solved = np.zeros(square), {}
+    for row, scene in enumerate(study.scenes):
+        for model in models_of(scene, study.hierarchy):
+            values["status"][row, models.index(model.key)] = NOT_ASKED
+            solved[scene.name, model.key] = study.solved(scene, model)
+    for batch, answer in zip(batches, answers, strict=True):
+        where = names.index(batch.scene.name), models.index(batch.model)
+        span = solved[batch.scene.name, batch.model][batch.first : batch.first + len(batch.phases)]
+        for name, array in values.items():
+            found = np.asarray(getattr(answer, name))
+            array[where][(slice(found.shape[1]), span) if found.ndim > 1 else span] = found.T
+        cost[where] += answer.cost
+    return values, cost
+
+
+def copy_to_mirror_images(study: Study, arrays: Sequence[NDArray[Any]]) -> None:
+    """Copy arrays (scene, model, ..., place on the grid) from the phase pairs computed to their mirror images."""
+    for row, scene in enumerate(study.scenes):
+        for column, model in enumerate(study.hierarchy):
+            if model.applies(scene):
+                place, source = study.places(model, scene), study.symmetric_sources(scene, model)
+                for array in arrays:
+                    array[row, column][..., place] = array[row, column][..., source]
 
 
 def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:

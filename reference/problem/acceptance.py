@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -15,8 +15,20 @@ from reference.support.scene_error import MisfitError
 ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # name of an engine of the user
 
 
-class Limits(Table):
+class LimitTable(Table):
+    """A table that may state limits, some of its keys."""
+
+    limited: ClassVar[tuple[str, ...]]
+
+    def limits_by_key(self) -> dict[str, float]:
+        """Return the limits that are present, by key."""
+        return {name: limit for name in self.limited if (limit := getattr(self, name)) is not None}
+
+
+class Limits(LimitTable):
     """Limits of the relative difference of two models over the phases, for every body."""
+
+    limited = ("median", "maximum", "ratio")
 
     median: Positive | None = key("limit of the median relative difference of mu_i over the phases", models=STUDY)
     maximum: Positive | None = key("limit of the largest relative difference of mu_i over the phases", models=STUDY)
@@ -24,14 +36,11 @@ class Limits(Table):
         "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates", models=STUDY
     )
 
-    def limits_by_key(self) -> dict[str, float]:
-        """Return the limits that are present, by key."""
-        limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
-        return {key: limit for key, limit in limits.items() if limit is not None}
 
-
-class DemandLimits(Table):
+class DemandLimits(LimitTable):
     """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
+
+    limited = ("displacement", "drift_ratio", "uplift", "base_shear")
 
     displacement: NonNegative | None = key(
         "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
@@ -48,11 +57,6 @@ class DemandLimits(Table):
     statistic: Literal["mean", "largest"] = key(
         '"mean" or "largest" over the motions: what the limits are on', models=ENSEMBLE, default="largest"
     )
-
-    def limits_by_key(self) -> dict[str, float]:
-        """Return the limits that are present, by key."""
-        limits = {name: getattr(self, name) for name in DemandLimits.model_fields if name != "statistic"}
-        return {name: limit for name, limit in limits.items() if limit is not None}
 
 
 def _check_table(value: Any) -> Any:

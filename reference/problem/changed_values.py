@@ -9,7 +9,7 @@ from typing import Any
 
 from reference.records.formats import OPTIONS
 from reference.records.loading import SET_BY_THE_READER, SUITE
-from reference.records.samples import AXES
+from reference.records.samples import AXES, files_by_axis, name_of_file
 from reference.support.arguments import as_float, brief
 from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
@@ -38,9 +38,7 @@ def short_key(key: str) -> str:
 
 def text_of_table(table: Mapping[str, Any]) -> str:
     """Return the files of one record, or the numbers of a table with their keys, as one text."""
-    if isinstance(table.get("file"), str):
-        return Path(table["file"]).stem
-    parts = [(key, part.get("file") if isinstance(part, dict) else part) for key, part in table.items()]
+    parts = [(key, name_of_file(part)) for key, part in files_by_axis(table).items()]
     return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in parts)
 
 

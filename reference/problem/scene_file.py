@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from reference.problem.scene import KEYS, Scene
 from reference.problem.validation import first_scene_error
-from reference.records.loading import EXAMPLES, OF_TWO_FREQUENCIES, SET_BY_THE_READER, with_samples
+from reference.records.loading import EXAMPLES, OF_TWO_FREQUENCIES, SET_BY_THE_READER, shipped_examples, with_samples
 from reference.support.arguments import takes
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
@@ -58,7 +58,7 @@ def example_scenes() -> list[str]:
     >>> example_scenes()
     ['synthetic-pair', 'synthetic-triple']
     """
-    return sorted(entry.name.removesuffix(".toml") for entry in EXAMPLES.iterdir() if entry.name.endswith(".toml"))
+    return shipped_examples()
 
 
 @takes(str | Path, "must be the name of a built-in scene or the path of a scene file")

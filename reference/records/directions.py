@@ -52,6 +52,12 @@ def parse_direction(word: str) -> Direction | None:
     return Direction(word, "", (turned if north else 180.0 + turned) % 360.0)
 
 
+def axis_of_word(word: str) -> str:
+    """Return the axis of a direction such as NS; "" of an azimuth and of any other word."""
+    direction = parse_direction(word)
+    return "" if direction is None else direction.axis
+
+
 def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
     """Return what a file's name may be taken for: the name of its motion and its direction, every reading of it."""
     found = []

@@ -23,7 +23,9 @@ from reference.records.samples import (
     Array,
     RecordError,
     RecordSamples,
+    files_by_axis,
     join_directions,
+    name_of_file,
     origin_of,
     samples_of_arrays,
 )
@@ -73,12 +75,11 @@ def _load_samples(record: Any, label: str) -> tuple[Array, list[str]]:
             raise SceneError(label, "excitation.record", FROM_ARRAYS, str(error)) from None
     if isinstance(record, dict) and "suite" in record:
         return _of_suite(record, label)
-    if isinstance(record, str) and _is_example(record) and not (Path(label).parent / record).exists():
+    if isinstance(record, str) and record in shipped_examples() and not (Path(label).parent / record).exists():
         text = (EXAMPLES / f"{record}.toml").read_text("utf-8")
         return _load_samples(tomllib.loads(text)["excitation"]["record"], record)
-    by_axis = isinstance(record, dict) and "file" not in record
-    files = record if by_axis else {"": record}
-    if not files or (by_axis and not set(files) <= set(AXES)):
+    files = files_by_axis(record)
+    if not files or (files is record and not set(files) <= set(AXES)):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)
     readings = {
         axis: _read_named_file(label, f"excitation.record{'.' if axis else ''}{axis}", file)
@@ -91,17 +92,18 @@ def _load_samples(record: Any, label: str) -> tuple[Array, list[str]]:
     return samples, origin_of(readings)
 
 
-def _is_example(name: str) -> bool:
-    return any(entry.name == f"{name}.toml" for entry in EXAMPLES.iterdir())
+def shipped_examples() -> list[str]:
+    """Return the names of the scenes with a recorded motion that are shipped."""
+    return sorted(entry.name.removesuffix(".toml") for entry in EXAMPLES.iterdir() if entry.name.endswith(".toml"))
 
 
 def _read_named_file(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
     """The name of a file, given as a text or as a table with what the file does not state, and what it holds."""
-    options: Mapping[str, Any] = file if isinstance(file, dict) else {"file": file}
+    options: Mapping[str, Any] = file if isinstance(file, dict) else {}
     for option, value in options.items():
         if option not in OPTIONS:
             raise unknown_key(label, f"{key}.{option}", value, OPTIONS)
-    name = options.get("file")
+    name = name_of_file(file)
     if not isinstance(name, str) or not name:
         raise SceneError(label, key, file, RECORD_RULE)
     stated = {option: value for option, value in options.items() if option != "file"}

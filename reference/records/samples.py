@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.records.directions import axis_of_word
 from reference.support.arguments import check_array
 from reference.support.scene_error import one_line
 
@@ -51,11 +52,24 @@ class RecordSamples:
     notes: tuple[str, ...] = ()
 
 
-def evenly_spaced(format: str, step: float, values: Array, axis: str = "", **others: Any) -> RecordSamples:
-    """Return the reading of a file that states its step, s, and has one direction, m/s^2. Raises RecordError."""
+def evenly_spaced(
+    format: str, step: float, values: Array, word: str = "", notes: tuple[str, ...] = ()
+) -> RecordSamples:
+    """Return the reading of a file with its step, s, and one direction, m/s^2, called `word`. Raises RecordError."""
     if not step >= MIN_INTERVAL:
         raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
-    return RecordSamples(format, step * np.arange(len(values), dtype=float), {axis: values}, step=step, **others)
+    axis, time = axis_of_word(word), step * np.arange(len(values), dtype=float)
+    return RecordSamples(format, time, {axis: values}, {axis: word} if axis else {}, step, notes)
+
+
+def files_by_axis(record: Any) -> dict[str, Any]:
+    """Return the files that a record names by axis; what is no table of axes, as the one file, by ""."""
+    return record if isinstance(record, dict) and "file" not in record else {"": record}
+
+
+def name_of_file(file: Any) -> Any:
+    """Return the name of a file of a record, given alone or in a table with what the file does not state."""
+    return file.get("file") if isinstance(file, dict) else file
 
 
 def join_directions(readings: Mapping[str, RecordSamples]) -> Array:

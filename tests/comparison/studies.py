@@ -5,7 +5,7 @@ from fake_models import errors_in
 
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
-from comparison.surfaces.body_comparison import body_comparisons
+from comparison.surfaces.body_comparison import BodyComparison, compare_bodies
 from comparison.surfaces.differences import Difference
 from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import load_scene
@@ -18,6 +18,11 @@ def solved(study: Study) -> xr.Dataset:
     """The surfaces of a study."""
     batches = study.batches()
     return label_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+
+
+def body_comparisons(study: Study, surfaces: xr.Dataset) -> list[BodyComparison]:
+    """One for every body of every scene, in their order."""
+    return [each for scene in study.scenes for each in compare_bodies(study, surfaces, scene)]
 
 
 def difference_rows(study: Study, surfaces: xr.Dataset) -> list[Difference]:

@@ -12,6 +12,7 @@ import compare_engines
 import evidence_table
 import gallery_pictures as gallery
 import matplotlib.pyplot as plt
+import measured_statements as statements
 import numpy as np
 import pytest
 from pages import PAGES, ROOT
@@ -19,7 +20,6 @@ from PIL import Image
 from stated_numbers import STATED, Stated, numbers_of
 
 from comparison.evidence.benchmarks.table import word_page as benchmarks_page
-from comparison.evidence.validation import statements
 from comparison.evidence.validation.table import load_record
 from comparison.report.results import VALIDATED, VALIDATED_BRIEFLY
 from comparison.report.verification import CHECKS

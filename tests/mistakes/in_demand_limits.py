@@ -120,7 +120,7 @@ MISTAKES = (
     Mistake("reference/plausibility.py", "LARGEST_DRIFT_RATIO = 0.1", "LARGEST_DRIFT_RATIO = 1.0",
             "A drift of a quarter of the story passes without a word.",
             (WRONG + "a_drift_above_a_tenth_of_the_height_is_hardly_meant",)),
-    Mistake("comparison/cli/terminal.py", "building.ground_peak > strongest[name][0]", "building.ground_peak < strongest[name][0]",
+    Mistake("comparison/cli/terminal.py", "building.ground_peak > strongest[name][1].ground_peak", "building.ground_peak < strongest[name][1].ground_peak",
             "Warnings are of the weakest motion.",
             (CLOSING + "the_warning_of_a_building_is_that_of_its_strongest_motion",)),
     Mistake("reference/plausibility.py", "building.heights[0] >= 0.0:", "building.heights[0] < 0.0:",

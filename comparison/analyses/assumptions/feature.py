@@ -14,8 +14,7 @@ from comparison.analyses.assumptions.trials import WITHIN
 from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
 from comparison.analyses.assumptions.variations import Axis
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import Panel, json_numbers
+from comparison.report.panels import Panel, json_numbers, make_panel
 from comparison.report.results import Results
 from comparison.report.section import Report, Section
 from reference.problem import Scene

@@ -6,8 +6,7 @@ from typing import Any
 from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, ConditioningCurve
 from comparison.analyses.conditioning.statement import conditioning_line, speed_text
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import Panel, json_numbers
+from comparison.report.panels import Panel, json_numbers, make_panel
 from comparison.report.section import Report, Section
 from comparison.wording import scientific, signed, significant
 from reference.problem.readings import LITERAL_SUPREMUM

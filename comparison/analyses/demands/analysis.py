@@ -20,7 +20,7 @@ from comparison.study.costs import seconds_per_motion
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
-from comparison.surfaces.surfaces import NOT_ASKED
+from comparison.surfaces.surfaces import NOT_ASKED, copy_to_mirror_images
 from reference.measures import Estimates, phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
@@ -112,12 +112,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
                 for key, values in ((name, estimates.value), (f"{name}_error", estimates.error)):
                     rows, first = values.reshape(len(places), -1).T, PER_BODY.get(name, 0)
                     numbers.setdefault(key, np.full(shape, np.nan))[where][first : first + len(rows), places] = rows
-        for row, scene in enumerate(study.scenes):
-            for model in _models_with_own_motions(study, scene):
-                place, source = study.places(model, scene), study.symmetric_sources(scene, model)
-                for array in (status, *numbers.values()):
-                    of_model = array[row, models.index(model.key)]
-                    of_model[..., place] = of_model[..., source]
+        copy_to_mirror_images(study, [status, *numbers.values()])
         point, axis, square = ("scene", "model", "alpha1", "alpha2"), phase_axis(grid), (*status.shape[:2], grid, grid)
         variables: dict[str, Any] = {
             "status": (point, status.reshape(square), {"long_name": "named outcome of the pair"})

@@ -5,8 +5,7 @@ from typing import Any
 
 from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, demand_statistics, with_demands
 from comparison.report.feature import Feature, SceneField
-from comparison.report.panels import distribution_panels
-from comparison.report.plots import DEMANDS, Panel
+from comparison.report.panels import DEMANDS, Panel, distribution_panels
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section

@@ -58,7 +58,7 @@ from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.start import command_start
 from comparison.cli.terminal import print_buildings, print_records
 from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import attempt, publish_made
 from comparison.runner.output import publish_files, refuse_foreign_files, refuse_other_page, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
@@ -211,9 +211,8 @@ def write_ensemble(
     if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
         files[TABLE] = table
     written = write_and_show(options.out, partial(publish_files, out, files, COMMAND), partial(show, console, result))
-    page = attempt(PAGE, lambda: page_of(result).encode())
     with report_write_errors(options.out):
-        written += publish_files(out, {} if page is None else {PAGE: page}, COMMAND)
+        written += publish_made(out, PAGE, lambda: page_of(result).encode(), COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
     return result
 

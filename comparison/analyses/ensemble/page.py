@@ -21,7 +21,7 @@ from comparison.analyses.ensemble.rows import (
 from comparison.analyses.ensemble.trust import COLUMNS, STATISTICS, extended_rows, trust_rows, trust_sentence
 from comparison.report.page import lost_line, render_page, render_template
 from comparison.report.page_data import compress_to_text
-from comparison.report.plots import Panel
+from comparison.report.panels import Panel
 from comparison.report.section import Section
 from comparison.runner.attempts import LostParts
 from comparison.study.models import EXACT

@@ -10,8 +10,7 @@ from comparison.analyses.ensemble.quantities import title_of, unit_for_reading
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import HEIGHTS, floor_of, labels
 from comparison.analyses.ensemble.sentences import motions_in_words
-from comparison.report.panels import make_panel
-from comparison.report.plots import Panel
+from comparison.report.panels import Panel, make_panel
 from reference.problem import GRAVITY
 
 SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max")

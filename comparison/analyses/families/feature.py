@@ -13,8 +13,7 @@ from comparison.analyses.families.analysis import (
     family_steps,
 )
 from comparison.report.feature import Feature, Findings, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import DEMANDS, Panel, json_numbers
+from comparison.report.panels import DEMANDS, Panel, json_numbers, make_panel
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Section

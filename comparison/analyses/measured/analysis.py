@@ -27,7 +27,6 @@ from comparison.verdicts import (
     judge_error,
     word_counts,
     word_counts_and_largest,
-    word_error,
     word_verdict,
 )
 from reference.measures import Estimate, demands
@@ -87,14 +86,12 @@ def unit_of_peak(peak: MeasuredPeak) -> str:
 def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
     """Return the verdict of the section in one line: counts, and the largest relative difference that is not met."""
     pairs = [(peak, computed) for peak in peaks for computed in peak.computed]
-    off = [(peak, each) for peak, each in pairs if each.verdict == NOT_MET and peak.value]
-    largest = max(off, key=lambda pair: abs(pair[1].difference / pair[0].value), default=None)
-    where = ""
-    if largest:
-        peak, each = largest
-        place = f"{peak.quantity} of body {peak.body}" if peak.body else peak.quantity
-        where = f"{peak.scene}, {place}, {each.model}, {word_error(each.difference, peak.value)}"
-    return word_counts_and_largest(count_verdicts(each.verdict for _, each in pairs), where)
+    off = []
+    for peak, each in pairs:
+        if each.verdict == NOT_MET:
+            place = f"{peak.quantity} of body {peak.body}" if peak.body else peak.quantity
+            off.append((each.difference, peak.value, f"{peak.scene}, {place}, {each.model}"))
+    return word_counts_and_largest(count_verdicts(each.verdict for _, each in pairs), off)
 
 
 def phases_of(peak: Measured) -> tuple[float, float]:

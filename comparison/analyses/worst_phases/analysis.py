@@ -24,6 +24,7 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
 from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of
 from comparison.study.study import Study
+from comparison.surfaces.distribution import GridMaximum, grid_maxima
 from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
 from reference.measures.local_maxima import GRID, local_maxima
@@ -32,8 +33,6 @@ from reference.problem import Scene
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
-ENGINE_POINTS = 6  # phase pairs: the middle and the corners of the square, and where it is predicted to be largest
-SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
 NOWHERE = (math.nan, math.nan)
 
 
@@ -64,8 +63,7 @@ class Worst:
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
-# an engine model that is not searched, its largest value on its grid with error, and phases of that
-OnGrid = tuple[Model, float, float, tuple[float, float]]
+OnGrid = tuple[Model, GridMaximum]  # an engine model that is not searched, and its largest value on its grid
 # scene, model, its engine, engine that is not searched, quantity, body, tolerance of the engines, starts (K, 2)
 Arguments = tuple[Scene, Model, Model | None, OnGrid | None, Quantity, int, float, Array | None]
 
@@ -84,7 +82,7 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
     """Return model, engine of the same equations, quantity and body of every search."""
-    equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
+    equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
     searched = [model for model in equations if model.key in (SMALL.key, SMALL_RESOLVED.key, *engines)]
@@ -172,26 +170,21 @@ def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, bo
     model = study.compared(scene)[-1]
     if surfaces is None or not model.is_spatial:
         return None
-    mu = usable_mu(surfaces, scene.name, model)[body - 1]
-    if not np.isfinite(mu).any():
-        return None
-    row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
-    phase = surfaces["alpha1"].values[:: study.stride(model, scene)]
-    error = values_of(surfaces, "error", scene.name, model)[body - 1][row, column]
-    return model, float(mu[row, column]), float(error), (float(phase[row]), float(phase[column]))
+    largest = grid_maxima(surfaces, scene, [model])[body - 1]
+    return (model, largest) if math.isfinite(largest.mu) else None
 
 
 def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, tolerance: float) -> Worst:
     """The larger of an engine's values at the worst phases of the equations and on its own grid."""
-    model, value, error, phases = on_grid
+    model, largest = on_grid
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
     start, start_error = float(there.value[0]), float(there.error[0])
     about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
     name = worst.scene, model.key, worst.quantity, worst.body
-    if start > value:
+    if start > largest.mu:
         return Worst(*name, start, start_error, worst.phases, "nearby", **about)  # type: ignore[arg-type]
-    return Worst(*name, value, error, phases, "grid", **about)  # type: ignore[arg-type]
+    return Worst(*name, largest.mu, largest.error, largest.phases, "grid", **about)  # type: ignore[arg-type]
 
 
 def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:

@@ -7,8 +7,7 @@ from typing import Any
 from comparison.analyses.worst_phases.analysis import Worst, WorstPhases, nearest_search
 from comparison.report.feature import Feature, ResultField
 from comparison.report.page_data import DIGITS
-from comparison.report.panels import distribution_panels
-from comparison.report.plots import fractile_heads
+from comparison.report.panels import distribution_panels, fractile_heads
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
 from comparison.study.models import SMALL, SMALL_RESOLVED, has_smooth_friction, models_of

@@ -6,18 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import xarray as xr
 
 from comparison.evidence.benchmarks.cases import BenchmarkCase, MotionReading
 from comparison.evidence.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, PublishedNumber
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
-from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
-from comparison.study.study import Study
 from comparison.verdicts import MET, NOT_MET
 from reference.measures.demand_reader import ANSWERED
 from reference.problem import State, Trajectory
@@ -40,17 +37,16 @@ class SideNumbers:
 
 
 @dataclass(frozen=True)
-class BenchmarkTable(Analysis[Benchmarks]):
+class BenchmarkTable:
     """Every benchmark by the equations, by the equations with the engine's friction law, and by the engine."""
 
-    key, stage = "benchmarks", "benchmarks"
     cases: Sequence[BenchmarkCase]
 
-    def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
+    def tasks(self) -> list[Task]:
         """One task for each benchmark and side."""
         return [self._task(case, side) for case in self.cases for side in MODELS]
 
-    def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Benchmarks:
+    def collect(self, results: TaskResults) -> Benchmarks:
         """The table, without what the command knows of the run."""
         answers = [
             {side: results.value(self._task(case, side), _answer_of_failure) for side in MODELS} for case in self.cases
@@ -59,7 +55,7 @@ class BenchmarkTable(Analysis[Benchmarks]):
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
         seconds = SECONDS[side] * max(1.0, case.scene.duration / 12.0)
-        return Task(solve_side, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
+        return Task(solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=LIMIT)
 
 
 def solve_side(question: tuple[BenchmarkCase, str]) -> SideNumbers:
@@ -83,8 +79,8 @@ def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[floa
     """The numbers and their estimated absolute errors; none of a motion that ended early."""
     if motion.status not in ANSWERED or len(motion.time) < 2:
         return [], []
-    values, accuracy = reading.of(motion), motion.accuracy
-    others = [] if accuracy is None else [reading.of(each) for each in (halve_samples(motion), *accuracy.coarser)]
+    values, accuracy = reading.read(motion), motion.accuracy
+    others = [] if accuracy is None else [reading.read(each) for each in (halve_samples(motion), *accuracy.coarser)]
     if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
         return values, [math.nan] * len(values)
     rows = zip(values, *others)

@@ -37,15 +37,10 @@ class MotionReading:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     factor: float = 1.0  # from SI units to those of the published number
 
-    def of(self, motion: Trajectory) -> list[float]:
+    def read(self, motion: Trajectory) -> list[float]:
         """The numbers, in the published units."""
         values = np.atleast_1d(self.function(motion, **self.arguments))
         return [self.factor * float(value) for value in values]
-
-
-def published_number(quantity: str, value: float, uncertainty: float, unit: str = "") -> PublishedNumber:
-    """A published number; uncertainty: absolute, as published or half of the last digit."""
-    return PublishedNumber(quantity, unit, value, uncertainty)
 
 
 @dataclass(frozen=True)
@@ -97,7 +92,7 @@ def _wear_power() -> list[BenchmarkCase]:
             title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
-            published=[published_number("power of friction", power, digits, "W")],
+            published=[PublishedNumber("power of friction", "W", power, digits)],
             reading=MotionReading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
             scene=load_shipped_scene("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
             phases=(-0.5 * math.pi, 0.0),
@@ -112,7 +107,7 @@ def _release_case() -> BenchmarkCase:
         source="code_aster, test SDND100 (V5.01.100): closed form",
         evidence="turning points, and rest at the end",
         published=[
-            published_number(f"turning point {number}", place, 0.0, "mm")
+            PublishedNumber(f"turning point {number}", "mm", place, 0.0)
             for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
         ],
         reading=MotionReading(readings.turning_points, factor=1e3),
@@ -130,7 +125,7 @@ def _coulomb_damping() -> BenchmarkCase:
         source="ANSYS Verification Manual, VM73, after Tse, Morse and Hinkle, Mechanical Vibrations: closed form",
         evidence="the motion between stops, at given instants",
         published=[
-            published_number(f"place at {time:g} s", value, 5e-6, "in")
+            PublishedNumber(f"place at {time:g} s", "in", value, 5e-6)
             for time, value in zip(times, (0.87208, 0.83132, -0.74874))
         ],
         reading=MotionReading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
@@ -147,7 +142,7 @@ def _den_hartog() -> BenchmarkCase:
         title="Den Hartog: forced oscillation with friction",
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
-        published=[published_number("amplitude over static one", 1.535602, 5e-7)],
+        published=[PublishedNumber("amplitude over static one", "", 1.535602, 5e-7)],
         reading=MotionReading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
         scene=scene,
         phases=(0.18581959993316782, 0.0),
@@ -163,7 +158,7 @@ def _harmonic_block() -> BenchmarkCase:
         title="Rigid block on a harmonically shaken plane",
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
-        published=[published_number("amplitude over ground's", round(amplitude, 6), 5e-7)],
+        published=[PublishedNumber("amplitude over ground's", "", round(amplitude, 6), 5e-7)],
         reading=MotionReading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
         scene=load_shipped_scene("harmonic"),
         phases=(-0.5 * math.pi, 0.0),
@@ -175,7 +170,7 @@ def _pulse_case() -> BenchmarkCase:
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
-        published=[published_number("displacement", 0.75, RAMP, "m")],
+        published=[PublishedNumber("displacement", "m", 0.75, RAMP)],
         reading=MotionReading(readings.positions_at, {"times": [3.0]}),
         scene=load_shipped_scene("newmark"),
     )
@@ -189,8 +184,8 @@ def _linear_cases() -> list[BenchmarkCase]:
             source="A. K. Chopra, Dynamics of Structures, base-isolated one-story building: natural periods",
             evidence="stiffness of the isolator, mass and link",
             published=[
-                published_number("isolation period", 2.0242, 5e-5, "s"),
-                published_number("structural period", 0.2500, 5e-5, "s"),
+                PublishedNumber("isolation period", "s", 2.0242, 5e-5),
+                PublishedNumber("structural period", "s", 0.2500, 5e-5),
             ],
             reading=MotionReading(readings.natural_periods),
             scene=load_shipped_scene("frame"),
@@ -201,7 +196,7 @@ def _linear_cases() -> list[BenchmarkCase]:
             source="A. K. Chopra, Dynamics of Structures, uniform five-story shear building: natural periods",
             evidence="chain of links above a platform that friction holds",
             published=[
-                published_number(f"natural period {number}", period, 5e-5, "s")
+                PublishedNumber(f"natural period {number}", "s", period, 5e-5)
                 for number, period in enumerate(stories, start=1)
             ],
             reading=MotionReading(readings.natural_periods),
@@ -213,7 +208,7 @@ def _linear_cases() -> list[BenchmarkCase]:
             title="Pendulum released at 60°",
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
-            published=[published_number("period over small one's", 1.073182, 5e-7)],
+            published=[PublishedNumber("period over small one's", "", 1.073182, 5e-7)],
             reading=MotionReading(readings.mean_period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
             scene=load_shipped_scene("pendulum"),
             start=((math.sin(math.pi / 3.0), 0.0),),
@@ -239,7 +234,7 @@ FRICTION = {
 }
 
 
-def mastodon(path: Path) -> BenchmarkCase:
+def mastodon_case(path: Path) -> BenchmarkCase:
     """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
     try:
         samples = read_csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
@@ -265,7 +260,7 @@ def mastodon(path: Path) -> BenchmarkCase:
         source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
         "loops of both programs",
         evidence="a recorded motion in three directions with friction that depends on velocity, pressure and heat",
-        published=[published_number(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
+        published=[PublishedNumber(name, "mm", value, READ_TO) for name, value in zip(names, LIMITS)],
         reading=MotionReading(readings.position_ranges, factor=1e3),
         scene=scene,
         regularization=DEFAULT_V_REG,

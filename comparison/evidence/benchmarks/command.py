@@ -17,10 +17,10 @@ from comparison.cli.arguments import CommandParser, command, number_of_jobs, wri
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
-from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, mastodon
+from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, mastodon_case
 from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, with_error, word_explanations, word_page
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import publish_made
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -52,18 +52,17 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_foreign_files(out, [STORED.name, PAGE])
     console = wide_console()
     results = compute_tasks("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
-    solved = analysis.collect(None, None, results)
+    solved = analysis.collect(results)
     table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
-        text = attempt(PAGE, partial(word_page, table))
-        return files + publish_files(out, {} if text is None else {PAGE: text.encode()}, "comparison.benchmarks")
+        return files + publish_made(out, PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
 
     files = write_and_show(out, write, partial(print_benchmarks, console, table))
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by phase-resonance run shows them.")
-    return 1 if table.explained()[""] or table.counts()[NOT_COMPARED] else 0
+    return 1 if table.count_explanations()[""] or table.counts()[NOT_COMPARED] else 0
 
 
 def print_benchmarks(console: Console, table: Benchmarks) -> None:
@@ -85,7 +84,7 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
 
 def _choose_cases(only: str, mastodon_input: Path | None) -> list[BenchmarkCase]:
     """The benchmarks that the options leave. Raises SceneError."""
-    known = list_cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
+    known = list_cases() + ([] if mastodon_input is None else [mastodon_case(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]
     if not chosen:
         names = ", ".join(case.scene.name for case in known)

@@ -2,22 +2,16 @@
 
 from comparison.evidence.benchmarks.table import (
     STORED,
-    Benchmarks,
     verdict_line,
     with_error,
     word_explanations,
     word_published_number,
 )
-from comparison.report.feature import Feature, ResultField
+from comparison.report.feature import Feature, stored_field
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES
 
-FOUND = ResultField(
-    "benchmarks",
-    Benchmarks,
-    STORED.word_field("numbers published elsewhere, compared with what both sides compute"),
-    load=STORED.load,
-)
+FOUND = stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
 FEATURE = Feature(
     "benchmarks",
     (FOUND,),

@@ -7,8 +7,8 @@ the instants are.
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicHermiteSpline
 
+from comparison.evidence.sides import spline_along
 from comparison.result_types import Array
 from reference.problem import Trajectory
 
@@ -20,7 +20,7 @@ STILL = 1e-3  # share of the largest speed: slower turns are creep, not swings
 def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
     """Position of the platform along x at some instants, s; NaN behind the end of the motion."""
     instants = np.asarray(times, dtype=float)
-    values: Array = _spline_along(motion, 0)(instants)
+    values: Array = spline_along(motion, 0)(instants)
     return np.where(instants <= motion.time[-1] * (1.0 + ROUNDING), values, np.nan)
 
 
@@ -30,7 +30,7 @@ def turning_points(motion: Trajectory) -> Array:
     moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
     sign = np.sign(speed[moving])
     last = np.flatnonzero(np.diff(sign))  # last sample of every swing but the last one, among the moving samples
-    place = _spline_along(motion, 0)
+    place = spline_along(motion, 0)
     turns = []
     for end, begin in [*zip(moving[last], moving[last + 1]), (moving[-1], len(speed) - 1)]:
         dense = place(_dense_instants(motion, float(motion.time[end]), float(motion.time[begin])))
@@ -40,13 +40,13 @@ def turning_points(motion: Trajectory) -> Array:
 
 def path_length(motion: Trajectory, begin: float, end: float) -> float:
     """Way that the platform slides between two instants."""
-    dense = np.stack([_spline_along(motion, axis)(_dense_instants(motion, begin, end)) for axis in (0, 1)])
+    dense = np.stack([spline_along(motion, axis)(_dense_instants(motion, begin, end)) for axis in (0, 1)])
     return float(np.hypot(*np.diff(dense)).sum())
 
 
 def extreme_positions(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
     """Smallest and largest position of the platform along x (0) or y (1) from an instant on."""
-    dense = _spline_along(motion, axis)(_dense_instants(motion, begin, float(motion.time[-1])))
+    dense = spline_along(motion, axis)(_dense_instants(motion, begin, float(motion.time[-1])))
     return float(dense.min()), float(dense.max())
 
 
@@ -63,7 +63,7 @@ def half_range(motion: Trajectory, begin: float) -> float:
 
 def mean_period(motion: Trajectory) -> float:
     """Mean time between two passages of the platform through x = 0 in the same direction."""
-    passages = _spline_along(motion, 0).roots(extrapolate=False)
+    passages = spline_along(motion, 0).roots(extrapolate=False)
     return float(np.diff(passages[::2]).mean())
 
 
@@ -75,10 +75,6 @@ def natural_periods(motion: Trajectory) -> Array:
     squared = np.sort(np.linalg.eigvals(fitted.T).real)
     periods: Array = 2.0 * np.pi / np.sqrt(np.where(squared > 0.0, squared, np.nan))
     return periods
-
-
-def _spline_along(motion: Trajectory, axis: int) -> CubicHermiteSpline:
-    return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])
 
 
 def _dense_instants(motion: Trajectory, begin: float, end: float) -> Array:

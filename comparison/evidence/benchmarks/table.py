@@ -17,7 +17,6 @@ from comparison.verdicts import (
     count_verdicts,
     judge_error,
     word_counts_and_largest,
-    word_error,
     word_verdict,
 )
 
@@ -105,7 +104,7 @@ class Benchmarks:
         """Numbers of the equations and of the engine by verdict."""
         return count_verdicts(number.verdict for _, _, _, number in self.iterate_numbers())
 
-    def explained(self) -> dict[str, int]:
+    def count_explanations(self) -> dict[str, int]:
         """Return how many of the numbers that are not met each explanation has, "" for those that have none."""
         found = [number.explanation for _, _, _, number in self.iterate_numbers() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION, MODEL, "")}
@@ -120,15 +119,12 @@ class Benchmarks:
 
 def verdict_line(table: Benchmarks) -> str:
     """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
-    off = [(row, side, each) for each, row, side, number in table.iterate_numbers() if number.verdict == NOT_MET]
-    off = [each for each in off if each[0].published]
-    largest = max(off, key=lambda each: abs((each[0].error_of(each[1]) or 0.0) / each[0].published), default=None)
-    where = ""
-    if largest:
-        row, side, each = largest
-        size = word_error(row.error_of(side) or 0.0, row.published, row.unit)
-        where = f"{each.name}, {row.quantity}, {side}, {size}"
-    return word_counts_and_largest(table.counts(), where, "published number")
+    off = [
+        (row.error_of(side) or 0.0, row.published, f"{each.name}, {row.quantity}, {side}")
+        for each, row, side, number in table.iterate_numbers()
+        if number.verdict == NOT_MET
+    ]
+    return word_counts_and_largest(table.counts(), off, "published number")
 
 
 STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
@@ -149,7 +145,7 @@ def word_page(table: Benchmarks) -> str:
 
 def word_explanations(table: Benchmarks) -> list[str]:
     """Return one sentence for the counts, and one for each explanation that any number has."""
-    found = table.explained()
+    found = table.count_explanations()
     sentences = [verdict_line(table), *(f"{count} not met: {why}" for why, count in found.items() if why and count)]
     return [*sentences, f"{found['']} not met and not explained"]
 

@@ -11,10 +11,9 @@ from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_li
 from comparison.evidence.forced_ratios import forced_ratios
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
+from comparison.study.models import SMALL
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import builtin_scenes, load_scene
-
-SURFACES = "reference:amplification"  # the function that the workers ask
 
 
 @command
@@ -29,7 +28,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, STUDY_TOLERANCE)
     console = wide_console()
     claims = Claims(grid)
-    results = compute_tasks("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)
+    results = compute_tasks("claims", options, argv, claims.tasks(study), {SMALL.amplification}, console, executor)
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     print_claims(console, table)

@@ -72,7 +72,7 @@ def _compare_stiff_contacts(scene: Scene) -> Values:
     v_reg = None if scene.lubricated else V_REG
     exact = reference.amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
     coarse, fine = (
-        np.stack([_at_constant_step(short, v_reg, penetration, factor) for penetration in PENETRATIONS], axis=1)
+        np.stack([_solve_at_constant_step(short, v_reg, penetration, factor) for penetration in PENETRATIONS], axis=1)
         for factor in (1, 2)
     )
     scale = exact.mu[:, None]
@@ -80,7 +80,7 @@ def _compare_stiff_contacts(scene: Scene) -> Values:
     return fine / scale - 1.0, errors
 
 
-def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
+def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
     """mu of the translational model at FEW, (P, N), with `factor` times the steps; NaN where the engine gives up."""
     mu = np.full((len(FEW), len(scene.bodies)), np.nan)
     count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))

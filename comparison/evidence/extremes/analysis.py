@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from pydantic import ValidationError
 
 from comparison.evidence.extremes.causes import CAUSES
@@ -16,11 +15,9 @@ from comparison.evidence.extremes.matrix import CellVerdict, Extreme, Matrix, Ma
 from comparison.evidence.extremes.rows import ExtremeCase
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
-from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
-from comparison.study.study import Study
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
@@ -34,6 +31,7 @@ NUMERICS = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED
 FINE = 0.1  # share of the tolerance within which a run must know the value to confirm it, if not as well as claimed
 ROUNDING = 1e-12  # relative: two runs this close are the same
 BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
+STAGE = "extremes"  # of the tasks, on the terminal
 LIMIT = 300.0  # s of processor time for one cell with its finer runs: twice what the dearest takes on a busy machine
 SECONDS_OF_LONG_ROWS = 30.0  # in place of the column's, recorded for the equations
 FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}  # failures of processes; all else was raised
@@ -86,36 +84,53 @@ def _judge_point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float,
 
 
 def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> MatrixEntry:
-    """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
+    """Judge a value with its error estimate."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
     unconfirmed = MatrixEntry(CellVerdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
     if np.isfinite(mu).all() and np.isnan(error).all():
-        if not known:
-            return unconfirmed
-        with np.errstate(divide="ignore", invalid="ignore"):
-            difference = float(np.nan_to_num(np.abs(mu - known[0][0]) / np.abs(known[0][0]), nan=0.0).max())
-        verdict = CellVerdict.CONVERGED if difference <= tolerance else CellVerdict.LIMIT
-        return MatrixEntry(verdict, f"states no error, off by {difference:.1e}", status)
+        return _judge_without_error(status, mu, known[0][0], tolerance) if known else unconfirmed
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
         return MatrixEntry(CellVerdict.FAILED, f"{status}, but no finite number", status)
     share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
-    claimed = finite_or_none(share)
     if (error < 0.0).any() or (status == Outcome.OK and share > tolerance * (1.0 + ROUNDING)):
         reason = f"{status} with an error estimate of {share:.1e}, asked: {tolerance:g}"
-        return MatrixEntry(CellVerdict.FAILED, reason, status, claimed)
+        entry = MatrixEntry(CellVerdict.FAILED, reason, status)
+    else:
+        entry = _judge_by_finer_runs(status, mu, error, share, known, tolerance) or unconfirmed
+    return replace(entry, error=finite_or_none(share))
+
+
+def _judge_by_finer_runs(
+    status: str, mu: Array, error: Array, share: float, known: Sequence[tuple[Array, Array]], tolerance: float
+) -> MatrixEntry | None:
+    """Judge a value with a share of it as its error by finer runs, the most trusted first; None where none tells."""
     for value, estimate in known:
-        off, allowed = np.abs(mu - value), error + estimate + ROUNDING * np.abs(mu)
-        worst = int((off / allowed).argmax())
-        if off[worst] > allowed[worst]:
-            times = off[worst] / allowed[worst]
-            reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {times:.2g} times what is claimed"
-            return MatrixEntry(CellVerdict.FAILED, reason, status, claimed)
+        if reason := _word_contradiction(mu, error, value, estimate):
+            return MatrixEntry(CellVerdict.FAILED, reason, status)
         if status == Outcome.OK and (estimate <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
-            return MatrixEntry(CellVerdict.CONVERGED, f"error {share:.1e} confirmed", status, claimed)
+            return MatrixEntry(CellVerdict.CONVERGED, f"error {share:.1e} confirmed", status)
     if status == Outcome.TOLERANCE_NOT_MET:
-        return MatrixEntry(CellVerdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
-    return replace(unconfirmed, error=claimed)
+        return MatrixEntry(CellVerdict.LIMIT, f"{status}: {share:.1e}", status)
+    return None
+
+
+def _word_contradiction(mu: Array, error: Array, value: Array, estimate: Array) -> str:
+    """Return by how much a finer run contradicts a value and its error, "" where it does not."""
+    off, allowed = np.abs(mu - value), error + estimate + ROUNDING * np.abs(mu)
+    worst = int((off / allowed).argmax())
+    times = off[worst] / allowed[worst]
+    if not off[worst] > allowed[worst]:
+        return ""
+    return f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {times:.2g} times what is claimed"
+
+
+def _judge_without_error(status: str, mu: Array, value: Array, tolerance: float) -> MatrixEntry:
+    """Judge a value that states no error, by whether it is as close to that of a finer run as was asked."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        difference = float(np.nan_to_num(np.abs(mu - value) / np.abs(value), nan=0.0).max())
+    verdict = CellVerdict.CONVERGED if difference <= tolerance else CellVerdict.LIMIT
+    return MatrixEntry(verdict, f"states no error, off by {difference:.1e}", status)
 
 
 @dataclass(frozen=True)
@@ -192,19 +207,18 @@ def read_scene(stated: Mapping[str, Any]) -> Scene:
 
 
 @dataclass(frozen=True)
-class Extremes(Analysis[Matrix]):
+class Extremes:
     """Every model at every extreme, in scenes of their own; limit: most processor time of one cell, s, rounded up."""
 
-    key, stage = "extremes", "extremes"
     rows: Sequence[ExtremeCase]
     columns: Sequence[ModelColumn] = COLUMNS
     limit: float = LIMIT
 
-    def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
+    def tasks(self) -> list[Task]:
         """One task for each cell, row by row."""
         return [self._task(cell) for cell in list_cells(self.rows, self.columns)]
 
-    def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Matrix:
+    def collect(self, results: TaskResults) -> Matrix:
         """The matrix, without what the command knows of the run."""
         entries: dict[tuple[str, str], dict[str, MatrixEntry]] = {}
         for cell in list_cells(self.rows, self.columns):
@@ -220,7 +234,7 @@ class Extremes(Analysis[Matrix]):
         functions = {row.amplification or column.amplification, *(function for function, _, _ in column.finer)}
         seconds, compiled = column.seconds if row.quick else SECONDS_OF_LONG_ROWS, EQUATIONS in functions
         group = column.key if column.like else ""
-        return Task(solve_cell, cell, self.stage, seconds, None, compiled, self.limit, group)
+        return Task(solve_cell, cell, STAGE, seconds, None, compiled, self.limit, group)
 
 
 def _entry_of_failure(cell: Cell, failed: TaskResult) -> MatrixEntry:

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from comparison.study.models import Model
+from comparison.study.models import EXACT, TRANSLATIONAL, Model
 from reference.problem.readings import DEFAULT_V_REG
 
-EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
+EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from rich.console import Console
 from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
-from comparison.evidence.extremes.analysis import LIMIT, Extremes, list_cells, select_quick
+from comparison.evidence.extremes.analysis import LIMIT, STAGE, Extremes, list_cells, select_quick
 from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED, user_column
 from comparison.evidence.extremes.matrix import FILE, STORED, CellVerdict, Matrix
 from comparison.evidence.extremes.rows import extreme_cases
@@ -72,12 +72,12 @@ def judge_matrix(
     """The matrix with all that is known of its run; stored cells are not judged again."""
     begin, tasks = time.monotonic(), extremes.tasks()
     results = compute_tasks("extremes", options, words, tasks, MODELS, console, executor)
-    matrix = extremes.collect(None, None, results)
+    matrix = extremes.collect(results)
     totals = [entry.total or 0.0 for row in matrix.rows for entry in row.entries.values()]
     run = {
         **run_facts("extremes", options, words, begin),
         "cpu_seconds": round(sum(totals), 1),
-        "stored_before": results.parts[extremes.stage].stored,
+        "stored_before": results.parts[STAGE].stored,
         "limit": extremes.limit,
         "reduced": len([task for task in tasks if not task.group]) < len(list_cells(list(extreme_cases()))),
     }

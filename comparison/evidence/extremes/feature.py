@@ -1,15 +1,10 @@
 """Stability at the extremes: in the report."""
 
-from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, Matrix, describe_entry
-from comparison.report.feature import Feature, ResultField
+from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, describe_entry
+from comparison.report.feature import Feature, stored_field
 from comparison.report.section import Section
 
-FOUND = ResultField(
-    "extremes",
-    Matrix,
-    STORED.word_field("every model at the extremes of every quantity"),
-    load=STORED.load,
-)
+FOUND = stored_field(STORED, "extremes", "every model at the extremes of every quantity")
 FEATURE = Feature(
     "extremes",
     (FOUND,),

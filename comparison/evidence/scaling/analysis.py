@@ -49,13 +49,13 @@ def scale_scene(scene: Scene, s: float) -> Scene:
 def scene_trends(task: Arguments) -> list[Trend]:
     """Both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
-    answers = [_both(scale_scene(scene, s), supremum, s) for s in SCALES]
+    answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
     halving = small[:-1] / small[1:] - 1.0
     halving_error = np.hypot(small_error[:-1], small_error[1:]) / small[1:]
-    name = _peak(scene, supremum)
+    name = _name_peak(scene, supremum)
     return [
         fit_trend(
             scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, error[..., body].T, 2.0
@@ -65,7 +65,7 @@ def scene_trends(task: Arguments) -> list[Trend]:
     ]
 
 
-def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
+def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     """mu and error, (2, P, N): small, exact."""
     cutoff = None if supremum else DEFAULT_V_C * s  # it scales with the motion
     answers = [
@@ -77,12 +77,12 @@ def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, supremum = task
-    what = f"{STEP}, {_peak(scene, supremum)}"
+    what = f"{STEP}, {_name_peak(scene, supremum)}"
     bodies = range(1, len(scene.bodies) + 1)
     return [fit_trend(scene.name, body, what, SCALES, NONE, NONE, 2.0, failed.reason) for body in bodies]
 
 
-def _peak(scene: Scene, supremum: bool) -> str:
+def _name_peak(scene: Scene, supremum: bool) -> str:
     return "peak" if not has_dry_friction(scene) else "supremum" if supremum else "resolved peak"
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from comparison.evidence.tradeoff import trade
 from comparison.evidence.tradeoff.settings import (
@@ -19,16 +18,15 @@ from comparison.evidence.tradeoff.settings import (
 )
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
-from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model
-from comparison.study.study import Study
 from comparison.study.user_models import engine_of
 from comparison.wording import exception_line
 from reference.problem import Amplification, Scene
 
+STAGE = "trade-off"  # of the tasks, on the terminal
 SEED = 20  # seed of the sample of phase pairs: the same in every run
 SHORT = 0.2  # s of motion, to warm up
 CHUNK = 3.0  # s of work in one task, about
@@ -107,21 +105,21 @@ def join_results(parts: Sequence[SettingResult]) -> SettingResult:
 
 
 @dataclass(frozen=True)
-class TradeOff(Analysis[list[trade.MeasuredTrade]]):
-    """Error against compute time of every setting in every scene with phases; quick: fewer points and values."""
+class TradeOff:
+    """Error against compute time of every setting in every scene; quick: fewer points and values."""
 
-    key, stage = "tradeoff", "trade-off"
+    scenes: Sequence[Scene]
     quick: bool = False
     supplied: tuple[Model, ...] = ()
 
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+    def tasks(self) -> list[Task]:
         """Every function of every scene, its sample in parts of about CHUNK seconds."""
-        tasks = [task for scene in study.phased for parts in self._measurements(scene) for task in parts]
+        tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
         return list({task.key: task for task in tasks}.values())  # one function may serve two settings
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[trade.MeasuredTrade]:
+    def collect(self, results: TaskResults) -> list[trade.MeasuredTrade]:
         """One diagram for each scene, without what the command knows of the run."""
-        return [self._trade(scene, results) for scene in study.phased]
+        return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
@@ -146,7 +144,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
         more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
         return [
-            Task(measure_setting, Measurement(scene, function, chunk), self.stage, each * len(chunk), **more)
+            Task(measure_setting, Measurement(scene, function, chunk), STAGE, each * len(chunk), **more)
             for chunk in chunks
         ]
 

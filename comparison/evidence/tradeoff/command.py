@@ -18,15 +18,15 @@ from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.tradeoff import growth
-from comparison.evidence.tradeoff.analysis import TradeOff
+from comparison.evidence.tradeoff.analysis import STAGE, TradeOff
 from comparison.evidence.tradeoff.growth import CostSeries, Growth, MeasuredGrowth, measure_by_workers
 from comparison.evidence.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load_trades
-from comparison.runner.attempts import attempt
+from comparison.runner.attempts import publish_made
 from comparison.runner.output import netcdf_content, publish_files, refuse_foreign_files, resolve_destination
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
-from comparison.study.study import STUDY_TOLERANCE, Study, refuse_same_names
+from comparison.study.study import refuse_same_names
 from comparison.surfaces.figures.file_names import figure_file
 from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
@@ -70,9 +70,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
-            name = _values_file(each.trade.scene)
-            values = attempt(name, partial(netcdf_content, each.values))
-            publish_files(out, {} if values is None else {name: values}, COMMAND)
+            publish_made(out, _values_file(each.trade.scene), partial(netcdf_content, each.values), COMMAND)
         return files
 
     def show() -> None:
@@ -87,11 +85,10 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def _measure_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
-    begin, study = time.monotonic(), Study((scene,), 1, STUDY_TOLERANCE)
-    tasks = Growth().tasks(study)
+    begin, tasks = time.monotonic(), Growth(scene).tasks()
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
-    series = [*Growth().collect(study, None, results), measure_by_workers(scene, process_pool)]
+    series = [*Growth(scene).collect(results), measure_by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
     write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
@@ -139,20 +136,20 @@ def measure_trades(
 ) -> list[MeasuredTrade]:
     """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
     supplied = user_models(options.model, options.model_limit, options.scheduler)
-    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, STUDY_TOLERANCE)
-    tasks, width = tradeoff.tasks(study), number_of_jobs(options)
+    tradeoff = TradeOff(scenes, options.quick, supplied)
+    tasks, width = tradeoff.tasks(), number_of_jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width
     for scene in scenes:
         console.print(f"{scene.title} ({scene.name})")
     console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
     begin = time.monotonic()
     results = compute_tasks("tradeoff", options, words, tasks, MODELS, console, executor)
-    more = {"quick": options.quick, "stored_before": results.parts[tradeoff.stage].stored}
+    more = {"quick": options.quick, "stored_before": results.parts[STAGE].stored}
     run = run_facts("tradeoff", options, words, begin) | more
     attributes = {"command": run["command"], **run["provenance"]}
     return [
         MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))
-        for measured in tradeoff.collect(study, None, results)
+        for measured in tradeoff.collect(results)
     ]
 
 
@@ -168,7 +165,7 @@ def print_trade(console: Console, trade: Trade) -> None:
             f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
         )
         table = new_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
-        for entry in sorted(trade.of(question.key), key=lambda setting: setting.seconds):
+        for entry in sorted(trade.entries_of(question.key), key=lambda setting: setting.seconds):
             if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
                 value = f"{entry.value:.0e} {entry.unit}".strip()

@@ -5,11 +5,10 @@ from itertools import groupby
 from typing import Any
 
 from comparison.evidence.tradeoff import growth, trade
-from comparison.evidence.tradeoff.growth import CostSeries, MeasuredGrowth
+from comparison.evidence.tradeoff.growth import CostSeries
 from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
-from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import MAX_CURVES, Panel
+from comparison.report.feature import Feature, ResultField, stored_field
+from comparison.report.panels import MAX_CURVES, Panel, make_panel
 from comparison.report.section import Report, Section
 from comparison.wording import scientific
 
@@ -34,7 +33,7 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     for question in trade.questions:
         parts = []
         for target in TARGETS:
-            listed = [entry for entry in trade.of(question.key) if entry.complete and not entry.model_error]
+            listed = [entry for entry in trade.entries_of(question.key) if entry.complete and not entry.model_error]
             able = [entry for entry in listed if all(size is not None and size <= target for size in entry.most)]
             estimated = [entry for entry in able if entry.controlled]
             if not able:
@@ -105,12 +104,7 @@ TRADES = ResultField(
     trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load_trades,
 )
-GROWTH = ResultField(
-    "growth",
-    MeasuredGrowth,
-    growth.STORED.word_field("how the cost grows with bodies, duration, phase pairs and workers"),
-    load=growth.STORED.load,
-)
+GROWTH = stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:

@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
-import xarray as xr
 
 from comparison.evidence.tradeoff.analysis import Measurement, measure_setting, sample_phases, without_value
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import require, require_size, result
-from comparison.runner.analysis import Analysis
 from comparison.runner.processes import count_cores
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
-from comparison.study.study import STUDY_TOLERANCE, Study
+from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import Scene
 
 CALLS, PAIRS = 16, 64  # calls and phase pairs of the equations, shared by the workers
@@ -125,40 +123,40 @@ def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float,
     return float(slope), float(np.sqrt(max(covariance[0, 0], 0.0)))
 
 
-class Growth(Analysis[list[CostSeries]]):
-    """The series of the first scene with phases."""
+@dataclass(frozen=True)
+class Growth:
+    """The series of a scene with phases."""
 
-    key, stage = "growth", "growth"
+    scene: Scene
 
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+    def tasks(self) -> list[Task]:
         """One task for every quantity, model and value."""
-        return [task for _, _, tasks in self._series(study) for task in tasks]
+        return [task for _, _, tasks in self._series() for task in tasks]
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[CostSeries]:
+    def collect(self, results: TaskResults) -> list[CostSeries]:
         """In the order of quantities and models."""
         collected = []
-        for quantity, model, tasks in self._series(study):
+        for quantity, model, tasks in self._series():
             answers = [results.value(task, without_value) for task in tasks]
             costs = [each.seconds / (1 if quantity.name == PAIRED else len(each.mu)) for each in answers]
             seconds = [cost if np.isfinite(each.mu).all() else float("nan") for cost, each in zip(costs, answers)]
             collected.append(series_with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
-    def _series(self, study: Study) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
-        scene = study.phased[0]
+    def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
         return [
-            (quantity, model, [self._task(quantity, model, scene, value) for value in quantity.values])
+            (quantity, model, [self._task(quantity, model, value) for value in quantity.values])
             for quantity in QUANTITIES
             for model in quantity.models
-            if model.applies(scene)
+            if model.applies(self.scene)
         ]
 
-    def _task(self, quantity: GrowingQuantity, model: Model, scene: Scene, value: float) -> Task:
+    def _task(self, quantity: GrowingQuantity, model: Model, value: float) -> Task:
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(STUDY_TOLERANCE), **work}
         phases = sample_phases(int(value) if quantity.name == PAIRED else POINTS[model.side])
-        measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), phases)
-        return Task(measure_setting, measurement, self.stage, about=scene, timeout=LIMIT)
+        measurement = Measurement(quantity.scene(self.scene, value), (model.amplification, settings), phases)
+        return Task(measure_setting, measurement, "growth", about=self.scene, timeout=LIMIT)
 
 
 def measure_by_workers(scene: Scene, pool: Callable[[int], Executor]) -> CostSeries:

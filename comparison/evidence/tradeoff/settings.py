@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from comparison.evidence.tradeoff.trade import StatedSetting
-from comparison.study.models import V_REG_TEXT, Model, has_dry_friction, has_spatial_data
+from comparison.study.models import EXACT, TRANSLATIONAL, V_REG_TEXT, Model, has_dry_friction, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
 
-REFERENCE, ENGINE = "reference:amplification", "multibody:amplification"
+REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
 RUN, LEVEL, CONSTANT = (
     f"comparison.evidence.tradeoff.single_runs:{name}" for name in ("reference_run", "engine_run", "constant_step_run")
 )

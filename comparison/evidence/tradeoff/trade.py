@@ -92,14 +92,14 @@ class Trade:
                 require_size(what, values, self.bodies)
             require(each.question in keys, f"question {each.question[:40]!r} of an entry is none of the questions")
 
-    def of(self, question: str) -> list[MeasuredSetting]:
+    def entries_of(self, question: str) -> list[MeasuredSetting]:
         """The entries of one question, in the order in which they were listed."""
         return [entry for entry in self.entries if entry.question == question]
 
     def methods(self, question: str) -> dict[str, list[MeasuredSetting]]:
         """The curves of one question, from the cheapest value to the dearest."""
         curves: dict[str, list[MeasuredSetting]] = {}
-        for entry in self.of(question):
+        for entry in self.entries_of(question):
             curves.setdefault(entry.method, []).append(entry)
         return curves
 

@@ -35,7 +35,7 @@ class Cycles(NamedTuple):
         return about
 
 
-def fold(run: Shaken) -> Cycles:
+def fold_run(run: Shaken) -> Cycles:
     """The whole cycles of a run, by the fundamental of the base motion."""
     time = run.time - run.time[0]
     spectrum = np.abs(np.fft.rfft(run.base - run.base.mean()))

@@ -5,11 +5,9 @@ from typing import Any
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
-from comparison.evidence.validation.statements import verdict_line
-from comparison.evidence.validation.table import STORED, Validation
-from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import make_panel
-from comparison.report.plots import Panel
+from comparison.evidence.validation.table import STORED, Validation, verdict_line
+from comparison.report.feature import Feature, stored_field
+from comparison.report.panels import Panel, make_panel
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES, MEANING
 
@@ -37,12 +35,7 @@ def experiment_panels(table: Validation) -> list[Panel]:
     return drawn
 
 
-FOUND = ResultField(
-    "validation",
-    Validation,
-    STORED.word_field("measured motions, compared with what both sides compute"),
-    load=STORED.load,
-)
+FOUND = stored_field(STORED, "validation", "measured motions, compared with what both sides compute")
 FEATURE = Feature(
     "validation",
     (FOUND,),

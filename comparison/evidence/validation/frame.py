@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
-from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold, read_cycle
+from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold_run, read_cycle
 from comparison.evidence.validation.files import Shaken
 from comparison.evidence.validation.table import (
     COVERAGE,
@@ -31,6 +31,7 @@ from comparison.evidence.validation.table import (
     DEGREES,
     INPUT,
     LAW,
+    LOADED,
     OPEN,
     SIDES,
     ComputedValues,
@@ -46,7 +47,6 @@ CYCLES = 12  # computed, of which the last is read
 REGULARIZATION = 1e-4  # m/s, of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
 SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
-LOADED = ", friction of the load"  # behind the name of a run
 STEP = 0.005  # step of ratio and scale in difference quotients
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", CYCLE, DEGREES, DEGREES)
@@ -105,7 +105,7 @@ def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
 def last_cycle(motion: Trajectory, frequency: float) -> Array:
     """The last computed cycle, (SAMPLES,), mm about its mean."""
     grid = (CYCLES - 1 + np.arange(SAMPLES) / SAMPLES) / frequency
-    place = 1e3 * table.spline(motion)(grid)
+    place = 1e3 * spline_along(motion)(grid)
     about: Array = place - place.mean()
     return about
 
@@ -182,7 +182,7 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedR
 
 def compare_frame(runs: Sequence[Shaken]) -> Found:
     """Compare all runs of a folder: by one ratio, and by friction of the load where there are runs to predict."""
-    folded = [fold(run) for run in runs]
+    folded = [fold_run(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
     setup, varied = fitted.setup, fitted.variations()

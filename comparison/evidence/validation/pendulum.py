@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import ellipk
 
-from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import DECAY, LARGE, Swing, wrong_file
 from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, ComputedValues, Data, Found
@@ -29,7 +29,7 @@ WINDOW, FEWEST = 0.1, 4  # rad, of amplitudes about each of them; half swings in
 def compare_decay(swing: Swing) -> Found:
     """Turning points and half periods of the swing to rest."""
     step = float(np.min(np.diff(np.unique(swing.angle))))
-    instants, turns = _turns(swing, STEPS * step)
+    instants, turns = _find_turns(swing, STEPS * step)
     numbers = np.arange(SHOWN[-1] + 1)
     if len(turns) < len(numbers):
         raise wrong_file(DECAY, f"Theta1 must have {len(numbers)} turning points, not {len(turns)}")
@@ -42,14 +42,14 @@ def compare_decay(swing: Swing) -> Found:
     scatter = COVERAGE * float(np.sqrt(residuals @ residuals / (COULOMB - 2) * inverse[1, 1]))
     periods, reading = np.diff(instants)[: 2 * HALF], COVERAGE * step / np.sqrt(12.0)
     nominal = np.array([periods[:HALF].mean(), loss, start])
-    uncertain = np.array([_of_mean(periods[:HALF]), scatter, reading])
+    uncertain = np.array([_uncertainty_of_mean(periods[:HALF]), scatter, reading])
     sizes = 1e3 * (along - middle * sides)
     data = Data(
         [*(f"turning point {number}" for number in SHOWN), f"half period of swings {HALF + 1} to {2 * HALF}"],
         [*["mrad"] * len(SHOWN), "ms"],
         [*("calibrated" if number <= COULOMB else "predicted" for number in SHOWN), "predicted"],
         np.array([*sizes[list(SHOWN)], 1e3 * periods[HALF:].mean()]),
-        1e3 * np.array([*[reading] * len(SHOWN), _of_mean(periods[HALF:])]),
+        1e3 * np.array([*[reading] * len(SHOWN), _uncertainty_of_mean(periods[HALF:])]),
     )
 
     def read(motion: Trajectory) -> Array:
@@ -96,7 +96,7 @@ def compare_large(swing: Swing) -> Found:
 
     def compute(side: str, half: float, equations: str = "exact") -> ComputedValues:
         motions = [_move_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
-        parts = [table.values_of_motion(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
+        parts = [table.values_of_motion(each, _read_half_period, 1) for each in motions]
         return ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in SIDES}
@@ -137,7 +137,7 @@ def _move_half_swings(
     return table.motion_of(side, made, (0.0, 0.0), place, REGULARIZATION, TOLERANCE, equations)
 
 
-def _turns(swing: Swing, back: float) -> tuple[Array, Array]:
+def _find_turns(swing: Swing, back: float) -> tuple[Array, Array]:
     """Instants, in the middle of the encoder's step, and angles of turns by more than `back`; at last the rest."""
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
@@ -156,7 +156,7 @@ def _turns(swing: Swing, back: float) -> tuple[Array, Array]:
     return instants, angles
 
 
-def _of_mean(values: Array) -> float:
+def _uncertainty_of_mean(values: Array) -> float:
     """Uncertainty of a mean, from the scatter."""
     return COVERAGE * float(values.std(ddof=1)) / float(np.sqrt(len(values)))
 
@@ -173,19 +173,24 @@ def _half_period_near(sizes: Array, periods: Array, angle: float) -> tuple[float
     """The half period at an amplitude and its uncertainty: of a line in the squares of those about it."""
     near = np.abs(sizes - angle) < WINDOW
     line = np.polyfit(sizes[near] ** 2 - angle**2, periods[near], 1)
-    return float(line[1]), _of_mean(periods[near] - np.polyval(line, sizes[near] ** 2 - angle**2))
+    return float(line[1]), _uncertainty_of_mean(periods[near] - np.polyval(line, sizes[near] ** 2 - angle**2))
 
 
-def _zeros(motion: Trajectory) -> Array:
-    zeros: Array = table.spline(motion).roots(extrapolate=False)
+def _find_zeros(motion: Trajectory) -> Array:
+    zeros: Array = spline_along(motion).roots(extrapolate=False)
     return zeros
+
+
+def _read_half_period(motion: Trajectory) -> Array:
+    """The time between the first two passages, ms."""
+    return 1e3 * np.diff(_find_zeros(motion))[:1]
 
 
 def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
     """Instants and angles, towards the side of each turn, of the turning points from the first on; at last the rest."""
-    place, end = table.spline(motion), float(motion.time[-1])
+    place, end = spline_along(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
-    for begin, stop in pairwise([0.0, *_zeros(motion), end]):
+    for begin, stop in pairwise([0.0, *_find_zeros(motion), end]):
         dense = np.linspace(begin, stop, PARTS)
         along = place(dense) * (-1.0) ** len(found)
         found.append((dense[np.argmax(along)], along.max()))

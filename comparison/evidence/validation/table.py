@@ -7,21 +7,32 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 import multibody
 import reference
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import Array, require, require_size, result
-from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge_error, word_verdict
+from comparison.verdicts import (
+    MET,
+    NOT_COMPARED,
+    NOT_MET,
+    Verdict,
+    count_verdicts,
+    judge_error,
+    word_counts_and_largest,
+    word_verdict,
+)
 from reference.measures.demand_reader import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE = 2.0  # standard deviations of an expanded uncertainty
 LAW, INPUT, OPEN = "the friction law", "an input", "not explained"  # begin the explanation of what is not met
+LOADED = ", friction of the load"  # behind the name of a run of the frame
 DEGREES, CYCLE = "deg", "% of a cycle"
+BOTH = EQUATIONS, ENGINE
+ORDER: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # from the best to the worst
 ABSOLUTE = (DEGREES, CYCLE)  # units of which a share says nothing
 
 
@@ -130,6 +141,26 @@ class Validation:
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
 
 
+def worse_side(each: MeasuredQuantity) -> str:
+    """Return the side with the worse verdict on a quantity, of equal ones that with the larger error."""
+    return max(BOTH, key=lambda side: (ORDER.index(each.sides[side].verdict), abs(each.sides[side].error or 0.0)))
+
+
+def verdict_on(each: MeasuredQuantity) -> Verdict:
+    """Return the worse verdict of both sides on a quantity: met where both meet it."""
+    return each.sides[worse_side(each)].verdict
+
+
+def verdict_line(table: Validation) -> str:
+    """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
+    off = [
+        (each.sides[worse_side(each)].error or 0.0, each.base or 0.0, f"{each.experiment}, {each.name}")
+        for each in table.quantities
+        if verdict_on(each) == NOT_MET
+    ]
+    return word_counts_and_largest(table.counts(), off)
+
+
 def load_record() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
@@ -194,11 +225,6 @@ def values_of_motion(motion: Trajectory, read: Callable[[Trajectory], Array], co
     values, others = read(motion), [read(each) for each in motion.accuracy.coarser]
     errors = [motion.accuracy.error_of(value, rest) for value, *rest in zip(values, *others)]
     return ComputedValues(values, np.array(errors))
-
-
-def spline(motion: Trajectory) -> CubicHermiteSpline:
-    """Position of the platform along x, m."""
-    return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
 
 
 def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:

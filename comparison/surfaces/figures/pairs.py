@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -14,7 +13,6 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.result_types import Array
 from comparison.study.models import Model, Pair, label_of
-from comparison.surfaces.figures.file_names import with_ending
 from comparison.surfaces.model_difference import ModelDifference, difference_of
 from comparison.surfaces.surfaces import stride_of, values_of
 from comparison.wording import mathtext
@@ -24,8 +22,7 @@ from reference.support.drawing import escape_for_matplotlib
 HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"
 TURN = (0.0, 2.0 * np.pi)
-Ticks = tuple[Sequence[float], Sequence[str]]
-QUARTER_TICKS: Ticks = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
+QUARTER_TICKS = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
 PNG = {"compress_level": 3}  # compression of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
 
 
@@ -50,18 +47,6 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
     figure.savefig(path, pil_kwargs=PNG)
 
 
-def save_figure(figure: Figure, path: Path) -> None:
-    """Write the figure to `path`, PNG, and beside it as PDF."""
-    figure.savefig(path)
-    save_pdf(figure, path)
-
-
-def save_pdf(figure: Figure, path: Path) -> None:
-    """Write the figure as PDF beside `path`: the same figure gives the same file, with fonts as journals take them."""
-    with mpl.rc_context({"pdf.fonttype": 42}):
-        figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
-
-
 def close_period(phase: Array, mu: Array) -> tuple[Array, Array]:
     """The phases up to 2 pi and the surface on them: its first row and column repeated where the period closes."""
     return np.append(phase, 2.0 * np.pi), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
@@ -74,14 +59,14 @@ def limits_of(heights: Sequence[Array]) -> tuple[float, float]:
     return (low, high) if low < high else (0.9 * low - 0.1, 1.1 * high + 0.1)
 
 
-def draw_map(axes: Axes, phase: Array, values: Array, ticks: Ticks = QUARTER_TICKS, **style: Any) -> QuadMesh:
+def draw_map(axes: Axes, phase: Array, values: Array, **style: Any) -> QuadMesh:
     """Values at the phases as colors, alpha1 to the right and alpha2 upward; gray where there is none."""
     phase, height = close_period(phase, values)
     axes.set_facecolor("0.75")
     image = axes.pcolormesh(phase, phase, height.T, shading="nearest", **style)
     axes.set(xlim=TURN, ylim=TURN, aspect="equal")
-    axes.set_xticks(*ticks)
-    axes.set_yticks(*ticks)
+    axes.set_xticks(*QUARTER_TICKS)
+    axes.set_yticks(*QUARTER_TICKS)
     return image
 
 

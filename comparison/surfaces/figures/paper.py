@@ -12,7 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.study.models import label_of
 from comparison.study.study import Study
-from comparison.surfaces.figures.pairs import PNG, draw_in_space, limits_of, save_pdf, surface_to_two_pi
+from comparison.surfaces.figures.pairs import PNG, draw_in_space, limits_of, surface_to_two_pi
 from comparison.wording import mathtext
 from reference.problem import Scene
 
@@ -20,6 +20,7 @@ PRINT: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 8.0,
+    "pdf.fonttype": 42,  # as journals take it
 }  # style of matplotlib for figures in journals
 WIDTH = 6.9  # inches, two columns of a page
 RESOLUTION = 300  # dots per inch
@@ -45,7 +46,8 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 draw_surface(axes, phase, height, limits, rf"$\mu_{{{row + 1}}}$")
                 label = mathtext(label_of(model, scene))
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {label}", y=1.0, fontsize=9.0)
-        save_pdf(figure, path)
+        # the same figure gives the same file
+        figure.savefig(path.with_name(f"{path.name.removesuffix('.png')}.pdf"), metadata={"CreationDate": None})
         figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
 
 

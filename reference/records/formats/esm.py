@@ -8,7 +8,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from reference.records.directions import parse_direction
 from reference.records.numerals import parse_number, read_values, unit_factor
 from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import brief
@@ -35,6 +34,5 @@ def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
     if not (count.isascii() and count.isdecimal() and len(count) < 10):
         raise RecordError(f"NDATA: {brief(count)}: must be a whole number")
     values, notes = read_values(lines[size:], size + 1, int(count), f"NDATA: {count}")
-    direction = parse_direction(stated.get("STREAM", "").strip())
-    axis, names = (direction.axis, {direction.axis: direction.word}) if direction and direction.axis else ("", {})
-    return evenly_spaced(FORMAT, parse_number(1, step), factor * np.array(values), axis, names=names, notes=notes)
+    word = stated.get("STREAM", "").strip()
+    return evenly_spaced(FORMAT, parse_number(1, step), factor * np.array(values), word, notes)

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from reference.records.directions import parse_direction
+from reference.records.directions import axis_of_word
 from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import brief
@@ -39,8 +39,8 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
             raise RecordError(f"line {at}: {len(cells)} values: the header names {len(words)} columns")
     table = np.array([[parse_number(at, cell.strip()) for cell in cells[: len(words)]] for at, cells in rows])
     table = table.reshape(-1, len(words))
-    columns = {_axis_of_direction(word): factor * table[:, at] for at, word in enumerate(words)}
-    names = {_axis_of_direction(word): word for word in words}
+    columns = {axis_of_word(word): factor * table[:, at] for at, word in enumerate(words)}
+    names = {axis_of_word(word): word for word in words}
     step = 1.0 / sampling
     return RecordSamples(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
 
@@ -49,12 +49,6 @@ def _find_header(lines: Sequence[str]) -> tuple[int, list[str]]:
     """Return the line of the header that names directions alone, from 0, and its words. Raises RecordError."""
     for at, line in enumerate(lines[:MAX_HEADER_LINES]):
         words = [word.strip() for word in line.split(",")]
-        if len(words) > 1 and all(map(_axis_of_direction, words)):
+        if len(words) > 1 and all(map(axis_of_word, words)):
             return at, words
     raise RecordError("the header must have a line 'NS,EW,UD'")
-
-
-def _axis_of_direction(word: str) -> str:
-    """The axis of a direction such as NS; "" of any other word."""
-    direction = parse_direction(word)
-    return "" if direction is None else direction.axis

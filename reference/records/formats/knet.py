@@ -8,7 +8,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from reference.records.directions import parse_direction
 from reference.records.numerals import parse_number, read_values
 from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 
@@ -43,6 +42,4 @@ def read_knet(text: str, name: str = "file.EW") -> RecordSamples:
     if lasting is not None and abs(count - lasting * rate) > rate:
         raise RecordError(f"{count} values: Duration Time(s) and Sampling Freq(Hz) say {lasting * rate:g}")
     word = NUMBERED.get(found[2][1], found[2][1]) if found[2] else ""
-    direction = parse_direction(word)
-    axis, names = (direction.axis, {direction.axis: word}) if direction is not None and direction.axis else ("", {})
-    return evenly_spaced(FORMAT, 1.0 / rate, 0.01 * full / counts * np.array(values), axis, names=names)
+    return evenly_spaced(FORMAT, 1.0 / rate, 0.01 * full / counts * np.array(values), word)

@@ -7,8 +7,8 @@ Without these a file is refused, and the line to write is proposed with what its
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,14 +72,14 @@ def read_plain_text(
     return _read_stated(text, name, spacing, factor, skip, column)
 
 
-@lru_cache(maxsize=64)  # of stated values that are checked: what a scene file may hold in their place has no hash
+@lru_cache(maxsize=64)  # behind the checks of what is stated: what a scene file may hold in its place has no hash
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
     """Return the values of a text; spacing: s, factor: of its unit. Raises RecordError."""
-    lines = text.splitlines()
+    lines, propose = text.splitlines(), partial(propose_line, text, name)
     if skip >= len(lines):
-        raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose_line(text, name)}")
-    rows, notes = _read_rows(lines, skip, text, name)
-    values = _column_values(rows, column, text, name, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])))
+        raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose()}")
+    rows, notes = _read_rows(lines, skip, propose)
+    values = _column_values(rows, column, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])), propose)
     _check_count(lines[:skip], len(values))
     seen = _even_step([row for _, row in rows]) if column is not None and column > 1 else None
     if seen is not None and abs(seen - spacing) > EVEN * spacing:
@@ -88,7 +88,7 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
 
 
 class Proposal(NamedTuple):
-    """What to state of a plain text: step, unit, skip, columns from 1, and which of them the file does not say."""
+    """Options to state of a plain text: step, unit, skip, columns from 1, and which of them the file does not say."""
 
     step: float
     unit: str
@@ -183,7 +183,7 @@ def _read_step(header: str) -> float | None:
 
 
 def _read_rows(
-    lines: Sequence[str], skip: int, text: str, name: str
+    lines: Sequence[str], skip: int, propose: Callable[[], str]
 ) -> tuple[list[tuple[int, list[float]]], list[str]]:
     """The numbers of every line behind the header with its number, and notes. Raises RecordError."""
     data = [(number, line) for number, line in enumerate(lines[skip:], skip + 1) if line.strip()]
@@ -196,7 +196,7 @@ def _read_rows(
         values = parse_plain_lines([plain])
         if values is None:
             if number == skip + 1 and not holds_numbers(line):
-                raise RecordError(f"line {number}: {brief(line.strip())}: must be numbers: {propose_line(text, name)}")
+                raise RecordError(f"line {number}: {brief(line.strip())}: must be numbers: {propose()}")
             values = parse_fields(number, plain)
             glued = glued or len(values) > len(plain.split())
         rows.append((number, values))
@@ -205,7 +205,7 @@ def _read_rows(
 
 
 def _column_values(
-    rows: Sequence[tuple[int, list[float]]], column: int | None, text: str, name: str, counted: bool
+    rows: Sequence[tuple[int, list[float]]], column: int | None, counted: bool, propose: Callable[[], str]
 ) -> list[float]:
     """The values of a column, or all in their order where nothing speaks against it. Raises RecordError."""
     if column:
@@ -217,15 +217,15 @@ def _column_values(
     timed = len(set(widths)) == 1 and widths[0] > 1 and _even_step([row for _, row in rows]) is not None
     if column is None and timed:
         rule = "the first of them rises evenly as a time does: state the column"
-        raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose_line(text, name)}")
+        raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose()}")
     if column is None and not counted and len(rows) > 1 and len(set(widths)) == 1 and 1 < widths[0] <= MOST_COLUMNS:
         rule = f"{widths[0]} values a line: state column, from 1; column = 0 takes all of them in their order"
-        raise RecordError(f"line {rows[0][0]}: {rule}: {propose_line(text, name)}")
+        raise RecordError(f"line {rows[0][0]}: {rule}: {propose()}")
     other = widths[min(1, len(widths) - 1)] if widths else 0
     for (number, _), width in zip(rows[:-1], widths):
         if width != other:
             rule = f"{width} values, {other} in other lines: a header, or a broken line"
-            raise RecordError(f"line {number}: {rule}: {propose_line(text, name)}")
+            raise RecordError(f"line {number}: {rule}: {propose()}")
     return [value for _, row in rows for value in row]
 
 

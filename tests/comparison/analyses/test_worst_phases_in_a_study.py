@@ -15,6 +15,7 @@ from comparison.runner.task import result_without_value
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
 from comparison.study.study import Study
+from comparison.surfaces.distribution import GridMaximum
 from reference.phase_maximum import GRID
 from reference.problem import Amplification, Outcome, Scene
 
@@ -75,7 +76,7 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.full(len(phases), 0.5))
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = analysis._compute_engine_nearby(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
-    assert beside.evaluations == analysis.ENGINE_POINTS
+    assert beside.evaluations == 6, "the middle, the corners, and where it is predicted to be largest"
     assert (beside.value, beside.at_start, beside.start_error) == pytest.approx((2.00001, 1.99998, 2e-9), rel=2e-6)
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
 
@@ -162,7 +163,8 @@ def test_the_spatial_engine_has_the_larger_of_its_grid_and_the_worst_phases(
 
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: steady)
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.2, 1e-6, (1.0, 2.0), "smooth")
-    found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, grid, 0.03, (0.5, 0.25)), 1e-3)
+    largest = GridMaximum("spatial", 1, grid, 0.03, (0.5, 0.25))
+    found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, largest), 1e-3)
     assert (found.model, found.kind, found.value) == ("spatial", kind, pytest.approx(value))
     assert found.phases == ((1.0, 2.0) if kind == "nearby" else (0.5, 0.25))
     assert found.error == pytest.approx(0.02 if kind == "nearby" else 0.03)

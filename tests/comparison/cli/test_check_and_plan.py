@@ -12,7 +12,7 @@ from fake_models import fake_hierarchy
 from places import limited_scene, scene_text
 from report_texts import page_of
 from runs import Run, no_executor
-from studies import difference_rows, solved
+from studies import body_comparisons, difference_rows, solved
 
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces
@@ -22,8 +22,7 @@ from comparison.study.costs import seconds_per_motion
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, check_limits
-from comparison.surfaces.body_comparison import body_comparisons
-from comparison.surfaces.unanswered import list_unanswered
+from comparison.surfaces.missing_values import list_missing_values
 
 UNCHECKED = "--check: not checked, as no limit is stated: total, translational of fig3-I\n"
 SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
@@ -31,7 +30,7 @@ SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
 
 def limits_of(study: Study, surfaces: xr.Dataset) -> list[Limit]:
     """The limits of a study, compared with its surfaces."""
-    return check_limits(body_comparisons(study, surfaces), list_unanswered(study, surfaces))
+    return check_limits(body_comparisons(study, surfaces), list_missing_values(study, surfaces))
 
 
 def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run], tmp_path: Path) -> None:

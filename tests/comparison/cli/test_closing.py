@@ -95,7 +95,7 @@ def test_the_times_of_a_run_are_the_same_in_every_place(
 def test_a_value_hardly_meant_is_named_once_with_its_first_scene(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(terminal, "implausible_values", lambda scene: ["mass = 1e9: hardly meant"])
+    monkeypatch.setattr(terminal, "implausible_values", lambda scene, building: ["mass = 1e9: hardly meant"])
     terminal.print_buildings(Console(), [(name, load_scene("fig3-I")) for name in "ab"])
     *building, warning = capsys.readouterr().out.splitlines()
     assert warning == "Warning: a: mass = 1e9: hardly meant"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known_analyses import collected
+from known_analyses import computed
 from known_results import known_benchmarks
 from places import ROOT
 from rich.console import Console
@@ -22,8 +22,7 @@ from comparison.evidence.benchmarks.cases import (
     MotionReading,
     list_cases,
     load_shipped_scene,
-    mastodon,
-    published_number,
+    mastodon_case,
 )
 from comparison.evidence.benchmarks.command import main, print_benchmarks
 from comparison.evidence.benchmarks.table import (
@@ -32,6 +31,7 @@ from comparison.evidence.benchmarks.table import (
     STORED,
     Benchmarks,
     Number,
+    PublishedNumber,
     verdict_line,
     with_error,
     word_page,
@@ -67,7 +67,7 @@ def _every_number_is_met_or_explained(table: Benchmarks) -> None:
 def test_a_side_that_fails_costs_the_others_nothing():
     broken = replace(BY_NAME["pendulum"], start=((5.0, 0.0),))  # beyond the rim: both sides refuse
     chosen = [broken, *(BY_NAME[name] for name in CHEAP[:2])]
-    first, *others = collected(BenchmarkTable(chosen), None).benchmarks
+    first, *others = computed(BenchmarkTable(chosen)).benchmarks
     assert {number.verdict for number in first.rows[0].numbers.values()} == {NOT_COMPARED}
     assert "rim" in first.endings[EQUATIONS]
     _every_number_is_met_or_explained(Benchmarks(others, {}))
@@ -75,7 +75,7 @@ def test_a_side_that_fails_costs_the_others_nothing():
 
 @pytest.mark.long
 def test_the_engine_meets_all_published_numbers(within):
-    table = collected(BenchmarkTable([BY_NAME[name] for name in BY_NAME if name not in CHEAP]), None)
+    table = computed(BenchmarkTable([BY_NAME[name] for name in BY_NAME if name not in CHEAP]))
     _every_number_is_met_or_explained(table)
     for row in (row for each in table.benchmarks for row in each.rows):
         if (found := row.numbers[ENGINE]).verdict == MET:
@@ -85,8 +85,8 @@ def test_the_engine_meets_all_published_numbers(within):
 @pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
 def test_both_sides_meet_mastodon_within_three_percent():
     """To 3 mm, as it was read, by the small equations; without heating they are 15 to 83 mm smaller."""
-    case = mastodon(INPUT)
-    for row in collected(BenchmarkTable([case]), None).benchmarks[0].rows:
+    case = mastodon_case(INPUT)
+    for row in computed(BenchmarkTable([case])).benchmarks[0].rows:
         equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
         assert equations.verdict == engine.verdict
         assert equations.verdict == MET or equations.explanation == MODEL
@@ -112,7 +112,7 @@ def _words(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]
         "a",
         "b",
         "c",
-        [published_number("x", 1.0, 0.01, "mm")],
+        [PublishedNumber("x", "mm", 1.0, 0.01)],
         MotionReading(readings.mean_period),
         load_shipped_scene("pendulum"),
     )

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from known_analyses import collected
+from known_analyses import computed
 from known_results import FOUND, PLAIN, fake
 
 import multibody
@@ -41,7 +41,7 @@ class Ending(ThreadPoolExecutor):
 def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
     columns = [replace(fake(model), key=model) for model in ("hangs", "crashes", "raises", "honest")]
     extremes = analysis.Extremes([replace(PLAIN, columns=tuple(each.key for each in columns))], columns, 2.0)
-    (row,) = collected(extremes, None, executor=Ending).rows
+    (row,) = computed(extremes, Ending).rows
     found = {key: (entry.verdict, entry.status, entry.reason) for key, entry in row.entries.items()}
     assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
     assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
@@ -127,9 +127,8 @@ def test_a_row_has_the_quantity_that_it_names():
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    matrix = collected(
-        analysis.Extremes(analysis.select_quick(list(extreme_cases())), limit=120.0), None, executor=process_pool
-    )
+    extremes = analysis.Extremes(analysis.select_quick(list(extreme_cases())), limit=120.0)
+    matrix = computed(extremes, process_pool)
     assert [
         (row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(CellVerdict.FAILED)
     ] == []

@@ -13,7 +13,7 @@ import pytest
 from runs import Here
 from scipy.io import savemat
 
-from comparison.evidence.benchmarks.cases import mastodon
+from comparison.evidence.benchmarks.cases import mastodon_case
 from comparison.evidence.validation import files
 from comparison.evidence.validation.command import main
 from comparison.evidence.validation.files import DECAY, LARGE
@@ -191,5 +191,5 @@ def test_a_damaged_input_of_mastodon_is_refused_in_one_line(tmp_path: Path) -> N
     for _ in range(200):
         file.write_bytes(damaged(CSV.encode(), chance))
         with pytest.raises(SceneError) as refused:
-            mastodon(file)
+            mastodon_case(file)
         assert str(refused.value).isprintable()

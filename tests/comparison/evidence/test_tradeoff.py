@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from known_analyses import collected
+from known_analyses import computed
 from known_results import known_trade
 from rich.console import Console
 from scipy.stats import linregress
@@ -18,7 +18,6 @@ from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_
 from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, list_settings
 from comparison.evidence.tradeoff.trade import error_of_share, is_unbeaten, load_trades, with_pareto_fronts
 from comparison.study.batches import import_function
-from comparison.study.study import Study
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
 
@@ -204,7 +203,7 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
     monkeypatch.setattr(growth, "measure_setting", measured)
     few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
     monkeypatch.setattr(growth, "QUANTITIES", few)
-    *bodies, pairs = collected(Growth(), Study((SCENE,), 1, 1e-3))
+    *bodies, pairs = computed(Growth(SCENE))
     assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
     assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
 

@@ -279,7 +279,7 @@ def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch,
     def stepped(scene: Scene, v_reg: float, penetration: float, factor: int) -> Array:
         return np.full((len(convergence.FEW), 2), 3.0 * (1.0 + 0.01 / factor**order))
 
-    monkeypatch.setattr(convergence, "_at_constant_step", stepped)
+    monkeypatch.setattr(convergence, "_solve_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", _regularized(60.0))
     sizes, errors = convergence._compare_stiff_contacts(load_scene("fig3-I"))
     assert (np.abs(sizes) <= errors).all()
@@ -296,7 +296,7 @@ def test_the_error_of_a_constant_step_has_that_of_the_equations_and_that_of_the_
         mu = np.full((len(phases), 2), 4.0)
         return Amplification(mu, 0.01 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
 
-    monkeypatch.setattr(convergence, "_at_constant_step", stepped)
+    monkeypatch.setattr(convergence, "_solve_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", exact)
     _, errors = convergence._compare_stiff_contacts(load_scene("fig3-I"))
     expected = np.hypot(convergence.SAFETY * np.array(PENETRATIONS), 0.01)

@@ -73,7 +73,7 @@ def save(folder: Path, grams: int, offset: float = 0.0) -> None:
 
 def test_the_equations_predict_a_run_of_an_independent_program(tmp_path: Path):
     save(tmp_path, 450, offset=-0.15)
-    cycles = frame.fold(read_folder(tmp_path).runs[0])
+    cycles = frame.fold_run(read_folder(tmp_path).runs[0])
     assert cycles.frequency == pytest.approx(FREQUENCY, abs=1e-5)
     found = np.mean([frame.read_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
     computed = frame.read_quantities(cycles, frame.compute_motion(EQUATIONS, cycles, frame.Setup(ratio=RATIO))).values
@@ -111,7 +111,7 @@ def test_a_run_is_folded_at_the_turns_of_its_base():
     """Base and second harmonic, 7 and 0.2 mm, the latter behind by 40 degrees; the plate is behind the base by 50."""
     time, turn = np.arange(2501) / RATE, 2.0 * math.pi * FREQUENCY * np.arange(2501) / RATE + 1.0
     base = 7.0 * np.cos(turn) + 0.2 * np.cos(2.0 * turn - np.radians(40.0))
-    cycles = frame.fold(Shaken(0.25, time, 3.0 * np.cos(turn - np.radians(50.0)), base))
+    cycles = frame.fold_run(Shaken(0.25, time, 3.0 * np.cos(turn - np.radians(50.0)), base))
     assert (cycles.frequency, cycles.amplitude) == pytest.approx((FREQUENCY, 7.0), rel=1e-6)
     assert cycles.second == pytest.approx(0.2 * np.exp(-1j * np.radians(40.0)), abs=1e-6)
     expected = 3.0 * np.cos(2.0 * math.pi * np.arange(frame.SAMPLES) / frame.SAMPLES - np.radians(50.0))

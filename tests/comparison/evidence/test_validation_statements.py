@@ -4,11 +4,18 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
+import measured_statements as statements
 import pytest
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.evidence.validation import statements
-from comparison.evidence.validation.table import STORED, Comparison, MeasuredQuantity, Validation, load_record
+from comparison.evidence.validation.table import (
+    STORED,
+    Comparison,
+    MeasuredQuantity,
+    Validation,
+    load_record,
+    verdict_line,
+)
 from comparison.verdicts import judge_error
 
 LOADED = ", friction of the load"
@@ -179,12 +186,12 @@ def test_counts_and_the_largest_error_are_those_of_the_record() -> None:
     residuals = [replace(each, share=2.0 * each.share) for each in load_record().residuals]
     off = statements.readme_rows(replace(load_record(), residuals=residuals))
     assert "whole motion off by 24 % at 350 g, 15 % at 550 g" in off[0]
-    line = statements.verdict_line(load_record())
+    line = verdict_line(load_record())
     assert (
         line
         == "88 comparisons: 35 met, 53 not met (largest: pendulum, decay, turning point 13, −137 %), 0 not compared"
     )
-    line = statements.verdict_line(changed("frame, 450 g", "half range", without_uncertainty))
+    line = verdict_line(changed("frame, 450 g", "half range", without_uncertainty))
     assert "35 met, 51 not met" in line
     assert line.endswith("2 not compared")
 

@@ -21,7 +21,6 @@ from comparison.cli.reports import CompleteLevel, Reports
 from comparison.json_file import json_text
 from comparison.registry import FEATURES
 from comparison.report import page, writing
-from comparison.report.panels import draw_panels, make_panel
 from comparison.report.results import Results
 from comparison.run import main
 from comparison.runner.runner import Runner
@@ -178,14 +177,6 @@ def test_data_of_a_feature_that_fail_cost_neither_the_surfaces_nor_those_of_othe
     assert all("worst" in scene for scene in before)
     assert after == [{name: part for name, part in scene.items() if name != "worst"} for scene in before]
     assert all(scene["places"] and scene["models"] for scene in after[:1])
-
-
-def test_a_logarithmic_panel_without_any_value_is_drawn(tmp_path: Path) -> None:
-    lines = [{"name": name, "x": [0.1, 1.0], "y": [None, None], "low": [None, None], "high": [None, None], "band": True}
-             for name in "ab"]  # fmt: skip
-    axes = {"title": "period, s", "log": True}, {"title": "acceleration, g", "range": [0.0, 1.0]}
-    draw_panels(tmp_path / "panel.png", "no median", [make_panel("spectrum", "spectrum", *axes, lines)])
-    assert (tmp_path / "panel.png").stat().st_size > 1000
 
 
 def test_what_json_cannot_hold_is_null() -> None:

@@ -1,10 +1,6 @@
 """Plots of the folded sections and the words of the trade-off say what the results hold."""
 
 from dataclasses import replace
-from pathlib import Path
-
-import pytest
-from recorded_figures import figures_are_told
 
 from comparison.evidence.tradeoff.feature import tradeoff_answers, tradeoff_panels
 from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
@@ -12,8 +8,7 @@ from comparison.evidence.trend_feature import trend_panels
 from comparison.evidence.trends import Trend
 from comparison.report.glossary import GLOSSARY, explain_words
 from comparison.report.page import content_policy
-from comparison.report.panels import draw_panels, make_panel
-from comparison.report.plots import MAX_CURVES
+from comparison.report.panels import MAX_CURVES
 
 
 def _entry(method: str, seconds: float, error: float, value: float = 1e-3) -> MeasuredSetting:
@@ -76,26 +71,3 @@ def test_the_policy_names_script_and_style_by_their_hash() -> None:
     policy = content_policy("", "")  # of the empty text: the well-known digest of nothing
     assert policy.count("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='") == 2
     assert "default-src 'none'" in policy
-
-
-def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    x = {"title": "μ_1", "log": True, "range": (0.5, 40.0)}
-    y = {"title": "share", "ticks": [[1.0, "one"], [3.0, "three"]], "range": (-1.0, 8.0)}
-    about = {"x": [1.0, 10.0], "y": [1.0, 3.0], "low": [0.5, 2.0], "high": [2.0, 5.0]}
-    series = [
-        {**about, "name": "band", "band": True, "color": 1, "width": 2.5},
-        {**about, "name": "bars", "color": "gray", "marks": True, "dash": "4 2"},
-        {"name": "points", "x": [3.0], "y": [2.0], "color": 10, "line": False, "marks": True, "legend": False},
-    ]
-    described = make_panel("title of μ_2", "", x, y, series, bands=[{"from": -9.0, "to": 0.5}])
-    told = figures_are_told(monkeypatch)
-    draw_panels(tmp_path / "drawn.png", "a title", [described] * 2, 3)
-    shown = [
-        *(r"title of $μ_{\mathrm{2}}$", r"$μ_{\mathrm{1}}$", "share", "x log", "y linear"),
-        *("x from 0.5 40", "y from -1 8", "y ticks ['one', 'three']"),
-        "line band ('#b3541e', '', '-', 2.5) x 1 10 y 1 3",
-        "line bars ('0.5', 'o', '--', 1.4) x 1 10 y 1 3",
-        "line _ ('#2a7f4f', 'o', 'None', 1.4) x 3 y 2",
-        *("band 1 2 1 0.5 10 2 10", "bars 1 0.5 1 2 10 2 10", "patch 0.5 -1 40 0.5", "legend ['band', 'bars']"),
-    ]
-    assert told["drawn"] == ["a title", " | ".join(shown), " | ".join(shown)]

@@ -15,19 +15,17 @@ from studies import solved
 
 from comparison.registry import EVERYTHING, report_of
 from comparison.report.junit import junit_xml
-from comparison.report.panels import draw_panels, make_panel
 from comparison.report.summary_text import summary_text
 from comparison.runner.progress import show_progress, wide_console
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import figure_file, with_ending
+from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
 from reference.problem import Scene, load_scene
 from reference.support.drawing import escape_for_matplotlib
 
 
 def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
-    assert with_ending(Path("a[b=0.02]-paper"), ".pdf").name == "a[b=0.02]-paper.pdf"
-    assert with_ending(Path("a[b=0.02].png"), ".pdf").name == "a[b=0.02].pdf"
+    assert figure_file("a[b=0.02]", "paper") == "a[b=0.02]-paper.png"
     long = [figure_file("é" * 150 + end, "body1", "total") for end in "ab"]
     assert len(set(long)) == 2, "two long names are two files"
     assert all(len(name.encode()) <= 255 and name.endswith("-body1-total.png") for name in long)
@@ -54,14 +52,6 @@ def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) ->
     with console.capture() as shown, show_progress(console, 1.0, 1) as display:
         display.advance("x[/b]", "1 of 1 tasks", 1.0)
     assert "x[/b]" in shown.get()
-
-
-def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
-    scene = load_scene("fig3-I").with_values({"title": r"x $\frac{$ y"})
-    axes = {"title": "a$b$", "ticks": [[0.0, r"$\frac{$"]]}, {"title": "$"}
-    odd = make_panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
-    draw_panels(tmp_path / "family.png", scene.title, [odd])
-    assert (tmp_path / "family.png").stat().st_size > 0
 
 
 def test_junit_and_summary_are_well_formed_for_any_name() -> None:

@@ -20,8 +20,8 @@ from comparison.study.models import (
 from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
+from comparison.surfaces.missing_values import advise_on_outcome
 from comparison.surfaces.surfaces import label_surfaces
-from comparison.surfaces.unanswered import advise_on_outcome
 from reference.problem import Outcome, Scene, load_scene
 
 

@@ -14,11 +14,11 @@ import pytest
 import user_engines
 import xarray as xr
 from fake_models import fake_hierarchy, smooth
-from known_analyses import collected
+from known_analyses import computed
 from places import ROOT, limited_scene, scene_text
 from report_texts import data_of, page_of, summary_of
 from runs import Run
-from studies import difference_rows, solved
+from studies import body_comparisons, difference_rows, solved
 
 import reference
 from comparison.cli.user_models import as_words, look_at, user_models
@@ -35,11 +35,10 @@ from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, amplification, user_model
-from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.budget import budget_entries
 from comparison.surfaces.headline import make_headline
+from comparison.surfaces.missing_values import list_missing_values, study_of_results
 from comparison.surfaces.surfaces import surface_tasks
-from comparison.surfaces.unanswered import list_unanswered, study_of_results
 from comparison.surfaces.waterfall import make_waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
@@ -262,7 +261,7 @@ def test_a_user_engine_changes_no_other_number(function: str) -> None:
     assert repr(theirs) == repr(difference_rows(alone, without))
     keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
     assert keys == [task.key for task in surface_tasks(alone)]
-    assert {gap.model for gap in list_unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
+    assert {gap.model for gap in list_missing_values(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
 
@@ -498,7 +497,7 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
     models = (user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
-    tasks = TradeOff(True, models).tasks(Study((SCENE,), 1, 1e-3))
+    tasks = TradeOff([SCENE], True, models).tasks()
     mine = [task.timeout / len(task.argument.phases) for task in tasks if task.group]
     assert set(mine) == {7.0}
 
@@ -508,9 +507,7 @@ def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})
-    (measured,) = collected(
-        TradeOff(True, models), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
-    )
+    (measured,) = computed(TradeOff([scene], True, models), lambda jobs: ThreadPoolExecutor(1))
     good, bad = measured.trade.entries
     assert (good.answered, bad.answered) == (good.points, 0)
     assert bad.error_message == f"RuntimeError: the matrix is singular (user_engines.py, line {RAISES})"

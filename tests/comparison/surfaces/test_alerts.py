@@ -14,7 +14,7 @@ from studies import solved
 import reference
 from comparison.study.study import Study
 from comparison.surfaces.alerts import list_alerts
-from comparison.surfaces.unanswered import OutcomeNote, Unanswered
+from comparison.surfaces.missing_values import MissingValues, OutcomeNote
 from reference.problem import Outcome, load_scene
 
 
@@ -102,7 +102,7 @@ def test_a_gap_is_told_with_its_counts_and_outcomes(
     points: int, unusable: int, outcomes: dict[str, int], used: bool, said: str
 ) -> None:
     notes = tuple(OutcomeNote(outcome, count, f"help for {outcome}") for outcome, count in outcomes.items())
-    lacking = Unanswered("fig3-I", "spatial", "spatial engine", points, unusable, 4, used, notes)
+    lacking = MissingValues("fig3-I", "spatial", "spatial engine", points, unusable, 4, used, notes)
     study = Study((load_scene("fig3-I"),), 2, 1e-3, errors_in({}))
     (found,) = list_alerts(study, solved(study), [lacking], [], [])
     assert f"{found.level} {found.kind}: {found.text}" == said.replace(": ", ": spatial engine: ", 1)

@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from studies import GRID, planted_study, solved
+from studies import GRID, body_comparisons, planted_study, solved
 
 from comparison.study.batches import import_function
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits
-from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
+from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.budget import TOTAL, BudgetEntry, budget_entries, closure_error
 from comparison.surfaces.differences import Difference
+from comparison.surfaces.missing_values import list_missing_values
 from comparison.surfaces.model_difference import RESOLVED, ModelDifference
-from comparison.surfaces.unanswered import list_unanswered
 from reference.problem import builtin_scenes, load_scene
 
 
@@ -163,7 +163,9 @@ def _with(sound: Solved, mistake: Mistake) -> Solved:
 
 
 def _broken(found: Solved) -> list[str]:
-    return [line for limit in check_limits(body_comparisons(*found), list_unanswered(*found)) for line in limit.broken]
+    return [
+        line for limit in check_limits(body_comparisons(*found), list_missing_values(*found)) for line in limit.broken
+    ]
 
 
 def _steps(found: Solved, body: int) -> list[tuple[str, ModelDifference]]:

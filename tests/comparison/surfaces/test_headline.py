@@ -13,7 +13,7 @@ from studies import GRID, KEYS, planted_study, solved
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.headline import Effect, Headline, main_cause_of, make_headline
-from comparison.surfaces.unanswered import study_of_results
+from comparison.surfaces.missing_values import study_of_results
 from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Scene, load_scene
 

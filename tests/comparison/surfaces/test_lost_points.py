@@ -10,15 +10,14 @@ from fake_models import fake_hierarchy, silenced, why_refused
 from places import limited_scene
 from report_texts import page_of, summary_of
 from runs import Run
-from studies import solved
+from studies import body_comparisons, solved
 
 from comparison.analyses.motions import analysis as motions
 from comparison.analyses.motions.analysis import compute_motion
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
-from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.budget import closure_error
-from comparison.surfaces.unanswered import list_unanswered, study_of_results
+from comparison.surfaces.missing_values import list_missing_values, study_of_results
 from reference.problem import load_scene
 
 GRID = ["--grid", "4", "--only", "differences"]
@@ -70,7 +69,7 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
         assert (comparison.total.first, comparison.total.second) == (left[0], left[-1])
         assert comparison.total.unanswered == 0
         assert closure_error(comparison) < 1e-14
-    (lacking,) = list_unanswered(study, surfaces)
+    (lacking,) = list_missing_values(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == f"step limit: {why_refused(scene, 1e-3)}"
     alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
@@ -78,7 +77,7 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     surfaces["mu"].loc[{"model": [*left[1:]]}] = np.nan
     alone = study_of_results(study, surfaces)
     assert alone.left_out(scene) == (), "nothing would be left to compare"
-    assert not any(lacking.used for lacking in list_unanswered(alone, surfaces))
+    assert not any(lacking.used for lacking in list_missing_values(alone, surfaces))
 
 
 def test_the_translational_limit_may_be_of_the_total(command: Callable[..., Run], tmp_path: Path) -> None:

@@ -5,14 +5,20 @@ from typing import Any
 import pytest
 from chains import refusal
 
-from reference.plausibility import implausible_drift, implausible_values
-from reference.problem import SceneError, load_scene
+from reference import plausibility
+from reference.building import describe_building
+from reference.plausibility import implausible_drift
+from reference.problem import Scene, SceneError, load_scene
 from reference.support.arguments import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}
 WARM = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}
 HOT = {**WARM, "initial_temperature": 500.0}
+
+
+def implausible_values(scene: Scene) -> list[str]:
+    return plausibility.implausible_values(scene, describe_building(scene))
 
 
 def law(**table: object) -> dict[str, Any]:

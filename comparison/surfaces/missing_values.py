@@ -28,7 +28,7 @@ class OutcomeNote:
 
 
 @result
-class Unanswered:
+class MissingValues:
     """A model without a usable value at some or all phase pairs of a scene."""
 
     scene: Annotated[Text, "name of the scene"]
@@ -63,9 +63,9 @@ class Unanswered:
     def where(self) -> str:
         """At how many phase pairs there is no value, or only one whose error is above half of it."""
         parts = ("no value", self.points), ("only values with errors above half of them", self.unusable)
-        return ", ".join(f"{what}{self._at(count)}" for what, count in parts if count)
+        return ", ".join(f"{what}{self._word_count(count)}" for what, count in parts if count)
 
-    def _at(self, count: int) -> str:
+    def _word_count(self, count: int) -> str:
         if self.asked == 1:
             return ""
         return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"
@@ -99,21 +99,21 @@ def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     return ComparedStudy(**asked, without_results=without_results)
 
 
-def list_unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
+def list_missing_values(study: Study, surfaces: xr.Dataset) -> list[MissingValues]:
     """Every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
     gaps = []
     for scene in study.scenes:
         left_out = study.left_out(scene)
         for model in models_of(scene, study.hierarchy):
             answered, usable = _has_answer(surfaces, scene, model), _usable_points(surfaces, scene, model)
-            lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
-            if lacking or unusable:
+            missing, unusable = int((~answered).sum()), int((answered & ~usable).sum())
+            if missing or unusable:
                 asked = study.points(model, scene)
-                used = model.key not in left_out and lacking < asked
+                used = model.key not in left_out and missing < asked
                 counts = outcome_counts(surfaces, scene.name, model).items()
                 bad = [(outcome, count) for outcome, count in counts if outcome != Outcome.OK]
                 notes = tuple(OutcomeNote(*each, advise_on_outcome(study, scene, model, each[0])) for each in bad)
-                gaps.append(Unanswered(scene.name, model.key, model.title, lacking, unusable, asked, used, notes))
+                gaps.append(MissingValues(scene.name, model.key, model.title, missing, unusable, asked, used, notes))
     return gaps
 
 

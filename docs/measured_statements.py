@@ -3,35 +3,14 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.evidence.validation.frame import LOADED
-from comparison.evidence.validation.table import MeasuredQuantity, Validation
-from comparison.verdicts import (
-    MET,
-    NOT_COMPARED,
-    NOT_MET,
-    Verdict,
-    word_counts_and_largest,
-    word_error,
-    word_verdict,
-)
+from comparison.evidence.sides import EQUATIONS
+from comparison.evidence.validation.table import BOTH, LOADED, MeasuredQuantity, Validation, verdict_on, worse_side
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, word_error, word_verdict
 from comparison.wording import percent
 
-BOTH = EQUATIONS, ENGINE
-ORDER: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # from the best to the worst
 HALF_RANGE = "half range"
 INSTANTS = "phase of the starts", "phase of the stops", "share of time at rest"
 FRAME, PENDULUM = "frame, ", "pendulum, "  # begin the names of the experiments
-
-
-def worse_side(each: MeasuredQuantity) -> str:
-    """Return the side with the worse verdict on a quantity, of equal ones that with the larger error."""
-    return max(BOTH, key=lambda side: (ORDER.index(each.sides[side].verdict), abs(each.sides[side].error or 0.0)))
-
-
-def verdict_on(each: MeasuredQuantity) -> Verdict:
-    """Return the worse verdict of both sides on a quantity: met where both meet it."""
-    return each.sides[worse_side(each)].verdict
 
 
 def word_quantity(each: MeasuredQuantity) -> str:
@@ -139,17 +118,6 @@ def word_large_angles(table: Validation) -> str:
     rows = [each for each in table.quantities if each.name.startswith("half period at ")]
     short = sum(all((each.sides[side].error or 0.0) < 0.0 for side in BOTH) for each in rows)
     return f"the computed half period is too short at {short} of {len(rows)} large angles"
-
-
-def verdict_line(table: Validation) -> str:
-    """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
-    rows = [(each, worse_side(each)) for each in table.quantities if verdict_on(each) == NOT_MET and each.base]
-    largest = max(rows, key=lambda row: abs(row[0].sides[row[1]].error or 0.0) / abs(row[0].measured), default=None)
-    where = ""
-    if largest:
-        each, side = largest
-        where = f"{each.experiment}, {each.name}, {word_error(each.sides[side].error or 0.0, each.base, each.unit)}"
-    return word_counts_and_largest(table.counts(), where)
 
 
 def readme_rows(table: Validation) -> list[str]:
