@@ -11,9 +11,20 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.costs import seconds_per_motion
-from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model, has_spatial_data
+from comparison.study.models import (
+    EXACT,
+    REGULARIZED,
+    RESOLVED,
+    SMALL,
+    SMALL_RESOLVED,
+    SPATIAL,
+    TRANSLATIONAL,
+    Model,
+    has_spatial_data,
+)
+from reference import amplification
 from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, demands, floor_spectra, story_forces
-from reference.problem import Outcome, Scene
+from reference.problem import Outcome, Scene, ground_peak
 
 STAGE = "ensemble"
 REST = (0.0, 0.0)  # a record has no phases
@@ -59,7 +70,8 @@ class Points:
 
 
 Arguments = tuple[Scene, Model, float]
-Answer = tuple[Demands, StoryForces, FloorSpectra | None, float]  # what is kept of a motion; when it ended early, s
+# what is kept of a motion; accelerations as integrated, where its demands have others; when it ended early, s
+Answer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
 def models_beside(member: Member, spatial: bool) -> list[Model]:
@@ -110,10 +122,10 @@ class Ensemble:
         found: Answer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
         if isinstance(found, str):
             return Point(member, model.key, found)
-        numbers, forces, spectra, instant = found
+        numbers, forces, spectra, resolved, instant = found
         if model != EXACT and numbers.status != Outcome.OK:
             return Point(member, model.key, numbers.status, instant=instant)  # a status that is not ok is no value
-        values = values_of_motion(member.scene, numbers, forces)
+        values = values_of_motion(member.scene, numbers, forces, resolved)
         return Point(member, model.key, numbers.status, values, spectra, forces, instant)
 
     def _task(self, member: Member, model: Model) -> Task:
@@ -132,4 +144,16 @@ def compute_demands(task: Arguments) -> Answer:
     """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
     motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **model.motion_settings)
-    return demands(motion), story_forces(motion), floor_spectra(motion) if model == EXACT else None, motion.instant
+    spectra = floor_spectra(motion) if model == EXACT else None
+    return demands(motion), story_forces(motion), spectra, _read_as_integrated(task), motion.instant
+
+
+def _read_as_integrated(task: Arguments) -> list[Estimate]:
+    """Return accelerations as integrated of equations that have the literal suprema; none of any other model."""
+    scene, model, tolerance = task
+    resolved = {SMALL.key: SMALL_RESOLVED, EXACT.key: RESOLVED}.get(model.key)
+    if resolved is None or not resolved.applies(scene):
+        return []
+    read = amplification(scene, REST, tolerance=tolerance, **resolved.settings)
+    (ground,) = ground_peak(scene, [REST])
+    return [Estimate(float(mu * ground), float(error * ground)) for mu, error in zip(read.mu, read.error)]

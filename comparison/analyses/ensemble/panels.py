@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analyses.ensemble.quantities import title_of, unit_for_reading
+from comparison.analyses.ensemble.quantities import SUPREMUM, title_of, unit_for_reading
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import HEIGHTS, floor_of, labels
 from comparison.analyses.ensemble.sentences import motions_in_words
@@ -31,7 +31,9 @@ def height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Fractiles of accelerations, drifts, shears and moments over the height."""
     shown = [name for name in HEIGHTS if any(ensemble.profile(each.name, name) for each in ensemble.structures)]
     return [
-        partial(_profile_panel, ensemble, name) for name in shown if not (name == "drift" and "drift_ratio" in shown)
+        partial(_profile_panel, ensemble, name)
+        for name in shown
+        if name != SUPREMUM and not (name == "drift" and "drift_ratio" in shown)
     ]
 
 

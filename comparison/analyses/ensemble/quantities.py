@@ -1,5 +1,7 @@
 """The demands of an ensemble: which there are, in which words and units they are read, and their values by motion."""
 
+from collections.abc import Sequence
+
 from reference.measures import Demands, Estimate, StoryForces
 from reference.measures.peak_demands import QUANTITIES, list_demands
 from reference.measures.story_forces import heights_above_contact
@@ -7,15 +9,18 @@ from reference.problem import GRAVITY, Scene
 
 Quantity = tuple[str, int]  # name, and body from 1 or 0 for the isolator
 
+SUPREMUM = "acceleration_supremum"
 DEMANDS: dict[str, tuple[str, str]] = {
     **{name: about for name, about in QUANTITIES.items() if name != "energy_balance"},
-    "acceleration": ("largest floor acceleration", "m/s^2"),
+    "acceleration": ("floor acceleration, as integrated", "m/s^2"),
+    SUPREMUM: ("floor acceleration, literal supremum", "m/s^2"),
     "drift_ratio": ("drift over the height of the story", "1"),
     "story_shear": ("story shear", "N"),
     "overturning_moment": ("overturning moment", "N m"),
 }
 OF_BODY = {
-    "acceleration": "acceleration of body {}",
+    "acceleration": "acceleration of body {}, as integrated",
+    SUPREMUM: "acceleration of body {}, literal supremum",
     "drift": "drift below body {}",
     "drift_ratio": "drift ratio below body {}",
     "story_shear": "story shear below body {}",
@@ -69,13 +74,19 @@ def text_of(value: float | None, error: float | None, factor: float) -> str:
     return f"{digits} ± {float(f'{factor * error:.1g}'):g}"
 
 
-def values_of_motion(scene: Scene, demands: Demands, forces: StoryForces) -> dict[Quantity, Estimate]:
+def values_of_motion(
+    scene: Scene, demands: Demands, forces: StoryForces, resolved: Sequence[Estimate] = ()
+) -> dict[Quantity, Estimate]:
     """
     The demands of one motion by name and body.
 
-    Support forces of a model without single supports are those of statics (`story_forces`).
+    Support forces of a model without single supports are those of statics (`story_forces`). resolved: accelerations as
+    integrated of a motion whose `demands` have the literal suprema; none of a motion without suprema.
     """
     values = {(name, body): number for name, body, number in list_demands(demands) if name in DEMANDS}
+    for body, number in enumerate(resolved, start=1):
+        values[SUPREMUM, body] = values["acceleration", body]
+        values["acceleration", body] = number
     heights = heights_above_contact(scene)
     if heights is not None:
         for body, drift in enumerate(demands.drift, start=2):

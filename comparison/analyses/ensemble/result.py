@@ -14,7 +14,7 @@ from reference.problem.scene import MAX_BODIES
 
 FRACTILES = 3  # 16, 50 and 84 %
 FILE = "summary.json"
-SCHEMA: Literal["phase-resonance/ensemble/3"] = "phase-resonance/ensemble/3"
+SCHEMA: Literal["phase-resonance/ensemble/4"] = "phase-resonance/ensemble/4"
 
 
 @result
@@ -266,7 +266,7 @@ class LimitVerdict:
 class EnsembleResult:
     """Content of the file."""
 
-    schema: Annotated[Literal["phase-resonance/ensemble/3"], "what the file is"]
+    schema: Annotated[Literal["phase-resonance/ensemble/4"], "what the file is"]
     structures: Annotated[Sequence[Structure], "what the statistics are of"]
     scales: Annotated[Sequence[float], "scale factors"]
     motions: Annotated[int, "number of motions"]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
+from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, SUPREMUM, text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.json_file import finite_or_none
@@ -17,7 +17,7 @@ from reference.problem import GRAVITY, Outcome
 ENVELOPE = "envelope"
 NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over the bodies
 NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
-HEIGHTS = ("acceleration", "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
+HEIGHTS = ("acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
 PLATFORM = 1
 WORST = 4  # column of the worst value, behind mean and fractiles
 
@@ -34,11 +34,14 @@ class Shown:
 
 MAIN = (
     Shown("isolator displacement", "displacement"),
+    Shown("support displacement, with torsion", "support_displacement"),
     Shown("displacement over travel", "travel_share"),
     Shown("base shear", "base_shear", unit="kN"),
     Shown("base shear over weight", "base_shear", unit="%"),
-    Shown("platform acceleration", "acceleration", "platform"),
-    Shown("largest floor acceleration", "acceleration", "floors"),
+    Shown("platform acceleration, as integrated", "acceleration", "platform"),
+    Shown("platform acceleration, literal supremum", SUPREMUM, "platform"),
+    Shown("largest floor acceleration, as integrated", "acceleration", "floors"),
+    Shown("largest floor acceleration, literal supremum", SUPREMUM, "floors"),
     Shown("largest drift", "drift", "floors"),
     Shown("largest drift ratio", "drift_ratio", "floors"),
     Shown("overturning moment at the isolator", "overturning_moment", "platform"),
@@ -88,7 +91,7 @@ def place_of(structure: Structure, quantity: str, body: int | None) -> str:
     """Where a demand of a body is: at its floor, or in the story below it."""
     if body is None:
         return ""
-    if quantity == "acceleration":
+    if quantity in ("acceleration", SUPREMUM):
         return floor_of(structure, body)
     return "isolator" if body == PLATFORM else f"below {floor_of(structure, body)}"
 

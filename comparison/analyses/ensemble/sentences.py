@@ -18,7 +18,10 @@ DEFINITIONS = (
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
     "middle of the platform; `support_displacement` in ensemble.csv is the largest of a support that turns with it.",
-    "Accelerations by the equations are the literal supremum: the one-sided limits at a stop of the isolator count.",
+    "Accelerations have two readings. “As integrated” is the largest value at rest or while the isolator slides faster "
+    "than 1 mm/s: what any time integration and the engine give, and the one to design equipment by. The “literal "
+    "supremum” adds the limits at the instants in which the isolator stops; no integration reaches them, and they are "
+    "too short to move equipment. All models are compared as integrated.",
     "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
     "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
     "16 %, 50 % and 84 % are fractiles over the motions (Hazen), and each motion has a value of its own. A motion "

@@ -16,10 +16,10 @@ COLUMNS = {
     TRANSLATIONAL.key: "translational engine",
     SPATIAL.key: "spatial engine",
 }
-# rows of the main table with the ratio of another, or without a base of one
+# rows of the main table with the ratio of another, without a base of one, or with a reading that no engine has
 LEFT_OUT = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
-    "uplift of a support",
+    "uplift of a support", "platform acceleration, literal supremum", "largest floor acceleration, literal supremum",
 )  # fmt: skip
 UNSEEN = 1e-4  # difference that the two decimals of a table do not show
 STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))  # and their columns

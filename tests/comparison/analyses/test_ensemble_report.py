@@ -261,7 +261,7 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
     chosen = [ChosenMotion("b", name, 1.0, ["largest displacement"], {}) for name in names[motions // 2 :]]
     building = BuildingRead(4, 250.0, [[2.0]], [[]], [[]], 2.0, (0.03, 0.06), 0.5, None, ("deck",))
     return EnsembleResult(
-        "phase-resonance/ensemble/3", [Structure("b", "A <block>", 1, 1e3, None, building)], (1.0,), motions,
+        "phase-resonance/ensemble/4", [Structure("b", "A <block>", 1, 1e3, None, building)], (1.0,), motions,
         {"ok": motions}, [stripe], curves, [], Engine("spatial", chosen), {},
         suite=[GroundMotion(name, 10.0, 2.0) for name in names],
     )  # fmt: skip
