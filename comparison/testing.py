@@ -153,6 +153,9 @@ def assert_demands(
     drift_ratio: float | None = None,
     uplift: float | None = None,
     base_shear: float | None = None,
+    support_force_max: float | None = None,
+    acceleration: float | None = None,
+    residual: float | None = None,
     statistic: str | None = None,
     stored: str | Path | None = None,
     within: float = 0.01,
@@ -168,8 +171,12 @@ def assert_demands(
         Motions in place of those of the file, as after ``phase-resonance ensemble --suite``.
     bounds : tuple of two floats, optional
         Factors of friction of a lower and an upper bound, in place of `isolator.bounds` of the file.
-    displacement, uplift : float, optional, m
-        Limits of the displacement of the isolator and of the gap of a support.
+    displacement, uplift, residual : float, optional, m
+        Limits of the displacement of the isolator, of the gap of a support, and of the displacement that stays.
+    support_force_max : float, optional, N
+        Limit of the force of a support, by statics.
+    acceleration : float, optional, m/s^2
+        Limit of the acceleration of every floor, as integrated.
     drift_ratio, base_shear : float, optional
         Limits of the drift over the height of its story, and of the base shear over the weight.
     statistic : {"largest", "mean"}, optional
@@ -199,7 +206,10 @@ def assert_demands(
     __tracebackhide__ = True  # pytest shows the line of the test
     from comparison.analyses.ensemble.gate import check_demands  # loaded on first use
 
-    limits = {"displacement": displacement, "drift_ratio": drift_ratio, "uplift": uplift, "base_shear": base_shear}
+    limits = {
+        "displacement": displacement, "drift_ratio": drift_ratio, "uplift": uplift, "base_shear": base_shear,
+        "support_force_max": support_force_max, "acceleration": acceleration, "residual": residual,
+    }  # fmt: skip
     given: dict[str, Any] = {
         name: check_number(name, limit, range_of(DemandLimits, name))
         for name, limit in limits.items()

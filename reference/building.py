@@ -47,6 +47,8 @@ class Building:
     modal_damping : ndarray, (2, L)
         Damping ratio of each of these modes, X^T D0 X / (2 omega) with X of unit modal mass, from the dampers of the
         links. Friction of the isolator has no part in it.
+    modal_mass : ndarray, (2, L)
+        Effective mass of each of these modes over the mass of the bodies above the platform.
     ground_peak : float, m/s^2
         Largest horizontal acceleration of the ground, the resultant of x and y; of two frequencies the largest over
         all phases; 0 without a loading.
@@ -73,6 +75,7 @@ class Building:
     isolated_period: Array
     fixed_base_period: Array
     modal_damping: Array
+    modal_mass: Array
     ground_peak: float
     radius: float
     friction: tuple[float, ...]
@@ -132,8 +135,9 @@ def describe_building(scene: Scene) -> Building:
             supports,
             None if supports is None else weight / supports,
             2.0 * np.pi / np.array(isolated),
-            2.0 * np.pi / np.array([frequency for frequency, _ in fixed]),
-            np.array([ratio for _, ratio in fixed]),
+            2.0 * np.pi / np.array([frequency for frequency, _, _ in fixed]),
+            np.array([ratio for _, ratio, _ in fixed]),
+            np.array([share for _, _, share in fixed]),
             horizontal_peak(scene),
             scene.radius,
             (scene.friction_coefficient,) if scene.lubricated else (law.slow, law.fast, law.rate),
@@ -144,14 +148,19 @@ def describe_building(scene: Scene) -> Building:
         )
 
 
-def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array]:
-    """Return frequencies and damping ratios, (L,), of the bodies above a platform that is held, along one axis."""
+def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array, Array]:
+    """
+    Return frequencies, damping ratios and shares of the mass, (L,), of the modes above a platform that is held.
+
+    They are those along one axis.
+    """
     if len(scene.bodies) == 1:
-        return np.zeros(0), np.zeros(0)
+        return np.zeros(0), np.zeros(0), np.zeros(0)
     frequency, shape = solve_chain(scene.masses[1:], scene.stiffness[:, axis], DESCRIBED)
     elongation = np.diff(shape, axis=0, prepend=0.0)
     ratio: Array = scene.damping[:, axis] @ elongation**2 / (2.0 * frequency)
-    return frequency, ratio
+    above = scene.masses[1:]
+    return frequency, ratio, (above @ shape) ** 2 / above.sum()
 
 
 def horizontal_peak(scene: Scene) -> float:

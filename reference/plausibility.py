@@ -19,7 +19,8 @@ EXTENT_OVER_SIZE = 2.0  # of the places of the supports, over the size of the pl
 FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # period of the first mode along either axis
 LARGEST_RADIUS = 50.0  # m
 LARGEST_FRICTION = 1.0
-LARGEST_DAMPING = 0.2  # damping ratio of the first fixed-base mode
+LARGEST_DAMPING = 0.2  # damping ratio of the fixed-base modes that matter
+LEAST_MASS = 0.05  # share of the mass above the platform that a mode moves which matters
 LARGEST_PEAK = 3.0  # g
 LARGEST_DRIFT_RATIO = 0.1
 MASS_SHARE = Range(0.01, 100.0)  # mass of a body over the mean of the others
@@ -72,9 +73,13 @@ def _implausible_modes(building: Building) -> list[str]:
     if (period := next((each for each in periods if each not in FIXED_BASE_PERIOD), None)) is not None:
         limit = _word_end_beyond(period, FIXED_BASE_PERIOD, lambda value: f"{value:g} s")
         lines.append(f"the period above a fixed base is {period:.4g} s, {limit}: stiffness in N/m, mass in kg?")
-    if (ratio := float(building.modal_damping[:, 0].max())) > LARGEST_DAMPING:
-        share = f"{100.0 * ratio:.4g} % of critical, above {100.0 * LARGEST_DAMPING:g} %"
-        lines.append(f"the damping of the first mode above a fixed base is {share}: percent?")
+    damping, mass = building.modal_damping, building.modal_mass
+    if (beyond := np.argwhere(((damping > LARGEST_DAMPING) & (mass >= LEAST_MASS)).T)).size:
+        mode, axis = beyond[0]
+        share = f"{100.0 * damping[axis, mode]:.4g} % of critical, above {100.0 * LARGEST_DAMPING:g} %"
+        which = "the first mode" if mode == 0 else f"mode {mode + 1} along {'xy'[axis]}"
+        why = "percent?" if mode == 0 else f"it moves {100.0 * mass[axis, mode]:.2g} % of the mass; is this meant?"
+        lines.append(f"the damping of {which} above a fixed base is {share}: {why}")
     return lines
 
 
@@ -107,7 +112,12 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
         elif size is not None and extent > EXTENT_OVER_SIZE * max(size[:2]):
             largest = f"more than twice the platform of {max(size[:2]):.4g} m"
             yield f"the supports stand {extent:.4g} m apart, {largest}: are places and size both in m?"
-    if building.heights is None or building.supports is None or scene.flat or building.heights[0] >= 0.0:
+    if building.heights is None:
+        return
+    if (falls := np.flatnonzero(np.diff(building.heights) <= 0.0)).size:
+        lower, upper = (f"{_name_body(scene, place)} at {scene.bodies[place].height:.4g} m" for place in falls[0] + (0, 1))
+        yield f"{upper} is not above {lower}, the body below it: bodies stand in the file from the platform up"
+    if building.supports is None or scene.flat or building.heights[0] >= 0.0:
         return
     stated = [float(body.height or 0.0) for body in scene.bodies]
     depression = stated[0] - float(building.heights[0])

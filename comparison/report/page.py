@@ -159,7 +159,7 @@ def render_page(
     not be made.
     """
     templates = resources.files("comparison.report") / "templates"
-    style = (templates / "report.css").read_text(encoding="utf-8")
+    style = (templates / "report.css").read_text(encoding="utf-8") + head_of_paper(context.get("running", ""))
     script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
     return str(
         render_template(
@@ -175,6 +175,12 @@ def render_page(
             },
         )
     )
+
+
+def head_of_paper(text: str) -> str:
+    """Return the style that puts a text at the top of every printed page; nothing without a text."""
+    letters = (each if each.isalnum() or each in " .,:-" else f"\\{ord(each):x} " for each in text)
+    return f'@page {{ @top-left {{ content: "{"".join(letters)}"; font: 7pt sans-serif; }} }}\n' if text else ""
 
 
 def render_template(template: str, context: Mapping[str, Any]) -> Markup:

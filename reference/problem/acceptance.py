@@ -40,7 +40,9 @@ class Limits(LimitTable):
 class DemandLimits(LimitTable):
     """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
 
-    limited = ("displacement", "drift_ratio", "uplift", "base_shear")
+    limited = (
+        "displacement", "drift_ratio", "uplift", "base_shear", "support_force_max", "acceleration", "residual",
+    )  # fmt: skip
 
     displacement: NonNegative | None = key(
         "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
@@ -54,6 +56,19 @@ class DemandLimits(LimitTable):
         "largest gap of a support; the spatial engine alone has it", Range(0.0, 1e6, "m"), models=ENSEMBLE
     )
     base_shear: NonNegative | None = key("largest base shear over the weight", Range(0.0, 1e3), models=ENSEMBLE)
+    support_force_max: NonNegative | None = key(
+        "largest force of a single support, by statics; of the smallest force, a limit on `uplift`",
+        Range(0.0, 1e12, "N"),
+        models=ENSEMBLE,
+    )
+    acceleration: NonNegative | None = key(
+        "largest acceleration of any floor, the platform among them, as integrated",
+        Range(0.0, 1e6, "m/s^2"),
+        models=ENSEMBLE,
+    )
+    residual: NonNegative | None = key(
+        "displacement at which the platform comes to rest", Range(0.0, 1e6, "m"), models=ENSEMBLE
+    )
     statistic: Literal["mean", "largest"] = key(
         '"mean" or "largest" over the motions: what the limits are on', models=ENSEMBLE, default="largest"
     )

@@ -15,8 +15,11 @@ from reference.support.scene_error import IS_REQUIRED, ONE_SURFACE, MisfitError,
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
-ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # form of the keys of a link
+ALONG_AXES = {  # form of keys of a body
+    "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
+}  # fmt: skip
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list here means several surfaces
+LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}  # limit in pydantic's words
 MISSING = {
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
@@ -93,6 +96,12 @@ def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) 
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     if error["type"] in ("dataclass_type", "model_type"):
         rule = "must be a table of keys"
+    if error["type"] in LENGTHS:
+        limit, end = LENGTHS[error["type"]]
+        found, allowed = error["ctx"]["actual_length"], error["ctx"][limit]
+        form = ALONG_AXES.get(str(place[-1]), f"a list of {end} {allowed}")
+        body = f" ({place[0]}.{place[1]} is body {int(place[1]) + 1})" if place[0] == "bodies" and len(place) > 1 else ""
+        rule = f"must be {form}; this list has {found}{body}"
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
     if key in LISTS_OF_SURFACES and isinstance(error["input"], list):

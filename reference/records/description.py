@@ -10,7 +10,8 @@ import numpy as np
 from reference.records.samples import AXES, Array
 from reference.support.constants import GRAVITY
 
-LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.001  # g
+LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.005  # g; 0.005 g is 0.05 m/s^2
+IN_G = 'values in g that are called m/s^2? Write [g] in the head of the file, or unit = "g" beside a plain text'
 UNEVEN = 0.01  # relative difference of steps from which a column of times counts as uneven
 FEW_SAMPLES = 100  # samples, below which no zero line is judged
 # Share of the largest velocity of a record that its last may have: at most 0.07 in 289 public records
@@ -138,7 +139,7 @@ def describe_samples(
     if largest > LARGEST_PEAK:
         warnings.append(f"the peak is {largest:.4g} g, above {LARGEST_PEAK:g} g: is the unit right?")
     elif largest < SMALLEST_PEAK:
-        warnings.append(f"the peak is {largest:.4g} g, below {SMALLEST_PEAK:g} g: is the unit right?")
+        warnings.append(f"the peak is {largest:.4g} g, below {SMALLEST_PEAK:g} g: {IN_G}")
     if np.ptp(steps) > UNEVEN * step:
         warnings.append(f"the steps are not equal: {steps.min():.4g} to {steps.max():.4g} s")
     duration = float(time[-1])

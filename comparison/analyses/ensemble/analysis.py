@@ -22,7 +22,6 @@ from comparison.study.models import (
     Model,
     has_spatial_data,
 )
-from reference import amplification
 from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, demands, floor_spectra, story_forces
 from reference.problem import Outcome, Scene, ground_peak
 
@@ -154,6 +153,6 @@ def _read_as_integrated(task: Arguments) -> list[Estimate]:
     resolved = {SMALL.key: SMALL_RESOLVED, EXACT.key: RESOLVED}.get(model.key)
     if resolved is None or not resolved.applies(scene):
         return []
-    read = amplification(scene, REST, tolerance=tolerance, **resolved.settings)
+    read = import_function(resolved.amplification)(scene, REST, tolerance=tolerance, **resolved.settings)
     (ground,) = ground_peak(scene, [REST])
     return [Estimate(float(mu * ground), float(error * ground)) for mu, error in zip(read.mu, read.error)]

@@ -39,7 +39,7 @@ def check_demands(
     if stored is not None and before is None:
         raise ValueError(f"stored: {str(stored)!r} has no {STORED.name}: phase-resonance ensemble --out writes one")
     if before is None and not any(each.limits_by_key() for each in asked.values()):
-        raise ValueError("no limit: give displacement, drift_ratio, uplift or base_shear, or stored")
+        raise ValueError(f"no limit: give {', '.join(DemandLimits.limited)} or stored")
     result = compute_ensemble(Ensemble(members), uplift)
     checks = check_limits(result, asked)
     checks += [] if before is None else compare_with_stored(result, before, within)

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from comparison.analyses.ensemble.governing import governing_motions
-from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
+from comparison.analyses.ensemble.quantities import READ, title_of, unit_of_demand
 from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.rows import labels, place_of
 from comparison.analyses.ensemble.sentences import motions_in_words
@@ -34,7 +34,7 @@ from reference.support.scene_error import printable
 
 KEY = "acceptance.demands."
 MEAN, LARGEST = "mean", "largest"
-UNITS = {"displacement": "m", "uplift": "m"}  # of the limits; those of the others are pure numbers
+SHARE = "base_shear"  # a limit on its share of the weight
 NAMED = 3  # motions that a reason names
 COUNTED = "stops"  # a number of events, of which a tolerance says nothing
 WITHIN = Range(0.0, 10.0)  # tolerance of a comparison with a stored ensemble
@@ -79,8 +79,9 @@ class DemandCheck:
 
 def word_check(check: DemandCheck) -> str:
     """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
+    unit, factor = READ["N"] if check.unit == "N" else (check.unit, 1.0)
     found, stated = (
-        "none" if value is None else f"{value:.4g} {check.unit}".rstrip() for value in (check.found, check.stated)
+        "none" if value is None else f"{factor * value:.4g} {unit}".rstrip() for value in (check.found, check.stated)
     )
     under = f" ({check.motion})" if check.motion else ""
     verdict = word_verdict(check.verdict, check.excess, check.stated, check.unit)
@@ -144,7 +145,7 @@ def _check_body(
     known = [
         (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
     ]
-    per = structure.weight if key == "base_shear" else 1.0
+    per = structure.weight if key == SHARE else 1.0
     of_engine = model not in ("", EXACT.key)
     governing = of_engine and len(values) < ensemble.motions
     lacking = _lacking_governing(ensemble, structure, {motion for *_, motion in known}) if governing else ""
@@ -152,10 +153,11 @@ def _check_body(
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
     alone = model if of_engine else ""
     on = _statistic_in_words(ensemble, statistic, count, alone, part=governing, governing=not lacking)
-    what = f"{_word_demand(structure, key, body)}, {on}"
+    by = " by statics" if key == "support_force_max" and not of_engine else ""
+    what = f"{_word_demand(structure, key, body)}{by}, {on}"
     what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
-    unit, ended = UNITS.get(key, ""), len(values) - len(known)
+    unit, ended = "" if key == SHARE else unit_of_demand(key), len(values) - len(known)
     reason = f"{ended} {'motion has' if ended == 1 else 'motions have'} no value" if ended else lacking
     if is_least:
         return DemandCheck(*about, least, limit, least - limit, 0.0, unit, least_motion, is_least=True)
@@ -175,7 +177,7 @@ def _check_body(
 
 def _word_demand(structure: Structure, key: str, body: int | None) -> str:
     """Return the demand that a limit is on, and its place."""
-    what = "base shear over the weight" if key == "base_shear" else title_of(key)
+    what = "base shear over the weight" if key == SHARE else title_of(key)
     return f"{what} {place}" if (place := place_of(structure, key, body)) else what
 
 

@@ -187,8 +187,10 @@ def page_of(ensemble: EnsembleResult) -> str:
         body = lost.attempt(what, partial(_render_part, part, ensemble, lost))
         section = Section(part.title, folded=False, name=part.name)
         parts.append((section, lost_line(lost.last) if body is None else body, ""))
+    heading = lost.attempt("heading", partial(sentences.heading, ensemble)) or "Demands under many motions"
     context = {
-        "heading": lost.attempt("heading", partial(sentences.heading, ensemble)) or "Demands under many motions",
+        "heading": heading,
+        "running": "; ".join(filter(None, [heading, str(ensemble.run.get("began", ""))])),
         "answer": lost.attempt("answer", partial(sentences.answer_sentence, ensemble)) or "",
         "data": compress_to_text(b"null"),
         "packed": {},

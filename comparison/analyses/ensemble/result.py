@@ -137,6 +137,9 @@ class Stripe(Demand):
     """why the other motions do not have it, and how many each"""
     largest_motion: Annotated[str, "motion of the largest value"] = ""
     smallest_motion: Annotated[str, "motion of the smallest value"] = ""
+    known: Sequence[Statistic] = field(default_factory=list)
+    """mean and worst value of the motions that have the demand; empty where all or none have it"""
+    known_motion: Annotated[str, "motion of that worst value"] = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -19,6 +19,7 @@ NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over 
 NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
 HEIGHTS = ("acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
 PLATFORM = 1
+SHORT = 8  # letters of a bound that stand below every cell of an envelope
 WORST = 4  # column of the worst value, behind mean and fractiles
 
 
@@ -68,6 +69,28 @@ class DemandRow:
     motion: str  # of the worst value
     motions: str  # how many have the demand, and why others do not
     is_first: bool = True  # begins a demand
+    bounds: tuple[str, ...] = ()  # of the cells of an envelope, where their names are short
+
+    @property
+    def every_bound(self) -> str:
+        """The bound of all cells of an envelope; "" where they are of several."""
+        return self.bounds[0] if len({*self.bounds}) == 1 else ""
+
+
+@dataclass(frozen=True)
+class Told:
+    """
+    What can be told of a demand of a structure: mean, fractiles and worst value over the motions.
+
+    marks: of each, "" of what is known, "≥ " or "≤ " before what is a bound of it, " (of 3)" behind a mean of the
+    motions that have the demand. motion: of the worst value.
+    """
+
+    structure: Structure
+    stripe: Stripe
+    numbers: tuple[Statistic, ...]
+    marks: tuple[str, ...]
+    motion: str
 
 
 def labels(ensemble: EnsembleResult) -> dict[str, str]:
@@ -207,8 +230,8 @@ def _rows_of(
     for structure in ensemble.structures:
         stripe = read(structure)
         if stripe is not None:
-            found.append((structure, stripe))
-            yield _demand_row(shown, structure, named[structure.name], stripe, is_first=len(found) == 1)
+            found.append(tell(structure, stripe))
+            yield _demand_row(shown, named[structure.name], found[-1], is_first=len(found) == 1)
     if not found and scale == ensemble.top:
         yield from _engine_rows(ensemble, shown)
     if len(found) > 1:
@@ -251,16 +274,52 @@ def worst_of(stripe: Stripe) -> tuple[Statistic, str]:
     return stripe.largest, stripe.largest_motion
 
 
-def _demand_row(shown: Shown, structure: Structure, bound: str, stripe: Stripe, is_first: bool) -> DemandRow:
-    unit, factor = unit_of_row(shown, structure)
+def tell(structure: Structure, stripe: Stripe) -> Told:
+    """
+    Return what can be told of a demand of which motions have no value.
+
+    The worst value is at least that of the motions that have one. A displacement under a motion that reached the
+    travel is at least the travel.
+    """
     worst, motion = worst_of(stripe)
-    numbers = stripe.mean, *stripe.fractiles, worst
+    numbers = [stripe.mean, *stripe.fractiles, worst]
+    if not stripe.known:
+        return Told(structure, stripe, tuple(numbers), ("",) * len(numbers), motion)
+    mean, worst = stripe.known
+    limit = {"displacement": structure.building and structure.building.travel, "travel_share": 1.0}.get(stripe.quantity)
+    if limit and {*stripe.reasons} == {Outcome.TRAVEL_REACHED.value}:
+        lost, count = sum(stripe.reasons.values()), stripe.answered + sum(stripe.reasons.values())
+        least = ((mean.value or 0.0) * stripe.answered + limit * lost) / count
+        reached = Statistic(limit, None)
+        numbers = [Statistic(least, mean.error), *(reached if n.value is None else n for n in numbers[1:-1]), reached]
+        return Told(structure, stripe, tuple(numbers), _marks("≥ ", stripe), "")
+    bound = "≤ " if stripe.quantity in SMALLEST else "≥ "
+    numbers = [mean, *numbers[1:-1], worst]
+    return Told(structure, stripe, tuple(numbers), (f" (of {stripe.answered})", *("",) * 3, bound), stripe.known_motion)
+
+
+def _marks(mark: str, stripe: Stripe) -> tuple[str, ...]:
+    """Return a mark for mean and worst value, and for the fractiles that have no value of their own."""
+    return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
+
+
+def with_mark(text: str, mark: str) -> str:
+    """Return the text of a number with its mark; that of no number alone."""
+    return text if text in ("none", NOT_ALL) else f"{text}{mark}" if mark.startswith(" ") else f"{mark}{text}"
+
+
+def _demand_row(shown: Shown, bound: str, told: Told, is_first: bool) -> DemandRow:
+    structure, stripe = told.structure, told.stripe
+    unit, factor = unit_of_row(shown, structure)
     motions = "; ".join([str(stripe.answered), *(f"{count} {reason}" for reason, count in stripe.reasons.items())])
     motions += "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
     where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
     count = stripe.answered + sum(stripe.reasons.values())
-    cells = tuple(cell_of(each, factor, column, count, stripe.quantity) for column, each in enumerate(numbers))
-    return DemandRow(shown.name, unit, bound, where, cells, motion, motions, is_first)
+    cells = tuple(
+        with_mark(cell_of(each, factor, column, count, stripe.quantity), mark)
+        for column, (each, mark) in enumerate(zip(told.numbers, told.marks))
+    )
+    return DemandRow(shown.name, unit, bound, where, cells, told.motion, motions, is_first)
 
 
 def cell_of(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
@@ -278,33 +337,32 @@ def cell_of(number: Statistic, factor: float, column: int, motions: int, quantit
     return text_of(number.value, None, factor)
 
 
-def _envelope_row(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named: dict[str, str]) -> DemandRow:
-    """The worst of all bounds in every statistic."""
-    sign = -1.0 if shown.quantity in SMALLEST else 1.0
-    rows = [(structure, stripe, (stripe.mean, *stripe.fractiles, worst_of(stripe)[0])) for structure, stripe in found]
-    cells, at = [], found[0]
-    for column in range(len(rows[0][2])):
-        known = [row for row in rows if row[2][column].value is not None]
-        if len(known) < len(rows):
+def _envelope_row(shown: Shown, found: Sequence[Told], named: dict[str, str]) -> DemandRow:
+    """The worst of all bounds in every statistic; a bound of it where that of a structure is not known."""
+    sign, bound = (-1.0, "≤ ") if shown.quantity in SMALLEST else (1.0, "≥ ")
+    cells, bounds, at = [], [], found[0]
+    for column in range(len(at.numbers)):
+        known = [each for each in found if each.numbers[column].value is not None]
+        if not known:
             cells.append("none")
             continue
 
-        def size(row: tuple[Structure, Stripe, tuple[Statistic, ...]], column: int = column) -> float:
-            value = row[2][column].value
-            return sign * unit_of_row(shown, row[0])[1] * (value if value is not None else -math.inf)
+        def size(told: Told, column: int = column) -> float:
+            return sign * unit_of_row(shown, told.structure)[1] * (told.numbers[column].value or 0.0)
 
-        structure, stripe, numbers = max(known, key=size)
-        at = structure, stripe
-        number, factor = numbers[column], unit_of_row(shown, structure)[1]
-        count = stripe.answered + sum(stripe.reasons.values())
-        cells.append(cell_of(number, factor, column, count, shown.quantity))
-    structure, stripe = at
-    motion = worst_of(stripe)[1] if cells[-1] != "none" else ""
-    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" and motion else ""
-    said = f"{motion}, {named[structure.name]}" if motion else ""
-    return DemandRow(
-        shown.name, unit_of_row(shown, structure)[0], ENVELOPE, where, tuple(cells), said, "", is_first=False
-    )
+        at = max(known, key=size)
+        sure = len(known) == len(found) and not any(each.marks[column] for each in found)
+        number, factor = at.numbers[column], unit_of_row(shown, at.structure)[1]
+        count = at.stripe.answered + sum(at.stripe.reasons.values())
+        cell = cell_of(number, factor, column, count, shown.quantity)
+        cells.append(with_mark(cell, "" if sure else at.marks[column] or bound))
+        bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_ALL else "")
+    motion = at.motion if cells[-1] != "none" else ""
+    where = place_of(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and motion else ""
+    said = f"{motion}, {named[at.structure.name]}" if motion else ""
+    about = shown.name, unit_of_row(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
+    short = len(bounds) == len(cells) and max(map(len, bounds)) <= SHORT
+    return DemandRow(*about, is_first=False, bounds=tuple(bounds) if short else ())
 
 
 def _engine_rows(ensemble: EnsembleResult, shown: Shown) -> Iterator[DemandRow]:

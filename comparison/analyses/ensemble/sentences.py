@@ -24,14 +24,17 @@ DEFINITIONS = (
     "too short to move equipment. All models are compared as integrated.",
     "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
     "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
-    "16 %, 50 % and 84 % are fractiles over the motions (Hazen), and each motion has a value of its own. A motion "
-    "without a value, as one that reaches the rim or the travel, counts as the worst: all fractiles rest on that. Mean "
-    "and worst value are none with it, and so is a fractile that falls on it. A fractile beyond the outermost motions "
-    "is left out, as 16 % of three. The column “largest” has the smallest value of a smallest force.",
+    "16 %, 50 % and 84 % are fractiles over all motions (Hazen). A motion without a value, as one that reaches the rim "
+    "or the travel, counts as worse than all others: a fractile is then no better than the true one, and none where it "
+    "falls on such a motion. “(of 21)” behind a mean: of the 21 motions that have a value. “≥” before a number: at "
+    "least that, the worst of the motions that have a value; a displacement is at least the travel under a motion that "
+    "reaches it. “≤” is the same of a smallest force. A fractile beyond the outermost motions is left out (–), as 16 % "
+    "of three. The column “largest” has the smallest value of a smallest force.",
     "Largest floor acceleration, drift and drift ratio are of every motion the largest over the floors or stories; "
     "statistics are of these, and “where” is the place of the largest of all. The tables over the height, and a limit "
     "on a mean, take each floor or story by itself.",
-    "The envelope is in every column the worst of the bounds; motion, bound and place are those of its largest value.",
+    "The envelope is in every column the worst of the bounds, named below the number or, of all columns, beside the "
+    "word; motion and place are those of its largest value.",
     "All supports carry the same dead load, but for eccentric masses. Support forces by the equations are statics: "
     "normal force, overturning moment and displaced weight on equally stiff supports under a stiff platform, negative "
     "where a support would lift off. The displaced weight is the moment of the weight about the middle of the spheres, "

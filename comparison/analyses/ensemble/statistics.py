@@ -60,12 +60,18 @@ def summarize_motions(
 
     about: first fields of a stripe. numbers: by motion. lacking: why motions have none, and how many each.
     """
-    known, values = list(numbers.values()), [number.value for number in numbers.values()]
-    worst = -math.inf if about[1] in SMALLEST else math.inf
-    mean, *shares, largest, smallest = statistics(known, (*FRACTILES, 1.0, 0.0), worst)
+    every, values = list(numbers.values()), [number.value for number in numbers.values()]
+    is_smallest = about[1] in SMALLEST
+    mean, *shares, largest, smallest = statistics(every, (*FRACTILES, 1.0, 0.0), -math.inf if is_smallest else math.inf)
     fractiles = [result.DemandFractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
-    answered = len(known) - sum(lacking.values())
-    motions = [list(numbers)[values.index(each.value)] if each.value in values else "" for each in (largest, smallest)]
+    answered = len(every) - sum(lacking.values())
+    known = [number for number in every if math.isfinite(number.value)]
+    of_known = statistics(known, (0.0 if is_smallest else 1.0,)) if 0 < len(known) < len(every) else []
+
+    def motion_of(number: result.Statistic) -> str:
+        return list(numbers)[values.index(number.value)] if number.value in values else ""
+
+    motions = motion_of(largest), motion_of(smallest), of_known, motion_of(of_known[1]) if of_known else ""
     return result.Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking), *motions)
 
 

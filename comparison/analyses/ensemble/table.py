@@ -50,8 +50,8 @@ def table_text(points: Points, ensemble: EnsembleResult) -> str:
         formula = isinstance(value, str) and (value[:1] in CONTROLS or value.lstrip().startswith(FORMULA))
         return f"'{value}" if formula else value
 
-    rows, stream = as_rows(points, ensemble), io.StringIO()
-    writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
-    return stream.getvalue()
+    rows, lines = as_rows(points, ensemble), io.StringIO(newline="")
+    writer = csv.writer(lines, quoting=csv.QUOTE_MINIMAL, lineterminator="\r\n")  # it quotes what has one of these
+    writer.writerow(rows[0])
+    writer.writerows(map(cell, row.values()) for row in rows)
+    return lines.getvalue().replace("\r\n", "\n")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from comparison.analyses.ensemble.quantities import SMALLEST, text_of
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
-from comparison.analyses.ensemble.rows import MAIN, Shown, labels, read_values, stripe_of, unit_of_row, worst_of
+from comparison.analyses.ensemble.rows import MAIN, Shown, labels, read_values, stripe_of, tell, unit_of_row, with_mark
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 
@@ -203,14 +203,15 @@ def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, l
         if ratio is None or stripe is None:
             continue
         unit, factor = row.read
-        numbers = stripe.mean, *stripe.fractiles, worst_of(stripe)[0]
+        told = tell(row.structure, stripe)
         cells = []
         shown = OF_SMALLEST if row.shown.quantity in SMALLEST else STATISTICS
         for (name, place), (head, _) in zip(shown, STATISTICS):
-            value = numbers[place].value
+            value = told.numbers[place].value
             of = f"{name}: " if name != head else ""
             extended = value is not None and value > 0.0 and ratio.motions > 1  # one motion tells no spread
-            cells.append(of + (_with_range(ratio, value, factor) if extended and value is not None else "none"))
+            text = _with_range(ratio, value, factor) if extended and value is not None else "none"
+            cells.append(of + with_mark(text, told.marks[place]))
         yield row, ratio, [unit, *cells]
 
 
