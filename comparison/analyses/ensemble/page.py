@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from comparison.analyses.ensemble import panels, sentences
 from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of, unit_for_reading
+from comparison.analyses.ensemble.hand_checks import check_rows
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import (
     HEIGHTS,
@@ -148,6 +149,7 @@ PARTS = (
     PagePart("height", "Over the height", _height_context),
     PagePart("supports", "Support forces", _supports_context, lambda ensemble: bool(ensemble.supports)),
     PagePart("motions", "Demands of every motion", _motions_context),
+    PagePart("hand_checks", "Checks by hand", lambda ensemble, lost: {"rows": check_rows(ensemble)}),
     PagePart(
         "trust",
         "How far the simple models can be trusted",
@@ -188,9 +190,10 @@ def page_of(ensemble: EnsembleResult) -> str:
         section = Section(part.title, folded=False, name=part.name)
         parts.append((section, lost_line(lost.last) if body is None else body, ""))
     heading = lost.attempt("heading", partial(sentences.heading, ensemble)) or "Demands under many motions"
+    began = str(ensemble.run.get("began", ""))  # in UTC
     context = {
         "heading": heading,
-        "running": "; ".join(filter(None, [heading, str(ensemble.run.get("began", ""))])),
+        "running": "; ".join(filter(None, [heading, began[:16].replace("T", " ") + " UTC" if began else ""])),
         "answer": lost.attempt("answer", partial(sentences.answer_sentence, ensemble)) or "",
         "data": compress_to_text(b"null"),
         "packed": {},

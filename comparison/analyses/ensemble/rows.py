@@ -67,7 +67,7 @@ class DemandRow:
     where: str  # of the worst value
     cells: tuple[str, ...]  # mean, fractiles, the worst value
     motion: str  # of the worst value
-    motions: str  # how many have the demand, and why others do not
+    motions: str  # how many have the demand, of how many
     is_first: bool = True  # begins a demand
     bounds: tuple[str, ...] = ()  # of the cells of an envelope, where their names are short
 
@@ -311,10 +311,10 @@ def with_mark(text: str, mark: str) -> str:
 def _demand_row(shown: Shown, bound: str, told: Told, is_first: bool) -> DemandRow:
     structure, stripe = told.structure, told.stripe
     unit, factor = unit_of_row(shown, structure)
-    motions = "; ".join([str(stripe.answered), *(f"{count} {reason}" for reason, count in stripe.reasons.items())])
+    count = stripe.answered + sum(stripe.reasons.values())
+    motions = str(count) if stripe.answered == count else f"{stripe.answered} of {count}"
     motions += "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
     where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
-    count = stripe.answered + sum(stripe.reasons.values())
     cells = tuple(
         with_mark(cell_of(each, factor, column, count, stripe.quantity), mark)
         for column, (each, mark) in enumerate(zip(told.numbers, told.marks))
@@ -359,9 +359,9 @@ def _envelope_row(shown: Shown, found: Sequence[Told], named: dict[str, str]) ->
         bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_ALL else "")
     motion = at.motion if cells[-1] != "none" else ""
     where = place_of(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and motion else ""
-    said = f"{motion}, {named[at.structure.name]}" if motion else ""
-    about = shown.name, unit_of_row(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
     short = len(bounds) == len(cells) and max(map(len, bounds)) <= SHORT
+    said = motion if short or not motion else f"{motion}, {named[at.structure.name]}"
+    about = shown.name, unit_of_row(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
     return DemandRow(*about, is_first=False, bounds=tuple(bounds) if short else ())
 
 

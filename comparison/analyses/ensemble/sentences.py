@@ -17,7 +17,8 @@ FEW = 3  # and of a sentence that has other things to say
 DEFINITIONS = (
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
-    "middle of the platform; `support_displacement` in ensemble.csv is the largest of a support that turns with it.",
+    "middle of the platform; support displacement is the largest of a support, which turns with the platform, by the "
+    "spatial engine alone and under its motions: the bearing needs that travel.",
     "Accelerations have two readings. “As integrated” is the largest value at rest or while the isolator slides faster "
     "than 1 mm/s: what any time integration and the engine give, and the one to design equipment by. The “literal "
     "supremum” adds the limits at the instants in which the isolator stops; no integration reaches them, and they are "
@@ -30,8 +31,8 @@ DEFINITIONS = (
     "least that, the worst of the motions that have a value; a displacement is at least the travel under a motion that "
     "reaches it. “≤” is the same of a smallest force. A fractile beyond the outermost motions is left out (–), as 16 % "
     "of three. The column “largest” has the smallest value of a smallest force.",
-    "Largest floor acceleration, drift and drift ratio are of every motion the largest over the floors or stories; "
-    "statistics are of these, and “where” is the place of the largest of all. The tables over the height, and a limit "
+    "Largest floor acceleration, drift and drift ratio are of every motion the largest over the floors, with the "
+    "platform, or over the stories; statistics are of these, and “where” is the place of the largest of all. The tables over the height, and a limit "
     "on a mean, take each floor or story by itself.",
     "The envelope is in every column the worst of the bounds, named below the number or, of all columns, beside the "
     "word; motion and place are those of its largest value.",

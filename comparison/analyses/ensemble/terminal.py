@@ -80,7 +80,7 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 def _cells_of_row(row: DemandRow) -> list[str]:
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
-    return [row.name, row.unit, mean, *values, f"{row.motion}, {row.where}" if row.where else row.motion]
+    return [row.name, row.unit, mean, *values, ", ".join(filter(None, [row.motion, row.where, *row.bounds[-1:]]))]
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:

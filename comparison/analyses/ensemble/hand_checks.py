@@ -1,0 +1,98 @@
+"""What a checker can compute by hand from the numbers of the report, beside what the report has."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from comparison.analyses.ensemble.result import EnsembleResult, Structure
+from comparison.analyses.ensemble.rows import floor_of, labels
+from comparison.study.models import EXACT
+from comparison.wording import percent
+from reference.problem import GRAVITY
+
+
+@dataclass(frozen=True)
+class HandCheck:
+    """A number by hand, or the range in which it must lie, beside that of the report; both in `unit`."""
+
+    what: str
+    formula: str
+    low: float
+    high: float
+    found: float
+    unit: str
+
+    @property
+    def by_hand(self) -> str:
+        """The number by hand, or its range."""
+        ends = f"{self.low:.4g}", f"{self.high:.4g}"
+        return f"{ends[0] if ends[0] == ends[1] else ' to '.join(ends)} {self.unit}"
+
+    @property
+    def verdict(self) -> str:
+        """How far the report is from the number by hand; of a range whether it is inside."""
+        if self.low == self.high:
+            return f"{100.0 * (self.found / self.low - 1.0):+.2f} %".replace("-", "−")
+        if self.low <= self.found <= self.high:
+            return "inside"
+        return f"outside by {percent(max(self.low - self.found, self.found - self.high) / self.found)}"
+
+
+def hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
+    """Yield the checks that the numbers of a structure allow."""
+    read = structure.building
+    if read is None or not read.masses:
+        return
+    tons, weight = sum(read.masses) / 1e3, structure.weight / 1e3
+    yield HandCheck("weight", f"{tons:.5g} t × {GRAVITY:g} m/s²", tons * GRAVITY, tons * GRAVITY, weight, "kN")
+    if read.support_loads:
+        total = sum(read.support_loads) / 1e3
+        yield HandCheck("dead loads of all supports together", "weight", weight, weight, total, "kN")
+    period = read.isolated_period[0][0] if read.isolated_period[0] else None
+    if read.radius is not None and period is not None:
+        rigid = 2.0 * math.pi * math.sqrt(read.radius / GRAVITY)
+        fixed = read.fixed_base_period[0][0] if read.fixed_base_period and read.fixed_base_period[0] else 0.0
+        formula = f"T = 2π √({read.radius:.4g} / {GRAVITY:g}) to √(T² + {fixed:.3g}²)"
+        yield HandCheck("first period on the isolator, along x", formula, rigid, math.hypot(rigid, fixed), period, "s")
+    yield from _check_base_shear(ensemble, structure)
+    yield from _check_top_drift(ensemble, structure)
+
+
+def _check_base_shear(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
+    """Yield the base shear of the motion with the largest displacement: restoring force and friction."""
+    read = structure.building
+    assert read is not None
+    moved = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+    known = {motion: each.value for motion, each in moved.items() if each.value is not None}
+    if read.radius is None or len(read.friction) != 2 or not known:
+        return
+    motion = max(known, key=lambda name: known[name])
+    shear = ensemble.values_at_top(structure.name, "base_shear", None, EXACT.key)[motion].value
+    angle = math.asin(known[motion] / read.radius)
+    formula = (
+        f"W tan φ to W (tan φ + {read.friction[1]:.3g}), sin φ = {1e3 * known[motion]:.4g} / {1e3 * read.radius:.4g}"
+    )
+    low, high, weight = math.tan(angle), math.tan(angle) + read.friction[1], structure.weight / 1e3
+    if shear is not None:
+        yield HandCheck(f"base shear under {motion}", formula, low * weight, high * weight, shear / 1e3, "kN")
+
+
+def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
+    """Yield the drift of the top story: its shear over its stiffness, of which dampers carry a part."""
+    read, top = structure.building, structure.bodies
+    assert read is not None
+    drift, shear = (ensemble.stripe(structure.name, name, top) for name in ("drift", "story_shear"))
+    if drift is None or shear is None or not read.stiffness:
+        return
+    drifts, force = (each.fractiles[1].value for each in (drift, shear))  # medians
+    (along_x, along_y), what = read.stiffness[-1], f"median drift below {floor_of(structure, top)}"
+    if along_x != along_y or not drifts or not force:
+        return
+    formula = f"median shear {force / 1e3:.4g} kN over {along_x / 1e6:.4g} MN/m; dampers carry the rest"
+    yield HandCheck(what, formula, 1e3 * force / along_x, 1e3 * force / along_x, 1e3 * drifts, "mm")
+
+
+def check_rows(ensemble: EnsembleResult) -> list[tuple[str, HandCheck]]:
+    """Return every check with its bound."""
+    named = labels(ensemble)
+    return [(named[each.name], check) for each in ensemble.structures for check in hand_checks(ensemble, each)]
