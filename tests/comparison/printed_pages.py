@@ -53,12 +53,13 @@ def as_printed(page: Page) -> Page:
 
 
 def lowest_text(sheet: PageObject) -> float:
-    """Height of the lowest text of a sheet above its lower edge, points."""
+    """Height of the lowest text of a sheet above its lower edge, points; of the number of the page not."""
     heights = [math.inf]
 
     def see(text: str, of_all: list[float], of_text: list[float], *rest: object) -> None:
-        if text.strip():
-            heights.append(of_all[5] + of_all[3] * of_text[5])
+        height = of_all[5] + of_all[3] * of_text[5]
+        if text.strip() and height > MARGIN / POINT:
+            heights.append(height)
 
     sheet.extract_text(visitor_text=see)
     return min(heights)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
 from comparison.analyses.ensemble.rows import floor_of, labels
+from comparison.analyses.ensemble.trust import in_percent
 from comparison.study.models import EXACT
 from comparison.wording import percent
 from reference.problem import GRAVITY
@@ -32,7 +33,7 @@ class HandCheck:
     def verdict(self) -> str:
         """How far the report is from the number by hand; of a range whether it is inside."""
         if self.low == self.high:
-            return f"{100.0 * (self.found / self.low - 1.0):+.2f} %".replace("-", "−")
+            return f"{in_percent(self.found / self.low - 1.0)} %"
         if self.low <= self.found <= self.high:
             return "inside"
         return f"outside by {percent(max(self.low - self.found, self.found - self.high) / self.found)}"

@@ -161,7 +161,8 @@ def summarize_over_bodies(ensemble: EnsembleResult, structure: Structure, quanti
         reasons[NOT_EVERYWHERE] = more
     about = structure.name, quantity, None, EXACT.key, own[0].unit, scale
     found = summarize_motions(about, {motion: number for motion, (number, _) in largest.items()}, reasons)
-    return replace(found, body=largest[found.largest_motion][1]) if found.largest_motion else found
+    motion = found.largest_motion or found.known_motion
+    return replace(found, body=largest[motion][1]) if motion else found
 
 
 def demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:

@@ -47,16 +47,16 @@ class Ratio:
     @property
     def text(self) -> str:
         """Mean difference, and its range over the motions."""
-        ends = _in_percent(self.smallest - 1.0), _in_percent(self.largest - 1.0)
+        ends = in_percent(self.smallest - 1.0), in_percent(self.largest - 1.0)
         return self.brief + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
 
     @property
     def brief(self) -> str:
         """Mean difference alone."""
-        return f"{_in_percent(self.mean - 1.0)} %"
+        return f"{in_percent(self.mean - 1.0)} %"
 
 
-def _in_percent(share: float) -> str:
+def in_percent(share: float) -> str:
     """A share in percent to two decimals, without the sign of percent."""
     return f"{100.0 * share:+.2f}".replace("-", "−").replace("+0.00", "0.00").replace("−0.00", "0.00")
 
@@ -210,6 +210,7 @@ def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, l
             value = told.numbers[place].value
             of = f"{name}: " if name != head else ""
             extended = value is not None and value > 0.0 and ratio.motions > 1  # one motion tells no spread
+            extended = extended and told.numbers[place].error is not None  # the travel is no number of the equations
             text = _with_range(ratio, value, factor) if extended and value is not None else "none"
             cells.append(of + with_mark(text, told.marks[place]))
         yield row, ratio, [unit, *cells]

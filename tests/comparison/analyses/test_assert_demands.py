@@ -29,6 +29,14 @@ def test_a_demand_within_its_limit_passes_and_one_beyond_it_fails_by_its_excess(
     assert "(by +25 %)" in failure(displacement=MOVED / 1.25, statistic="mean")[-1]
 
 
+def test_accelerations_and_residuals_are_limited_too() -> None:
+    assert_demands("synthetic-pair", acceleration=1e3, residual=10.0)
+    count, first, second = failure(acceleration=0.1, residual=0.0)
+    assert count == "2 demands: 0 met, 2 not met, 0 not compared"
+    assert "floor acceleration, as integrated" in first + second
+    assert "residual displacement" in first + second
+
+
 def test_limits_of_the_call_take_the_place_of_those_in_the_file(tmp_path: Path) -> None:
     text = (Path(reference.__file__).parent / "records/examples/synthetic-pair.toml").read_text()
     record = Path(reference.__file__).parent / "records/examples/synthetic-pair.csv"
@@ -54,7 +62,7 @@ def test_a_family_is_compared_scene_by_scene(tmp_path: Path, monkeypatch: pytest
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
-        ({}, "no limit: give displacement, drift_ratio, uplift or base_shear, or stored"),
+        ({}, "no limit: give displacement, drift_ratio, uplift, base_shear, support_force_max, acceleration, residual or stored"),
         ({"statistic": "mean"}, "no limit"),
         ({"displacement": -1.0}, "displacement = -1.0: must be"),
         ({"displacement": 1.0, "statistic": "median"}, "statistic = 'median': must be one of largest, mean"),

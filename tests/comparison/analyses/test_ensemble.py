@@ -25,7 +25,7 @@ from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
 from comparison.study.models import EXACT, TRANSLATIONAL
 from reference.measures import Estimate, FloorSpectra, StoryForces, story_forces
-from reference.problem import load_family, load_scene
+from reference.problem import ground_peak, load_family, load_scene
 from reference.records.motion_lists import Motion
 
 SCENE = """title = "two bodies"
@@ -254,7 +254,15 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: py
     (row,) = (row for row in rows if (row["motion"], row["scale [-]"], row["model"]) == ("m2", "1.0", "exact"))
     assert float(row["displacement [m]"]) == numbers.displacement.value
     assert float(row["drift_2 [m]"]) == numbers.drift[0].value
-    assert float(row["acceleration_1_error [m/s^2]"]) == numbers.acceleration[0].error
+    read = reference.amplification(scene, (0.0, 0.0), cutoff=1e-3)
+    ground = float(ground_peak(scene, [(0.0, 0.0)])[0])
+    for body in (1, 2):
+        assert float(row[f"acceleration_{body} [m/s^2]"]) == read.mu[body - 1] * ground, "as integrated"
+        assert float(row[f"acceleration_{body}_error [m/s^2]"]) == read.error[body - 1] * ground
+        assert float(row[f"acceleration_supremum_{body} [m/s^2]"]) == numbers.acceleration[body - 1].value
+    assert read.mu[0] * ground < 0.999 * numbers.acceleration[0].value, "a case in which the readings differ"
+    with_supremum = {row["model"] for row in rows if row["acceleration_supremum_1 [m/s^2]"]}
+    assert with_supremum == {"exact", "small"}, "no engine has it"
     assert float(row["friction_energy [J]"]) == numbers.friction_energy.value
     assert (row["bound"], row["status"]) == ("mine", "ok")
     shear = story_forces(reference.trajectory(scene, (0.0, 0.0))).shear

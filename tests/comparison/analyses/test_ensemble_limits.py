@@ -141,6 +141,23 @@ def test_what_a_motion_without_a_value_leaves_open_is_not_called_met() -> None:
     assert "largest of 2 of 3 motions: 0.43 m (Northridge), allowed 0.4 m: not met (by +7.5 %)" in beyond
 
 
+def test_forces_accelerations_and_residuals_are_limited_each_in_its_unit_and_reading() -> None:
+    ensemble = ensemble_of({
+        ("support_force_max", None): (0.9e6, 1.3e6, 1.1e6), ("acceleration", 1): (2.0, 3.0, 1.0),
+        ("acceleration", 2): (4.0, 1.0, 2.0), ("residual", None): (0.01, 0.02, None),
+    })  # fmt: skip
+    assert said_of(ensemble, support_force_max=1.04e6, acceleration=5.0, residual=0.015) == [
+        "job[upper bound]: largest support force by statics, largest of 3 motions: 1300 kN (Imperial Valley), allowed "
+        "1040 kN: not met (by +25 %)",
+        "job[upper bound]: floor acceleration, as integrated body 2, largest of 3 motions: 4 m/s^2 (Kobe), allowed "
+        "5 m/s^2: met",
+        "job[upper bound]: residual displacement of the isolator, largest of 2 of 3 motions: 0.02 m (Imperial Valley), "
+        "allowed 0.015 m: not met (by +33 %)",
+    ]
+    (line,) = said_of(ensemble, support_force_max=1.15e6, statistic="mean")
+    assert "mean of 3 motions: 1100 kN, allowed 1150 kN: met" in line
+
+
 IN_TWO = "largest in the 2 of 3 motions that the spatial engine computed (those that govern among them)"
 
 

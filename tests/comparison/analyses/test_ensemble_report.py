@@ -18,7 +18,7 @@ from printed_pages import BEYOND, CUT, as_printed, letters, printed_page
 from runs import SMALL, quick_figures
 
 import reference
-from comparison.analyses.ensemble import page, panels, rows, sentences, trust
+from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, trust
 from comparison.analyses.ensemble.command import main
 from comparison.analyses.ensemble.quantities import text_of
 from comparison.analyses.ensemble.result import (
@@ -137,6 +137,9 @@ def test_every_number_of_the_printed_report_is_read_back(folder: Path, found: En
     for each in found.supports:
         for number in (each.smallest, each.largest):
             assert letters(text_of(number.value, number.error, 1e-3)) in text
+    for number, sheet in enumerate(printed.texts, start=1):
+        assert letters(f"page {number} of {len(printed.texts)}") in sheet
+        assert sheet.count(letters(sentences.heading(found))) == 1 + (number == 1), "at the top of every page"
     for size in printed.sizes:
         assert size == pytest.approx((210.0, 297.0), abs=0.5)
     assert min(printed.filled[:-1]) > 1.0 / 3.0, printed.filled
@@ -354,10 +357,14 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
         return next(row for row in shown if (row.name, row.bound) == ("largest drift ratio", "envelope"))
 
     row = envelope(both)
-    assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4, b", "below body 2")
+    assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4", "below body 2")
+    assert row.bounds == ("c", "c", "c", "c", "b")
     lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
     row = envelope(replace(both, curves=lost))
-    assert (row.cells[4], row.motion, row.where) == ("none", "", "")
+    assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
+    lost = [replace(each, values=(None,)) if each.motion == "m4" and each.body else each for each in curves]
+    row = next(row for row in rows.demand_rows(replace(both, curves=lost), 1.0) if row.name == "largest drift ratio")
+    assert (row.cells[4], row.motion, row.where) == ("≥ 0.4", "m1", "below body 3"), "of the motions that have values"
 
 
 def test_a_motion_beyond_the_travel_has_its_instant_in_the_files_and_on_the_page(
@@ -419,8 +426,9 @@ def two_bounds() -> EnsembleResult:
     lower = [replace(each, values=(None,), errors=(None,)) if each.motion == "m4" else each for each in one.curves]
     none = Statistic(None, None)
     stripe = replace(
-        one.stripes[0], mean=none, largest=none, answered=3, reasons={"travel reached": 1}, largest_motion=""
-    )
+        one.stripes[0], mean=none, largest=none, answered=3, reasons={"travel reached": 1}, largest_motion="",
+        known=[Statistic(0.2, 0.0), Statistic(0.3, 0.0)], known_motion="m3",
+    )  # fmt: skip
     upper = [replace(each, structure="c") for each in one.curves]
     names = [replace(one.structures[0], name=name) for name in ("b", "c")]
     return replace(
@@ -448,6 +456,52 @@ def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
     assert sentences.travel_sentence(planted()) == ""
     stopped = [EndedMotion("b", "m4", 1.0, "rim reached", 3.0)]
     assert sentences.travel_sentence(replace(two_bounds(), ended=stopped)) == ""
+
+
+def cells_of(found: EnsembleResult) -> list[tuple[str, ...]]:
+    """Mean, largest value, its motion and the number of motions of the displacement, by bound and of the envelope."""
+    shown = [row for row in rows.demand_rows(found, 1.0) if row.name == "isolator displacement"]
+    return [(row.cells[0], row.cells[-1], row.motion, row.motions) for row in shown]
+
+
+def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_none() -> None:
+    """Three motions moved 0.1, 0.2 and 0.3 m, the fourth the travel of 0.5 m at least."""
+    upper = ("250 ± 1", "400 ± 1", "m4", "4")
+    assert cells_of(two_bounds()) == [("≥ 275", "≥ 500", "", "3 of 4"), upper, ("≥ 275", "≥ 500", "", "")]
+    rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
+    envelope = ("≥ 250 ± 1", "≥ 400 ± 1", "m4", "")
+    assert cells_of(replace(two_bounds(), stripes=rim)) == [
+        ("200 (of 3)", "≥ 300", "m3", "3 of 4"), upper, envelope,
+    ]  # fmt: skip
+    numbers = {name: Estimate(value, 0.0) for name, value in zip("abcd", (3.0, math.nan, 1.0, 2.0))}
+    force = summarize_motions(("b", "support_force_min", None, "exact", "N", 1.0), numbers, {"rim reached": 1})
+    assert (force.mean.value, [each.value for each in force.known], force.known_motion) == (None, [2.0, 1.0], "c")
+    told = rows.tell(planted().structures[0], force)
+    assert (told.marks, told.motion, told.numbers[-1].value) == ((" (of 3)", "", "", "", "≤ "), "c", 1.0)
+    whole = summarize_motions(("b", "displacement", None, "exact", "m", 1.0), {"a": Estimate(1.0, 0.0)}, {})
+    assert (list(whole.known), rows.tell(planted().structures[0], whole).marks) == ([], ("",) * 5)
+
+
+def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(found: EnsembleResult) -> None:
+    checks = {(bound, check.what): check for bound, check in hand_checks.check_rows(found)}
+    assert len(checks) == 8, "stories that differ along x and y have no drift by hand"
+    weight = checks["lower bound", "weight"]
+    assert (weight.by_hand, weight.found, weight.verdict) == ("882.9 kN", pytest.approx(882.9), "0.00 %")
+    for (_, what), check in checks.items():
+        assert check.verdict in ("0.00 %", "inside"), what
+    structure = replace(found.structures[0], weight=2.0 * found.structures[0].weight)
+    wrong = {check.what: check.verdict for check in hand_checks.hand_checks(found, structure)}
+    assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
+    assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
+    alike = replace(found.structures[0].building, stiffness=[[30e6, 20e6], [25e6, 25e6]])  # type: ignore[type-var]
+    (drift,) = (
+        each
+        for each in hand_checks.hand_checks(found, replace(found.structures[0], building=alike))
+        if each.what == "median drift below roof"
+    )
+    shear = found.stripe(found.structures[0].name, "story_shear", 3)
+    assert shear is not None
+    assert drift.low == pytest.approx(1e3 * shear.fractiles[1].value / 25e6)  # type: ignore[operator]
 
 
 def test_support_forces_say_of_how_many_motions_they_are() -> None:
@@ -527,11 +581,12 @@ def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(fo
     assert {each.model for each in found.stripes} == {"exact"}, "no fractiles of the engine's few motions"
     named = {each.name: each for each in found.structures}
     shown = rows.demand_rows(found, 1.0)
-    uplift = [row for row in shown if row.name == "uplift of a support"]
-    assert [row.cells[:4] for row in uplift] == [("–",) * 4] * len(named)
+    of_engine = "uplift of a support", "support displacement, with torsion"
+    uplift = [row for row in shown if row.name in of_engine]
+    assert [row.cells[:4] for row in uplift] == [("–",) * 4] * 2 * len(named)
     for row in uplift:
         assert "of 4 (spatial engine)" in row.motions
-    assert all("engine" not in row.motions for row in shown if row.name != "uplift of a support")
+    assert all("engine" not in row.motions for row in shown if row.name not in of_engine)
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
@@ -550,11 +605,13 @@ def test_the_envelope_is_the_worst_of_the_bounds_in_every_column() -> None:
         one, structures=[*one.structures, replace(one.structures[0], name="c")], stripes=[*one.stripes, *other]
     )
     envelope = next(row for row in rows.demand_rows(both, 1.0) if row.bound == "envelope")
-    assert (envelope.cells[0], envelope.cells[-1], envelope.motion) == ("250 ± 1", "900", "m1, c")
+    assert (envelope.cells[0], envelope.cells[-1], envelope.motion) == ("250 ± 1", "900", "m1")
+    assert (envelope.bounds, envelope.every_bound) == (("b", "b", "b", "b", "c"), ""), "each cell has its own bound"
+    assert "<small>c</small>" in page.page_of(both)
     lost = [replace(each, largest=Statistic(None, None), answered=3, reasons={"travel reached": 1}) for each in other]
     envelope = next(row for row in rows.demand_rows(replace(both, stripes=[*one.stripes, *lost]), 1.0)
                     if row.bound == "envelope")  # fmt: skip
-    assert (envelope.cells[-1], envelope.motion) == ("none", ""), "a bound without a value is no smaller than the other"
+    assert (envelope.cells[-1], envelope.motion, envelope.every_bound) == ("≥ 400 ± 1", "m4", "b")
 
 
 def test_bounds_of_different_weight_are_compared_in_the_unit_that_is_read() -> None:
@@ -569,8 +626,9 @@ def test_bounds_of_different_weight_are_compared_in_the_unit_that_is_read() -> N
     structures = [replace(one.structures[0], name=name, weight=weight) for name, weight in weights.items()]
     found = replace(one, structures=structures, stripes=shears)
     force, share = (row for row in rows.demand_rows(found, 1.0) if row.bound == "envelope")
-    assert (force.cells[0], force.cells[-1], force.motion) == ("0.7", "1", "m4, c")
-    assert (share.cells[0], share.cells[-1], share.motion) == ("31", "40", "m4, b")
+    assert (force.cells[0], force.cells[-1], force.motion) == ("0.7", "1", "m4")
+    assert (share.cells[0], share.cells[-1], share.motion) == ("31", "40", "m4")
+    assert (force.every_bound, share.bounds[0], share.bounds[-1]) == ("c", "d", "b")
     said = sentences.answer_sentence(found)
     assert "mean 30 % of the weight, largest 40 % of the weight (b, m4)" in said
 

@@ -21,7 +21,7 @@ def test_what_is_no_file_or_text_of_a_scene_is_one_line():
         TEXT.replace("20.0", f"{9 * '['}2.0{9 * ']'}"): "duration = ",
         BODILESS: "bodies: this key is required",
         TEXT.replace("periods =", "period ="): "excitation.period = [0.9, 1.1]: unknown key; did you mean periods?",
-        "bodies = []\n" + BODILESS: "bodies = []: List should have at least 1 item",
+        "bodies = []\n" + BODILESS: "bodies = []: must be a list of at least 1; this list has 0",
         b"\xff\xfe title": "file = ",
     }.items():
         content = content.encode() if isinstance(content, str) else content

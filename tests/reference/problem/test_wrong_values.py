@@ -69,7 +69,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     (law(slow=0.0, fast=0.2, rate=50.0), "isolator.friction.slow", "greater than 0"),
     (law(fast=0.2, rat=50.0), "isolator.friction.rat", "did you mean rate"),
     ({"isolator.supports": 2}, "isolator.supports", "equal to 3"),
-    (places([0, 1], [1, 0]), "isolator.supports", "3 items"),
+    (places([0, 1], [1, 0]), "isolator.supports", "at least 3"),
     ({"isolator.supports": [[0, 1], [1, -1], [-1, -1]]}, "isolator.ring", "remove this key"),
     (places([0, 1], [1, 0], [1, 1e7]), "isolator.supports.2.1", "to 1e+06 m"),
     (places([0.1, 0.1], [0.2, 0.2], [0.3, 0.3]), "isolator.supports", "on one line"),
@@ -130,6 +130,20 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
 ]
 
 
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"bodies.1.period": None, "bodies.1.stiffness": [9.5e8]},
+         "bodies.1.stiffness = [950000000.0]: must be [kx, ky], N/m; this list has 1 (bodies.1 is body 2)"),
+        ({"bodies.1.size": [1.0, 2.0]}, "bodies.1.size = [1.0, 2.0]: must be [x, y, z], m; this list has 2 (bodies.1 is body 2)"),
+        ({"isolator.supports": [[1.0, 2.0]]}, "isolator.supports = [[1.0, 2.0]]: must be a list of at least 3; this list has 1"),
+        ({"excitation.periods": [1.0, 2.0, 3.0]}, "excitation.periods = [1.0, 2.0, 3.0]: must be a list of at most 2; this list has 3"),
+    ],
+)  # fmt: skip
+def test_a_list_of_another_length_is_one_line_with_its_form(values: dict[str, Any], said: str) -> None:
+    assert str(refusal(load_scene("fig3-I").with_values, values, kind=SceneError)) == f"fig3-I: {said}"
+
+
 @pytest.mark.parametrize(("values", "key", "rule"), WRONG)
 def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[str, Any], key: str, rule: str) -> None:
     said = refusal(load_scene("fig3-I").with_values, values, kind=SceneError)
@@ -140,6 +154,10 @@ def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[st
 
 
 BODIES = [{"mass": 1e3}, {"mass": 1e3, "stiffness": [4e5, 4e5]}]
+STIFF = {"mass": 1e3, "stiffness": [1.6e6, 4e5]}
+MODE = "the damping of mode 2 along y above a fixed base is {} % of critical, above 20 %: it moves {} % of the mass; is this meant?"
+FALLING = {"bodies": [{**BODIES[0], "height": 1.0}, {**BODIES[1], "height": 6.0}, {**BODIES[1], "height": 5.0, "floor": "roof"}]}
+FALLS = '"roof" at 5 m is not above body 2 at 6 m, the body below it: bodies stand in the file from the platform up'
 LONG = {"isolator.radius": None, "isolator.period": 150.0}
 HEAVY = {"bodies.0.mass": 1e9, "bodies.1.mass": 1e9, "bodies.1.stiffness": [4e11, 4e11]}
 LIGHT = {"bodies.0.mass": 20.0, "bodies.1.mass": 20.0, "bodies.1.stiffness": [8e3, 8e3]}
@@ -185,6 +203,9 @@ LOAD = "the weight on each support is {}: is mass in kg?"
         (HEAVY, [LOAD.format("4905 MN, above 100 MN")]),
         (LIGHT, [LOAD.format("98.1 N, below 1 kN")]),
         (LIGHT | {"isolator.supports": None}, []),
+        ({"bodies": [*BODIES, STIFF], "superstructure.damping": 0.18}, [MODE.format("21.01", "24")]),
+        ({"bodies": [*BODIES, STIFF], "superstructure.damping": 0.16}, []),
+        (FALLING, [FALLS]),
         (STRONG, ["the peak of the ground is 4.079 g, above 3 g: unit or scale?"]),
     ],
 )

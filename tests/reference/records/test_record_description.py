@@ -68,7 +68,7 @@ WARNED = {
     "a small zero line": (samples(SHAKING, SHAKING + 0.01), ("y ends at +0.2 m/s with a mean of +0.01 m/s^2",)),
     "g for m/s^2": (samples(GRAVITY**2 * SHAKING), ("the peak is 9.779 g, above 3 g: is the unit right?",)),
     "g for m/s^2": (samples(0.03 * SHAKING), (
-        "the peak is 0.003049 g, below 0.005 g: values in g that are called m/s^2? Write [g] in the head of the file, "
+        "the peak is 0.003048 g, below 0.005 g: values in g that are called m/s^2? Write [g] in the head of the file, "
         'or unit = "g" beside a plain text',
     )),
     "nothing at all": (samples(0.0), ("the peak is 0 g, below 0.005 g",)),
