@@ -144,10 +144,10 @@ def compute_demands(task: Arguments) -> Answer:
     scene, model, tolerance = task
     motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **model.motion_settings)
     spectra = floor_spectra(motion) if model == EXACT else None
-    return demands(motion), story_forces(motion), spectra, _read_as_integrated(task), motion.instant
+    return demands(motion), story_forces(motion), spectra, read_as_integrated(task), motion.instant
 
 
-def _read_as_integrated(task: Arguments) -> list[Estimate]:
+def read_as_integrated(task: Arguments) -> list[Estimate]:
     """Return accelerations as integrated of equations that have the literal suprema; none of any other model."""
     scene, model, tolerance = task
     resolved = {SMALL.key: SMALL_RESOLVED, EXACT.key: RESOLVED}.get(model.key)
