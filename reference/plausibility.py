@@ -115,7 +115,9 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
     if building.heights is None:
         return
     if (falls := np.flatnonzero(np.diff(building.heights) <= 0.0)).size:
-        lower, upper = (f"{_name_body(scene, place)} at {scene.bodies[place].height:.4g} m" for place in falls[0] + (0, 1))
+        lower, upper = (
+            f"{_name_body(scene, place)} at {scene.bodies[place].height:.4g} m" for place in falls[0] + (0, 1)
+        )
         yield f"{upper} is not above {lower}, the body below it: bodies stand in the file from the platform up"
     if building.supports is None or scene.flat or building.heights[0] >= 0.0:
         return

@@ -99,9 +99,11 @@ def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) 
     if error["type"] in LENGTHS:
         limit, end = LENGTHS[error["type"]]
         found, allowed = error["ctx"]["actual_length"], error["ctx"][limit]
-        form = ALONG_AXES.get(str(place[-1]), f"a list of {end} {allowed}")
-        body = f" ({place[0]}.{place[1]} is body {int(place[1]) + 1})" if place[0] == "bodies" and len(place) > 1 else ""
-        rule = f"must be {form}; this list has {found}{body}"
+        asked = ALONG_AXES.get(str(place[-1]), f"a list of {end} {allowed}")
+        body = (
+            f" ({place[0]}.{place[1]} is body {int(place[1]) + 1})" if place[0] == "bodies" and len(place) > 1 else ""
+        )
+        rule = f"must be {asked}; this list has {found}{body}"
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
     if key in LISTS_OF_SURFACES and isinstance(error["input"], list):

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from comparison.analyses.ensemble import panels, sentences
-from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of, unit_for_reading
 from comparison.analyses.ensemble.hand_checks import check_rows
+from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import (
     HEIGHTS,

@@ -17,7 +17,14 @@ from reference.problem import GRAVITY, Outcome
 ENVELOPE = "envelope"
 NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over the bodies
 NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
-HEIGHTS = ("acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
+HEIGHTS = (
+    "acceleration",
+    SUPREMUM,
+    "drift",
+    "drift_ratio",
+    "story_shear",
+    "overturning_moment",
+)  # shown over the height
 PLATFORM = 1
 SHORT = 8  # letters of a bound that stand below every cell of an envelope
 WORST = 4  # column of the worst value, behind mean and fractiles

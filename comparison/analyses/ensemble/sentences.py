@@ -32,8 +32,8 @@ DEFINITIONS = (
     "reaches it. “≤” is the same of a smallest force. A fractile beyond the outermost motions is left out (–), as 16 % "
     "of three. The column “largest” has the smallest value of a smallest force.",
     "Largest floor acceleration, drift and drift ratio are of every motion the largest over the floors, with the "
-    "platform, or over the stories; statistics are of these, and “where” is the place of the largest of all. The tables over the height, and a limit "
-    "on a mean, take each floor or story by itself.",
+    "platform, or over the stories; statistics are of these, and “where” is the place of the largest of all. The "
+    "tables over the height, and a limit on a mean, take each floor or story by itself.",
     "The envelope is in every column the worst of the bounds, named below the number or, of all columns, beside the "
     "word; motion and place are those of its largest value.",
     "All supports carry the same dead load, but for eccentric masses. Support forces by the equations are statics: "

@@ -207,7 +207,7 @@ def test_accelerations_as_integrated_are_below_the_supremum_where_a_stop_adds_to
     assert values["acceleration", 1] == read[0]
     assert values["acceleration_supremum", 1].value > values["acceleration", 1].value
     assert analysis.read_as_integrated((scene, TRANSLATIONAL, 1e-2)) == []
-    assert analysis.read_as_integrated((load_scene("fig4-lubricated"), EXACT, 1e-6)) == []
+    assert analysis.read_as_integrated((load_scene("fig4-viscous"), EXACT, 1e-6)) == []
 
 
 def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path) -> None:

@@ -59,7 +59,7 @@ def test_no_cell_of_the_table_begins_like_a_formula(monkeypatch: pytest.MonkeyPa
     assert f"'{name}" in text
     assert text.endswith(",-1.0\n")
     assert [*csv.reader(io.StringIO(text, newline=""))][1:] == [[f"'{name}", "-1.0"]]
-    assert ("\r" in name or "\n" in name) == (f"\"'{name}\"" in text), "in quotation marks"
+    assert ("\r" in name or "\n" in name) == (f'"\'{name}"' in text), "in quotation marks"
 
 
 class Endless:

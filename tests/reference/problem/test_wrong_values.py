@@ -135,9 +135,12 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     [
         ({"bodies.1.period": None, "bodies.1.stiffness": [9.5e8]},
          "bodies.1.stiffness = [950000000.0]: must be [kx, ky], N/m; this list has 1 (bodies.1 is body 2)"),
-        ({"bodies.1.size": [1.0, 2.0]}, "bodies.1.size = [1.0, 2.0]: must be [x, y, z], m; this list has 2 (bodies.1 is body 2)"),
-        ({"isolator.supports": [[1.0, 2.0]]}, "isolator.supports = [[1.0, 2.0]]: must be a list of at least 3; this list has 1"),
-        ({"excitation.periods": [1.0, 2.0, 3.0]}, "excitation.periods = [1.0, 2.0, 3.0]: must be a list of at most 2; this list has 3"),
+        ({"bodies.1.size": [1.0, 2.0]},
+         "bodies.1.size = [1.0, 2.0]: must be [x, y, z], m; this list has 2 (bodies.1 is body 2)"),
+        ({"isolator.supports": [[1.0, 2.0]]},
+         "isolator.supports = [[1.0, 2.0]]: must be a list of at least 3; this list has 1"),
+        ({"excitation.periods": [1.0, 2.0, 3.0]},
+         "excitation.periods = [1.0, 2.0, 3.0]: must be a list of at most 2; this list has 3"),
     ],
 )  # fmt: skip
 def test_a_list_of_another_length_is_one_line_with_its_form(values: dict[str, Any], said: str) -> None:
@@ -155,8 +158,17 @@ def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[st
 
 BODIES = [{"mass": 1e3}, {"mass": 1e3, "stiffness": [4e5, 4e5]}]
 STIFF = {"mass": 1e3, "stiffness": [1.6e6, 4e5]}
-MODE = "the damping of mode 2 along y above a fixed base is {} % of critical, above 20 %: it moves {} % of the mass; is this meant?"
-FALLING = {"bodies": [{**BODIES[0], "height": 3.0}, {**BODIES[1], "height": 6.0}, {**BODIES[1], "height": 5.0, "floor": "roof"}]}
+MODE = (
+    "the damping of mode 2 along y above a fixed base is {} % of critical, above 20 %: it moves {} % of the mass; is "
+    "this meant?"
+)
+FALLING = {
+    "bodies": [
+        {**BODIES[0], "height": 3.0},
+        {**BODIES[1], "height": 6.0},
+        {**BODIES[1], "height": 5.0, "floor": "roof"},
+    ]
+}
 FALLS = '"roof" at 5 m is not above body 2 at 6 m, the body below it: bodies stand in the file from the platform up'
 LONG = {"isolator.radius": None, "isolator.period": 150.0}
 HEAVY = {"bodies.0.mass": 1e9, "bodies.1.mass": 1e9, "bodies.1.stiffness": [4e11, 4e11]}

@@ -67,10 +67,13 @@ WARNED = {
     "a zero line": (samples(SHAKING - 0.08), ("x ends at -1.6 m/s with a mean of -0.08 m/s^2 (7.4 % of its peak)",)),
     "a small zero line": (samples(SHAKING, SHAKING + 0.01), ("y ends at +0.2 m/s with a mean of +0.01 m/s^2",)),
     "g for m/s^2": (samples(GRAVITY**2 * SHAKING), ("the peak is 9.779 g, above 3 g: is the unit right?",)),
-    "g for m/s^2": (samples(0.03 * SHAKING), (
-        "the peak is 0.003048 g, below 0.005 g: values in g that are called m/s^2? Write [g] in the head of the file, "
-        'or unit = "g" beside a plain text',
-    )),
+    "g called m/s^2": (
+        samples(0.03 * SHAKING),
+        (
+            "the peak is 0.003048 g, below 0.005 g: values in g that are called m/s^2? Write [g] in the head of the "
+            'file, or unit = "g" beside a plain text',
+        ),
+    ),
     "nothing at all": (samples(0.0), ("the peak is 0 g, below 0.005 g",)),
     "unequal steps": (samples(SHAKING, time=UNEVEN), ("the steps are not equal: 0.008 to 0.012 s",)),
     "clipped": (samples(CLIPPED - CLIPPED.mean()), ()),
