@@ -31,7 +31,7 @@ DEFINITIONS = (
     "least that, the worst of the motions that have a value; a displacement is at least the travel under a motion that "
     "reaches it. “≤” is the same of a smallest force. A fractile beyond the outermost motions is left out (–), as 16 % "
     "of three. The column “largest” has the smallest value of a smallest force.",
-    "Largest floor acceleration, drift and drift ratio are of every motion the largest over the floors, with the "
+    "Floor acceleration, drift and drift ratio are of every motion the largest over the floors, with the "
     "platform, or over the stories; statistics are of these, and “where” is the place of the largest of all. The "
     "tables over the height, and a limit on a mean, take each floor or story by itself.",
     "The envelope is in every column the worst of the bounds, named below the number or, of all columns, beside the "
