@@ -151,7 +151,7 @@ def travel_sentence(ensemble: EnsembleResult) -> str:
             bounds.append(f"{name_some(ended, NAMED)}{bound}")
     if not bounds:
         return ""
-    rule = "A run without `travel` gives the displacement that is needed."
+    rule = "No demand has a value there. A run without `travel` gives the displacement that is needed."
     return f"The travel is reached under {'; '.join(bounds)}. {rule}"
 
 
@@ -282,7 +282,7 @@ def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """Return which motions of a structure lack which demands at the largest scale, and why."""
+    """Return which motions of a structure lack which demands at the largest scale, and why; of the travel nothing."""
     stripes = [found for shown in MAIN if (found := stripe_of(ensemble, shown, ensemble.top, structure)) is not None]
     ended = missing_motions(ensemble, structure)
     lacking: dict[tuple[str, int], list[str]] = {}
@@ -293,6 +293,8 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
     lines = []
     for (why, count), names in lacking.items():
         every = len(names) == len(stripes)
+        if every and why == TRAVEL_REACHED:
+            continue  # `travel_sentence` says it
         which = f" ({', '.join(ended[:NAMED])}{' and more' * (len(ended) > NAMED)})" if every else ""
         what = "every demand" if every else ", ".join(names)
         lines.append(f"Without a value for {motions_in_words(count)}{which}: {what} ({why}).")

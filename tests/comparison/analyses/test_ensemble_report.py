@@ -451,7 +451,8 @@ def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reach
 
 def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
     assert sentences.travel_sentence(two_bounds()) == (
-        "The travel is reached under m4 at 12.35 s (b). A run without `travel` gives the displacement that is needed."
+        "The travel is reached under m4 at 12.35 s (b). No demand has a value there. A run without `travel` gives the "
+        "displacement that is needed."
     )
     assert sentences.travel_sentence(planted()) == ""
     stopped = [EndedMotion("b", "m4", 1.0, "rim reached", 3.0)]
