@@ -178,7 +178,8 @@ def _check_body(
 def _word_demand(structure: Structure, key: str, body: int | None) -> str:
     """Return the demand that a limit is on, and its place."""
     what = "base shear over the weight" if key == SHARE else title_of(key)
-    return f"{what} {place}" if (place := place_of(structure, key, body)) else what
+    place = place_of(structure, key, body)
+    return ", ".join(filter(None, [what, place])) if key == "acceleration" else f"{what} {place}".rstrip()
 
 
 def _mean_of(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:

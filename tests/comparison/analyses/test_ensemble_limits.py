@@ -149,7 +149,7 @@ def test_forces_accelerations_and_residuals_are_limited_each_in_its_unit_and_rea
     assert said_of(ensemble, support_force_max=1.04e6, acceleration=5.0, residual=0.015) == [
         "job[upper bound]: largest support force by statics, largest of 3 motions: 1300 kN (Imperial Valley), allowed "
         "1040 kN: not met (by +25 %)",
-        "job[upper bound]: floor acceleration, as integrated body 2, largest of 3 motions: 4 m/s^2 (Kobe), allowed "
+        "job[upper bound]: floor acceleration, as integrated, body 2, largest of 3 motions: 4 m/s^2 (Kobe), allowed "
         "5 m/s^2: met",
         "job[upper bound]: residual displacement of the isolator, largest of 2 of 3 motions: 0.02 m (Imperial Valley), "
         "allowed 0.015 m: not met (by +33 %)",
