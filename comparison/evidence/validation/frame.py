@@ -25,18 +25,6 @@ from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
 from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold_run, read_cycle
 from comparison.evidence.validation.files import Shaken
-from comparison.evidence.validation.table import (
-    COVERAGE,
-    CYCLE,
-    DEGREES,
-    INPUT,
-    LAW,
-    LOADED,
-    OPEN,
-    SIDES,
-    ComputedValues,
-    Found,
-)
 from comparison.result_types import Array
 from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import GRAVITY, Scene, Trajectory
@@ -49,7 +37,7 @@ FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, 
 SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
 STEP = 0.005  # step of ratio and scale in difference quotients
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
-UNITS = ("mm", "mm", CYCLE, DEGREES, DEGREES)
+UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
 
 class Setup(NamedTuple):
@@ -117,7 +105,7 @@ def compute_motion(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     return table.motion_of(side, scene, phases, place, REGULARIZATION, STUDY_TOLERANCE, "small")
 
 
-def read_quantities(cycles: Cycles, motion: Trajectory) -> ComputedValues:
+def read_quantities(cycles: Cycles, motion: Trajectory) -> table.ComputedValues:
     """The quantities of a computed motion of a run."""
     rate = cycles.frequency
     return table.values_of_motion(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
@@ -170,7 +158,7 @@ class FittedRun(NamedTuple):
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
     """Fit the friction ratio of a run; shift: base motion of `shifted`, None to fit that of this run."""
     setup, scatter = fit_inputs(cycles, start, "ratio")
-    spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
+    spread = table.COVERAGE * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + ASSUMED[name][0]} for name in REFITTED)
     changed = [fit_inputs(cycles, setup._replace(**change), "ratio")[0] for change in changes]
     if shift is None:
@@ -180,7 +168,7 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedR
     return FittedRun(cycles, setup, spread, changed, shifted)
 
 
-def compare_frame(runs: Sequence[Shaken]) -> Found:
+def compare_frame(runs: Sequence[Shaken]) -> table.Found:
     """Compare all runs of a folder: by one ratio, and by friction of the load where there are runs to predict."""
     folded = [fold_run(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
@@ -199,7 +187,7 @@ def compare_frame(runs: Sequence[Shaken]) -> Found:
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
     if any(_is_sliding(each) for each, _ in rest):
         parts.append(_compare_by_load(fitted, rest))
-    return table.join_findings([Found([], inputs, [], [], []), *parts])
+    return table.join_findings([table.Found([], inputs, [], [], []), *parts])
 
 
 def _is_sliding(cycles: Cycles) -> bool:
@@ -211,7 +199,7 @@ def _ratio_of_setup(fitted: FittedRun) -> str:
     return table.word_input("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 
 
-def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
+def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> table.Found:
     """Friction that is a power of the load, fitted to two runs; the others are predicted."""
     sliding = [cycles for cycles, _ in rest if _is_sliding(cycles)]
     chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND))
@@ -223,7 +211,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         f"frame: the friction ratios fitted to {first.cycles.run.name} and to {second.cycles.run.name} "
         f"grow as the load to the power {exponent:.3f}"
     )
-    found = [Found([], [_ratio_of_setup(second)], [fact], [], [])]
+    found = [table.Found([], [_ratio_of_setup(second)], [fact], [], [])]
     for cycles, own in rest if len(rest) > 1 else ():
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 
@@ -236,28 +224,28 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         scattered = [between(setup, one + first.spread, two), between(setup, one, two + second.spread)]
         heavier = setup._replace(disc=setup.disc + ASSUMED["disc"][0])
         use = "calibrated" if cycles is chosen else "predicted"
-        found.append(_compare_run(cycles, use, setup, [*scattered, heavier, *changed], shifted, own, LOADED))
+        found.append(_compare_run(cycles, use, setup, [*scattered, heavier, *changed], shifted, own, table.LOADED))
     return table.join_findings(found)
 
 
 def _compare_run(
     cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
-) -> Found:
+) -> table.Found:
     """One run; other: ratio and base motion fitted to the first run, own: ratio to this one; each may explain E."""
     title = cycles.run.name + law
     found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
-    data = table.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
-    motions = {side: compute_motion(side, cycles, setup) for side in SIDES}
+    data = table.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), table.COVERAGE * np.std(found, axis=0, ddof=1))
+    motions = {side: compute_motion(side, cycles, setup) for side in table.SIDES}
     answers = {side: read_quantities(cycles, motion) for side, motion in motions.items()}
     by_input, by_ratio = (np.abs(solve_quantities(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> str:
         shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
         if by_input[k] <= allowed:
-            return f"{INPUT}: gone with {shift}"
+            return f"{table.INPUT}: gone with {shift}"
         if by_ratio[k] <= allowed:
-            return f"{LAW}: gone with the ratio of this run, {own.ratio:.3f}, so the ratio depends on the load"
-        return f"{OPEN}: gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
+            return f"{table.LAW}: gone with the ratio of this run, {own.ratio:.3f}, so the ratio depends on the load"
+        return f"{table.OPEN}: gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
     rows = table.measured_quantities(title, data, answers, [solve_quantities(cycles, each) for each in varied], explain)
     best = last_cycle(compute_motion(EQUATIONS, cycles, own), cycles.frequency)
@@ -273,6 +261,6 @@ def _compare_run(
     )
     residual = table.CycleResidual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
-    return Found(
+    return table.Found(
         rows, [], [fact], [residual], table.plot_curves(title, axes, {name: (turn, y) for name, y in lines.items()})
     )

@@ -13,7 +13,6 @@ from scipy.special import ellipk
 from comparison.evidence.sides import ENGINE, EQUATIONS, spline_along
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, ComputedValues, Data, Found
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -26,7 +25,7 @@ ANGLES, FITTED, REFITTED = (1.5, 1.25, 1.0), 0.3, 0.6  # rad, amplitudes of half
 WINDOW, FEWEST = 0.1, 4  # rad, of amplitudes about each of them; half swings in it
 
 
-def compare_decay(swing: Swing) -> Found:
+def compare_decay(swing: Swing) -> table.Found:
     """Turning points and half periods of the swing to rest."""
     step = float(np.min(np.diff(np.unique(swing.angle))))
     instants, turns = _find_turns(swing, STEPS * step)
@@ -39,12 +38,12 @@ def compare_decay(swing: Swing) -> Found:
     (start, loss, middle), *_ = np.linalg.lstsq(terms[fitted], along[fitted])
     residuals = along[fitted] - terms[fitted] @ [start, loss, middle]
     inverse = np.linalg.inv(terms[fitted].T @ terms[fitted])
-    scatter = COVERAGE * float(np.sqrt(residuals @ residuals / (COULOMB - 2) * inverse[1, 1]))
-    periods, reading = np.diff(instants)[: 2 * HALF], COVERAGE * step / np.sqrt(12.0)
+    scatter = table.COVERAGE * float(np.sqrt(residuals @ residuals / (COULOMB - 2) * inverse[1, 1]))
+    periods, reading = np.diff(instants)[: 2 * HALF], table.COVERAGE * step / np.sqrt(12.0)
     nominal = np.array([periods[:HALF].mean(), loss, start])
     uncertain = np.array([_uncertainty_of_mean(periods[:HALF]), scatter, reading])
     sizes = 1e3 * (along - middle * sides)
-    data = Data(
+    data = table.Data(
         [*(f"turning point {number}" for number in SHOWN), f"half period of swings {HALF + 1} to {2 * HALF}"],
         [*["mrad"] * len(SHOWN), "ms"],
         [*("calibrated" if number <= COULOMB else "predicted" for number in SHOWN), "predicted"],
@@ -60,10 +59,10 @@ def compare_decay(swing: Swing) -> Found:
         half, loss, start = values.tolist()
         return _move_half_swings(side, half, 0.5 * loss, start, SHOWN[-1] + 2.5)
 
-    motions = {side: compute(side, nominal) for side in SIDES}
+    motions = {side: compute(side, nominal) for side in table.SIDES}
     answers = {side: table.values_of_motion(motion, read, len(data.names)) for side, motion in motions.items()}
     varied = [read(compute(EQUATIONS, nominal + change)) for change in np.diag(uncertain)]
-    cause = f"{LAW}: friction before sliding gives way like a spring, which Coulomb's law lacks (not computed)"
+    cause = f"{table.LAW}: friction before sliding gives way like a spring, which Coulomb's law lacks (not computed)"
     rows = table.measured_quantities("pendulum, decay", data, answers, varied, lambda k, allowed: cause)
     named = zip(("half period", "loss of a half swing", "first angle"), nominal, uncertain, ("s", "rad", "rad"))
     source = f"fitted to the first {HALF} half periods and {COULOMB} half swings, and its scatter"
@@ -77,10 +76,10 @@ def compare_decay(swing: Swing) -> Found:
     given = [
         table.word_input(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named
     ]
-    return Found(rows, given, [fact], [], curves)
+    return table.Found(rows, given, [fact], [], curves)
 
 
-def compare_large(swing: Swing) -> Found:
+def compare_large(swing: Swing) -> table.Found:
     """Half periods at large angles."""
     passages = _passage_times(swing)
     sizes = np.array([np.abs(swing.angle[(swing.time > a) & (swing.time < b)]).max() for a, b in pairwise(passages)])
@@ -92,20 +91,20 @@ def compare_large(swing: Swing) -> Found:
     at_rest = [0.5 * np.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) for angle in (FITTED, REFITTED)]
     (half, other), scatter = values[-2:] * at_rest, float(spreads[-2] * at_rest[0])
     names = [f"half period at {angle:g} rad" for angle in ANGLES]
-    data = Data(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
+    data = table.Data(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
-    def compute(side: str, half: float, equations: str = "exact") -> ComputedValues:
+    def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
         motions = [_move_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
         parts = [table.values_of_motion(each, _read_half_period, 1) for each in motions]
-        return ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
+        return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
-    answers = {side: compute(side, half) for side in SIDES}
+    answers = {side: compute(side, half) for side in table.SIDES}
     again, varied, small = (compute(EQUATIONS, *each).values for each in ((other,), (half + scatter,), (half, "small")))
 
     def explain(k: int, allowed: float) -> str:
         if abs(again[k] - data.values[k]) <= allowed:
-            return f"{INPUT}: gone with the half period fitted at {REFITTED} rad, where friction weighs less"
-        return f"{OPEN}: not gone with the half period fitted at {REFITTED} rad"
+            return f"{table.INPUT}: gone with the half period fitted at {REFITTED} rad, where friction weighs less"
+        return f"{table.OPEN}: not gone with the half period fitted at {REFITTED} rad"
 
     rows = table.measured_quantities("pendulum, large angles", data, answers, [varied], explain)
     off = zip(100.0 * (small / data.values - 1.0), ANGLES)
@@ -117,7 +116,7 @@ def compare_large(swing: Swing) -> Found:
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    return Found(rows, [given], [fact], [], table.plot_curves("pendulum, large angles", axes, drawn))
+    return table.Found(rows, [given], [fact], [], table.plot_curves("pendulum, large angles", axes, drawn))
 
 
 def _move_half_swings(
@@ -158,7 +157,7 @@ def _find_turns(swing: Swing, back: float) -> tuple[Array, Array]:
 
 def _uncertainty_of_mean(values: Array) -> float:
     """Uncertainty of a mean, from the scatter."""
-    return COVERAGE * float(values.std(ddof=1)) / float(np.sqrt(len(values)))
+    return table.COVERAGE * float(values.std(ddof=1)) / float(np.sqrt(len(values)))
 
 
 def _passage_times(swing: Swing) -> Array:
