@@ -48,7 +48,7 @@ def build_report(
     def compute(name: str, function: Callable[..., Any], *words: Any) -> Any:
         return parts_lost.attempt(f"section {name}", partial(function, *words))
 
-    missing = list_missing_values(study, surfaces)
+    gaps = list_missing_values(study, surfaces)
     held_out = found.get(CompletedSurfaces.key)
     completed = {scene.name: complete_surfaces(study, surfaces, scene, held_out) for scene in study.scenes}
     completions = list(chain.from_iterable(completed.values()))
@@ -57,7 +57,7 @@ def build_report(
     (scene_kind,) = get_args(kind.model_fields["scenes"].annotation)
     scenes = []
     for scene in study.scenes:
-        about = _scene_fields(findings, scene, missing) | {"completions": completed[scene.name]}
+        about = _scene_fields(findings, scene, gaps) | {"completions": completed[scene.name]}
         more = {field.name: compute(field.name, field.compute, findings, scene) or [] for field in scene_fields}
         scenes.append(scene_kind(**about, **more))
     summaries: dict[str, Any] = {}
@@ -73,16 +73,16 @@ def build_report(
         models=[ModelDescription.model_validate(model) for model in study.hierarchy],
         scenes=scenes,
         absent=study.absent,
-        unanswered=missing,
-        alerts=list_alerts(study, surfaces, missing, limits, faults),
+        unanswered=gaps,
+        alerts=list_alerts(study, surfaces, gaps, limits, faults),
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
     return Report(study, findings.surfaces, completions, results, found, features, parts_lost.lines)
 
 
-def _scene_fields(findings: Findings, scene: Scene, missing: Sequence[MissingValues]) -> dict[str, Any]:
-    """Return what the surfaces of a scene say; missing: the values of the study that are."""
+def _scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues]) -> dict[str, Any]:
+    """Return what the surfaces of a scene say; gaps: those of the study."""
     study, surfaces = findings.study, findings.surfaces
     models = models_of(scene, study.hierarchy)
     comparisons = compare_bodies(study, surfaces, scene)
@@ -100,7 +100,7 @@ def _scene_fields(findings: Findings, scene: Scene, missing: Sequence[MissingVal
         "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
         "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
         "budget": budget_entries(comparisons),
-        "limits": check_limits(comparisons, [gap for gap in missing if gap.scene == scene.name]),
+        "limits": check_limits(comparisons, [gap for gap in gaps if gap.scene == scene.name]),
         "headlines": [make_headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
         "unchecked": pairs_without_limit(study, scene),

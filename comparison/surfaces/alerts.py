@@ -44,18 +44,18 @@ class Alert(Part):
 def list_alerts(
     study: Study,
     surfaces: xr.Dataset,
-    unanswered: Sequence[MissingValues],
+    gaps: Sequence[MissingValues],
     limits: Sequence[Limit],
     faults: Sequence[Alert],
 ) -> list[Alert]:
     """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
-    listed = [*_alerts_of_gaps(unanswered), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
+    listed = [*_alerts_of_gaps(gaps), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
-def _alerts_of_gaps(unanswered: Sequence[MissingValues]) -> list[Alert]:
+def _alerts_of_gaps(gaps: Sequence[MissingValues]) -> list[Alert]:
     rows = []
-    for gap in unanswered:
+    for gap in gaps:
         refused = gap.points + gap.unusable == gap.asked
         rest = "" if gap.used else "; comparisons leave this model out"
         outcomes = ", ".join(

@@ -52,7 +52,7 @@ def test_counts_have_their_zeros_and_the_largest_its_place() -> None:
     counts = count_verdicts(["met", "not met", "met"])
     assert word_counts(counts) == "3 comparisons: 2 met, 1 not met, 0 not compared"
     assert word_counts(count_verdicts(["met"]), "number") == "1 number: 1 met, 0 not met, 0 not compared"
-    text = "3 comparisons: 2 met, 1 not met (largest: here, +10 %), 0 not compared"
-    off = [(9.0, 0.0, "a share of nothing"), (-0.3, 6.0, "there"), (0.1, 1.0, "here")]
+    text = "3 comparisons: 2 met, 1 not met (largest: here, −10 %), 0 not compared"
+    off = [(9.0, 0.0, "a share of nothing"), (0.3, 6.0, "there"), (-0.1, 1.0, "here")]
     assert word_counts_and_largest(counts, off) == text
     assert word_counts_and_largest(count_verdicts(["met"]), []) == "1 comparison: 1 met, 0 not met, 0 not compared"
