@@ -156,7 +156,7 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
         return table.ComputedValues(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
 
     for name, known in (
-        ("fold", folded),
+        ("fold_run", folded),
         ("compute_motion", lambda side, cycles, setup: setup),
         ("read_quantities", read),
     ):
@@ -232,7 +232,7 @@ def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
 
 
 def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
-    mean = pendulum._of_mean(np.array([1.0, 3.0, 1.0, 3.0]))
+    mean = pendulum._uncertainty_of_mean(np.array([1.0, 3.0, 1.0, 3.0]))
     assert mean == pytest.approx(COVERAGE * np.sqrt(4.0 / 3.0) / 2.0), "scatter over the root of the count"
     rate, amplitude, time = np.pi / 0.39, 1.6, 0.0
     instants, angles = [], []
