@@ -138,7 +138,7 @@ def _render_page(
     common: dict[str, Any] = {
         "results": results,
         "study": study,
-        "titles": {"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
+        "titles": {"scene": "as stated", **results.titles},
         "has_surfaces": lambda scene: "surfaces" in scene.analyses,
     }
     parts = []

@@ -40,7 +40,7 @@ def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
     study = report.study
     data = {
         "grid": study.grid,
-        "titles": {model.key: model.title for model in study.hierarchy},
+        "titles": report.results.titles,
         "scenes": [
             {
                 "name": scene.name,

@@ -109,6 +109,11 @@ class Results(Part):
         return [alert for alert in self.alerts if alert.kind == "limit"]
 
     @property
+    def titles(self) -> dict[str, str]:
+        """The titles of the models, by key."""
+        return {model.key: model.title for model in self.models}
+
+    @property
     def gate(self) -> str:
         """Return whether the acceptance limits hold, and what has none."""
         return word_gate(len(self.limits), len(self.broken), self.unchecked)

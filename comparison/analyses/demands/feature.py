@@ -34,14 +34,13 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
 
 def demand_lines(results: Results) -> list[dict[str, Any]]:
     """Rows of the table of demands, each with the names of its scene, demand and model."""
-    titles = {model.key: model.title for model in results.models}
     lines = []
     for scene in results.scenes:
         for row in STATISTICS.of(scene):
             meaning, _ = QUANTITIES[row.quantity]
             name = f"{meaning} of body {row.body}" if row.body else meaning
             name = f"{name}, {unit_of(row.quantity)}".removesuffix(", ")
-            lines.append({"scene": scene.name, "name": name, "title": titles[row.model], "row": row})
+            lines.append({"scene": scene.name, "name": name, "title": results.titles[row.model], "row": row})
     return lines
 
 

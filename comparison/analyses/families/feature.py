@@ -119,9 +119,8 @@ def _panel_over_values(
 
 
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
-    titles = {model.key: model.title for model in results.models}
     curves = [curve for curve in family.curves if curve.body == body]
-    lines = [(titles[each.model], n, each.mean, each.lowest, each.highest) for n, each in enumerate(curves)]
+    lines = [(results.titles[each.model], n, each.mean, each.lowest, each.highest) for n, each in enumerate(curves)]
     return _panel_over_values(family, f"mu_{body}", f"mu_{body} of every model", f"μ_{body}", lines)
 
 

@@ -71,7 +71,6 @@ def _mark_of_worst(worst: Worst) -> list[float | str]:
 
 def _section_context(report: Report) -> Mapping[str, Any]:
     results = report.results
-    titles = {model.key: model.title for model in results.models}
     return {
         "distribution_panels": [
             panel
@@ -83,7 +82,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
         "worst_lines": [
             {
                 "worst": worst,
-                "title": titles[worst.model],
+                "title": results.titles[worst.model],
                 "kind": _word_kind(worst),
                 "reading": _name_reading(report, worst),
             }
