@@ -15,7 +15,8 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
-from reference.problem import Accuracy, Scene, State, Trajectory, check_phase, ground_acceleration
+from reference.problem import Accuracy, Scene, State, Trajectory, ground_acceleration
+from reference.problem.phases import check_phase
 from reference.problem.ranges import TOLERANCE, check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene

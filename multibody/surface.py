@@ -17,7 +17,8 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
 from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
-from reference.problem import Amplification, Outcome, Scene, flat_phases, ground_peak
+from reference.problem import Amplification, Outcome, Scene, ground_peak
+from reference.problem.phases import flat_phases
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
 from reference.problem.readings import FINER, describe_law, reading_of
 from reference.problem.reductions import in_plane, planar_chain

@@ -10,16 +10,8 @@ from numpy.typing import ArrayLike
 
 from reference.defaults import DEFAULT_TOLERANCE
 from reference.measures.energy import friction_force
-from reference.problem import (
-    Accuracy,
-    Outcome,
-    Scene,
-    State,
-    Trajectory,
-    check_phase,
-    ground_acceleration,
-    loading_period,
-)
+from reference.problem import Accuracy, Outcome, Scene, State, Trajectory, ground_acceleration, loading_period
+from reference.problem.phases import check_phase
 from reference.problem.ranges import check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene

@@ -21,7 +21,8 @@ from reference.measures.local_search import (
     merge_searches,
     search_round,
 )
-from reference.problem import Scene, check_phases
+from reference.problem import Scene
+from reference.problem.phases import check_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene

@@ -13,16 +13,8 @@ from numpy.typing import ArrayLike
 
 from reference.analytical.frictionless import frictionless_peaks
 from reference.defaults import DEFAULT_TOLERANCE
-from reference.problem import (
-    GRAVITY,
-    Amplification,
-    Outcome,
-    Scene,
-    exponents,
-    flat_phases,
-    ground_peak,
-    loading_period,
-)
+from reference.problem import GRAVITY, Amplification, Outcome, Scene, exponents, ground_peak, loading_period
+from reference.problem.phases import flat_phases
 from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.reductions import in_plane, linear, planar

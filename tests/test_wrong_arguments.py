@@ -47,7 +47,7 @@ MASKED = np.ma.masked_array([0.0, 1.0], mask=[True, False])
 WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "max_work as text": (lambda: multibody.refusal(SCENE, max_work="1"), "max_work = '1': must be finite and positive"),
     "grid as text": (lambda: reference.phase_grid("x"), "points = 'x': must be a whole number from 1 to 10000"),
-    "no phase": (lambda: reference.problem.phase_axis(0), "points = 0: must be a whole number"),
+    "no phase": (lambda: reference.phase_grid(0), "points = 0: must be a whole number"),
     "grid as bool": (lambda: reference.phase_grid(True), "points = True: must be a whole number"),
     "amplitude as bool": (lambda: SCENE.with_amplitude(True), "fig3-I: amplitude = True: must be finite and greater"),
     "amplitude as text": (lambda: SCENE.with_amplitude("1"), "fig3-I: amplitude = '1': must be finite and greater"),

@@ -28,7 +28,8 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import RESOLVED, drop_worthless, usable_mu
 from reference.measures.distribution import fractile
-from reference.problem import Scene, phase_axis, phase_grid
+from reference.problem import Scene, phase_grid
+from reference.problem.phases import phase_axis
 from reference.problem.symmetry import indices_of_solved_pairs
 
 Indices = NDArray[np.intp]

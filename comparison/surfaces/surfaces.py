@@ -15,7 +15,8 @@ from comparison.study.batches import Batch, BatchResult, execute_batch
 from comparison.study.costs import seconds_per_point
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Scene, phase_axis
+from reference.problem import Scene
+from reference.problem.phases import phase_axis
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
 MEANING = {  # unit and meaning of the variables

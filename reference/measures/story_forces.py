@@ -10,6 +10,7 @@ import numpy as np
 from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate
 from reference.problem.result import Array, Trajectory, takes_motion
 from reference.problem.scene import Scene
+from reference.problem.supports import static_shares
 from reference.support.constants import GRAVITY
 
 
@@ -155,20 +156,11 @@ def _largest_length(vectors: Array) -> float:
     return float(np.linalg.norm(vectors, axis=1).max())
 
 
-def _leverage(places: Array) -> Array:
-    """Return the force of every support for a moment along x and y, (K, 2), 1/m."""
-    arms = places - places.mean(axis=0)
-    forces: Array = arms @ np.linalg.inv(arms.T @ arms)
-    return forces
-
-
 def support_loads_at_rest(scene: Scene) -> Array | None:
     """Return the forces of equally stiff supports under the weight at rest, (K,), N; None unless they are placed."""
     if (places := scene.support_places) is None:
         return None
-    weight = scene.total_mass * GRAVITY
-    loads: Array = weight / len(places) + weight * (_leverage(places) @ (scene.center_of_mass - places.mean(axis=0)))
-    return loads
+    return scene.total_mass * GRAVITY * static_shares(places, scene.center_of_mass)
 
 
 def _support_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
@@ -178,7 +170,9 @@ def _support_by_statics(scene: Scene, heights: Array, places: Array) -> Callable
     The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
     the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
     """
-    middle, leverage = places.mean(axis=0), _leverage(places)
+    middle = places.mean(axis=0)
+    arms = places - middle
+    leverage = arms @ np.linalg.inv(arms.T @ arms)  # force of every support for a moment along x and y, (K, 2), 1/m
     lean = 1.0 if scene.flat else _depression(scene) / scene.radius
     shares = scene.masses / scene.total_mass
 

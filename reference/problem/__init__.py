@@ -8,7 +8,6 @@ builtin_scenes, example_scenes                                  names of the sce
 ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
-check_phase, check_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
 describe_record                                                 what was read of a recorded motion, with warnings
 
@@ -39,7 +38,7 @@ from reference.problem.excitation import (
 from reference.problem.families import Family, load_family
 from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
-from reference.problem.phases import check_phase, check_phases, flat_phases, phase_axis, phase_grid
+from reference.problem.phases import phase_grid
 from reference.problem.recorded import describe_record
 from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
@@ -60,12 +59,9 @@ __all__ = [
     "State",
     "Trajectory",
     "builtin_scenes",
-    "check_phase",
-    "check_phases",
     "describe_record",
     "example_scenes",
     "exponents",
-    "flat_phases",
     "ground_acceleration",
     "ground_displacement",
     "ground_peak",
@@ -74,6 +70,5 @@ __all__ = [
     "load_scene",
     "loading_period",
     "parse_scene",
-    "phase_axis",
     "phase_grid",
 ]

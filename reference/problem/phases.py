@@ -16,29 +16,9 @@ POINTS = Range(1, 10_000)  # phases per axis
 
 def check_phases(phases: ArrayLike) -> Array:
     """
-    Phase pairs as a contiguous array; phases beyond a full turn are reduced to (-pi, pi].
+    Return phase pairs (M, 2), rad, as a contiguous array, beyond a full turn reduced to (-pi, pi]. Raises ValueError.
 
-    Parameters
-    ----------
-    phases : array_like, (M, 2), rad
-
-    Returns
-    -------
-    ndarray, (M, 2), rad
-
-    Raises
-    ------
-    ValueError
-        In one line, for another shape, entries that are no numbers or masked, and phases outside `ranges.PHASE`.
-
-    Notes
-    -----
     Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given.
-
-    Examples
-    --------
-    >>> check_phases([(0.5, 1.0)]).tolist()
-    [[0.5, 1.0]]
     """
     array = check_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
     if array.ndim != 2 or array.shape[1] != 2:
@@ -50,27 +30,7 @@ def check_phases(phases: ArrayLike) -> Array:
 
 
 def check_phase(phase: ArrayLike) -> Array:
-    """
-    Return one phase pair as an array.
-
-    Parameters
-    ----------
-    phase : array_like, (2,), rad
-
-    Returns
-    -------
-    ndarray, (2,), rad
-
-    Raises
-    ------
-    ValueError
-        As `check_phases`.
-
-    Examples
-    --------
-    >>> check_phase((0.5, 1.0)).tolist()
-    [0.5, 1.0]
-    """
+    """Return one phase pair (2,), rad, as an array. Raises ValueError as `check_phases`."""
     pair = check_array("phases", phase, f"must be (2,), {PHASE.rule}")
     if pair.size != 2:
         raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
@@ -78,31 +38,7 @@ def check_phase(phase: ArrayLike) -> Array:
 
 
 def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
-    """
-    Return phase pairs of any shape as a list of pairs.
-
-    Parameters
-    ----------
-    phases : array_like, (..., 2), rad
-
-    Returns
-    -------
-    ndarray, (M, 2), rad
-        The pairs, checked as by `check_phases`.
-    tuple of int
-        Shape of `phases` before its last axis.
-
-    Raises
-    ------
-    ValueError
-        As `check_phases`.
-
-    Examples
-    --------
-    >>> pairs, shape = flat_phases([[(0.5, 1.0), (0.5, 2.0)]])
-    >>> pairs.shape, shape
-    ((2, 2), (1, 2))
-    """
+    """Return phase pairs (..., 2), rad, as (M, 2), and their shape before the last axis. Raises as `check_phases`."""
     rule = f"must be (..., 2), {PHASE.rule}"
     array = check_array("phases", phases, rule)
     if array.shape[-1:] != (2,):
@@ -134,29 +70,9 @@ def grid_axes(phases: Array) -> tuple[Array, Array] | None:
 
 def phase_axis(points: int) -> Array:
     """
-    Return equally spaced phases on [0, 2 pi), the same to the last bit on every axis that has them.
+    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad, the same bits on every axis that has them.
 
-    Parameters
-    ----------
-    points : int
-        Number of phases.
-
-    Returns
-    -------
-    ndarray, (points,), rad
-        2 pi k / points, from the fraction k / points in lowest terms.
-
-    Raises
-    ------
-    ValueError
-        If `points` is no whole number from 1 to 10,000, in one line.
-
-    Examples
-    --------
-    >>> phase_axis(4).round(3).tolist()
-    [0.0, 1.571, 3.142, 4.712]
-    >>> bool((phase_axis(48)[::6] == phase_axis(8)).all())
-    True
+    They follow from the fraction k / points in lowest terms. Raises ValueError for no whole number from 1 to 10,000.
     """
     steps = np.arange(check_whole_number("points", points, POINTS))
     shared = np.gcd(steps, points)
@@ -181,7 +97,7 @@ def phase_grid(points: int) -> Array:
     Raises
     ------
     ValueError
-        As `phase_axis`.
+        If `points` is no whole number from 1 to 10,000, in one line.
 
     Examples
     --------

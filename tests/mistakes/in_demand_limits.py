@@ -232,7 +232,7 @@ MISTAKES = (
             "off_middle = scene.center_of_mass + lean",
             "Supports about another point than the axis carry another moment.",
             ("tests/reference/test_story_forces.py::test_supports_of_uneven_places_balance_weight_and_moment_about_any_point",)),
-    Mistake("reference/measures/story_forces.py", "weight / len(places) + weight *", "weight / len(places) - weight *",
+    Mistake("reference/problem/supports.py", "1.0 / len(places) + arms @", "1.0 / len(places) - arms @",
             "The dead load grows away from the center of mass.", ("tests/reference/test_story_forces.py::test_dead_loads_follow_the_centers_of_mass",)),
     Mistake("comparison/analyses/ensemble/analysis.py", "if model != EXACT and numbers.status != Outcome.OK:", "if False:",
             "An engine that does not meet its tolerance has values.",

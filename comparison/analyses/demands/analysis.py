@@ -24,7 +24,8 @@ from comparison.surfaces.surfaces import NOT_ASKED, copy_to_mirror_images
 from reference.measures import Estimates, phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
-from reference.problem import Scene, phase_axis, phase_grid
+from reference.problem import Scene, phase_grid
+from reference.problem.phases import phase_axis
 
 BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
 PREFIX = "demand_"  # name of a demand in surfaces.nc

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
 from comparison.result_types import Array
-from reference.problem import GRAVITY, Scene, check_phases, exponents, ground_acceleration, ground_peak
+from reference.problem import GRAVITY, Scene, exponents, ground_acceleration, ground_peak
+from reference.problem.phases import check_phases
 from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack
 

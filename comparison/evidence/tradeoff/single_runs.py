@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 import multibody
 from comparison.result_types import Array
-from reference.problem import Outcome, Scene, check_phases, ground_peak
+from reference.problem import Outcome, Scene, ground_peak
+from reference.problem.phases import check_phases
 from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import prepare_run

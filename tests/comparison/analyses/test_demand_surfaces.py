@@ -11,7 +11,8 @@ import reference
 from comparison.analyses.demands.analysis import DemandSurfaces, demand_statistics
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
-from reference.problem import load_scene, phase_axis
+from reference.problem import load_scene
+from reference.problem.phases import phase_axis
 
 
 @pytest.fixture(scope="module")
