@@ -11,6 +11,7 @@ flat slider it is a sphere on a plane.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
-from multibody.models.units import link_damping, link_stiffness, units_of
+from multibody.models.units import Units, link_damping, link_stiffness, units_of
 from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
@@ -99,34 +100,7 @@ def assemble_translational(
     springs = make_friction_springs(mbs, scene, units, [contact], count, under_platform)
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(BODY_COORDINATES, count).reshape(-1, axes)
-
-    def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
-        # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
-        if scene.flat:
-            set_contact_parameters(mbs, contact, SPHERE_RADIUS + penetration, penetration)
-        else:
-            set_contact_parameters(mbs, contact, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS], penetration)
-
-    def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        coordinates, velocities = np.zeros((2, count + turning.coordinates))
-        if initial is not None:
-            coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
-            velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-        if scene.flat:
-            set_plane_extent(mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), height)
-        on_surface = place_on_plane if scene.flat else place_on_sphere
-        coordinates[:3], velocities[:3], gap, slip = on_surface(
-            coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
-        )
-        contact_data, load = np.array([gap, slip, 0.0, 0.0]), np.array([-gap / penetration])
-        return EngineState(coordinates, velocities, contact_data, load=load)
-
-    def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        x, y, z = (0.0, 0.0, 0.0) if scene.flat else state.coordinates[:3].tolist()
-        to_center_of_hollow_sphere = -x, -y, 1.0 - z
-        length = math.hypot(*to_center_of_hollow_sphere)
-        normal = [part / length for part in to_center_of_hollow_sphere]
-        return settle_contact(state, float(gap_rate[0]), penetration, normal)
+    parts = _TranslationalSystem(scene, mbs, units, bodies, contact, height, count + turning.coordinates)
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
@@ -135,9 +109,9 @@ def assemble_translational(
         ground=ground,
         recorders=recorders,
         bodies=bodies,
-        set_contact=set_contact,
-        start=start,
-        settle=settle,
+        set_contact=parts.set_contact,
+        start=parts.start,
+        settle=parts.settle,
         corner=corner,
         relaxation=relaxation,
         rounding=FORCE_ROUNDING,
@@ -146,6 +120,55 @@ def assemble_translational(
         rim=np.inf if scene.flat else 1.0,
         springs=springs,
     )
+
+
+@dataclass(frozen=True)
+class _TranslationalSystem:
+    """
+    The parts of the assembled system that can be set, and its start; in units of the model.
+
+    bodies: index of the coordinates that move the bodies, (N, 3). height: of the plane of a flat slider. coordinates:
+    their number.
+    """
+
+    scene: Scene
+    mbs: Any
+    units: Units
+    bodies: NDArray[np.int_]
+    contact: Any
+    height: float
+    coordinates: int
+
+    def set_contact(self, penetration: float, warping_compliance: float = 0.0) -> None:
+        """Set the penetration of the contact under the weight; a single contact has nothing to warp."""
+        # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
+        sphere, hollow = SPHERE_RADIUS + penetration, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS]
+        set_contact_parameters(self.mbs, self.contact, sphere if self.scene.flat else hollow, penetration)
+
+    def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
+        """Return the state for an initial state (None: at rest), the plate's acceleration, m/s^2, and a penetration."""
+        scene, units = self.scene, self.units
+        coordinates, velocities = np.zeros((2, self.coordinates))
+        if initial is not None:
+            coordinates[self.bodies[:, :2]] = np.asarray(initial.position, float) / units.length
+            velocities[self.bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
+        if scene.flat:
+            way = largest_distance_possible(scene, units, coordinates, velocities)
+            set_plane_extent(self.mbs, self.contact, way, self.height)
+        on_surface = place_on_plane if scene.flat else place_on_sphere
+        coordinates[:3], velocities[:3], gap, slip = on_surface(
+            coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
+        )
+        contact_data, load = np.array([gap, slip, 0.0, 0.0]), np.array([-gap / penetration])
+        return EngineState(coordinates, velocities, contact_data, load=load)
+
+    def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
+        """Return the state to go on from with a smaller step (`settle_contact`)."""
+        x, y, z = (0.0, 0.0, 0.0) if self.scene.flat else state.coordinates[:3].tolist()
+        to_center_of_hollow_sphere = -x, -y, 1.0 - z
+        length = math.hypot(*to_center_of_hollow_sphere)
+        normal = [part / length for part in to_center_of_hollow_sphere]
+        return settle_contact(state, float(gap_rate[0]), penetration, normal)
 
 
 def _add_contact(
