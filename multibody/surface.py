@@ -106,24 +106,10 @@ def amplification(
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
     max_work = check_number("max_work", max_work, WORK)
     clock = time.process_time()
-    shape = (len(pairs), len(scene.bodies))
-    mu, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
-    displacement = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     with silence_engine():
         reduced = _reduce_model(scene, model, regularization, full)
-        for m, phase in enumerate(pairs):
-            if ground[m] < LEAST_ACCELERATION:
-                status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
-            elif not np.isfinite(ground[m]):
-                status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
-            else:
-                point = reduced.refine_point(phase, tolerance, levels, max_work)
-                status[m], instant[m] = point.outcome, point.instant
-                mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
-                if np.isfinite(point.peaks).all():
-                    displacement[m] = point.finest.max_displacement * reduced.built.units.length
+        mu, error, status, instant, displacement = reduced.answer(pairs, ground, tolerance, levels, max_work)
     cost, cap_share = time.process_time() - clock, displacement / scene.radius
     found = Amplification(
         mu,
@@ -170,6 +156,30 @@ class _ReducedModel:
     built: EngineModel
     complete: Callable[[], tuple[Scene, EngineModel]] | None
     whole: bool
+
+    def answer(
+        self, pairs: Array, ground: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
+    ) -> tuple[Array, Array, NDArray[np.str_], Array, Array]:
+        """
+        Return mu and error (M, N), status, instant, s, and displacement, m, (M,) of phase pairs (M, 2), rad.
+
+        ground: denominators of (5.1), (M,), m/s^2.
+        """
+        count = len(pairs)
+        mu, error = np.full((2, count, len(self.scene.bodies)), np.nan)
+        status, (instant, displacement) = np.full(count, Outcome.OK.value, dtype="U32"), np.full((2, count), np.nan)
+        for m, phase in enumerate(pairs):
+            if ground[m] < LEAST_ACCELERATION:
+                status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
+            elif not np.isfinite(ground[m]):
+                status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
+            else:
+                point = self.refine_point(phase, tolerance, levels, max_work)
+                status[m], instant[m] = point.outcome, point.instant
+                mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
+                if np.isfinite(point.peaks).all():
+                    displacement[m] = point.finest.max_displacement * self.built.units.length
+        return mu, error, status, instant, displacement
 
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float

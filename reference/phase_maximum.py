@@ -6,6 +6,7 @@ A grid finds local maxima, and from each of the highest ones a search goes on (`
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -139,11 +140,7 @@ def worst_phases(
     if starts is None:
         phases, taken = distinct_pairs(scene, GRID)
         starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
-    points = surface.compute(check_phases(starts))
-    searches = [
-        LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
-        for n in np.flatnonzero(np.isfinite(points.value))
-    ]
+    searches = _start_searches(surface, check_phases(starts))
     if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
     shifts: Array = np.pi * find_half_turns(scene).astype(float)
@@ -154,11 +151,7 @@ def worst_phases(
             break
         search_round(surface, active)
         searches = merge_searches(searches, shifts)
-    least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
-    kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
-    for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:
-        follow_jump(surface, search)
-        kinds[search] = classify_maximum(surface, search)
+    kinds = _classify_highest(surface, searches)
     best, *others = sorted(merge_searches(searches, shifts), key=lambda search: -search.value)
     kind, side = kinds[best]
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
@@ -175,3 +168,24 @@ def worst_phases(
         reading=reading_of(scene, regularization, cutoff) if quantity == "amplification" else "",
         law=describe_law(scene, regularization, cutoff),
     )
+
+
+def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
+    """Return a search from each of the phase pairs (K, 2), rad, that has an answer."""
+    points = surface.compute(phases)
+    return [
+        LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
+        for n in np.flatnonzero(np.isfinite(points.value))
+    ]
+
+
+def _classify_highest(
+    surface: Surface, searches: Sequence[LocalSearch]
+) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
+    """Return kind and side of the highest maxima, after those next to a jump have followed it."""
+    least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
+    kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
+    for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:
+        follow_jump(surface, search)
+        kinds[search] = classify_maximum(surface, search)
+    return kinds

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from reference.analytical.frictionless import frictionless_peaks
 from reference.defaults import DEFAULT_TOLERANCE
@@ -135,47 +135,79 @@ def amplification(
         "reading": reading_of(scene, regularization, cutoff),
         "law": describe_law(scene, regularization, cutoff),
     }
-    count, bodies = len(pairs), len(scene.bodies)
-    mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
-    instant, displacement = np.full(count, np.nan), np.full(count, np.nan)
-    status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
-    if not loads_are_finite(system):
-        return Amplification(mu, error, status, np.zeros(count), 0.0, phases=pairs, **basis).reshaped(shape)
+    found = _PointAnswers.without_any(len(pairs), len(scene.bodies))
+    cost = 0.0
+    if loads_are_finite(system):
+        summed = system.small and not full and linear(scene).allowed
 
-    summed = system.small and not full and linear(scene).allowed
+        def solve(part: slice) -> float:
+            return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
 
-    def solve(part: slice) -> float:
-        begin = time.thread_time()
-        ground = ground_peak(scene, pairs[part])
-        shaken = ground >= LEAST_ACCELERATION
-        status[part] = Outcome.NO_GROUND_MOTION.value
-        places = np.arange(count)[part][shaken]
-        moving_pairs = pairs[places]
-        peaks = (
-            superpose_harmonics(scene, system, moving_pairs, demand)
-            if summed
-            else peaks_with_error(system, moving_pairs, demand, whole=full)
-        )
-        outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
-        outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
-        known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
-        status[places] = [outcome.value for outcome in outcomes]
-        mu[places[known]] = peaks.value[known] / ground[shaken][known, None]
-        displacement[places[known]] = peaks.reach[known]
-        error[places[known]] = peaks.error[known] / ground[shaken][known, None]
-        instant[part] = 0.0
-        instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
-        return time.thread_time() - begin
+        cost = _solve_on_threads(solve, len(pairs), alone=summed)
+    share = found.displacement / scene.radius
+    return Amplification(
+        found.mu, found.error, found.status, found.instant, cost, share, pairs, found.displacement, **basis
+    ).reshaped(shape)
 
-    threads = numba.get_num_threads()
-    if summed or threads == 1 or count < 2:
-        cost = solve(slice(0, count))
+
+class _PointAnswers(NamedTuple):
+    """What is found for M phase pairs and N bodies, to be filled in."""
+
+    mu: Array  # (M, N)
+    error: Array  # (M, N)
+    status: NDArray[np.str_]  # (M,)
+    instant: Array  # (M,), s
+    displacement: Array  # (M,), m
+
+    @staticmethod
+    def without_any(points: int, bodies: int) -> _PointAnswers:
+        """Return the answers where the loads are not finite."""
+        status = np.full(points, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
+        nothing = np.full((points, bodies), np.nan)
+        return _PointAnswers(nothing, nothing.copy(), status, np.zeros(points), np.full(points, np.nan))
+
+
+def _solve_points(
+    scene: Scene,
+    system: System,
+    demand: RunSettings,
+    pairs: Array,
+    part: slice,
+    found: _PointAnswers,
+    *,
+    summed: bool,
+    full: bool,
+) -> float:
+    """Solve a slice of the phase pairs (M, 2), rad, and fill in what is found; return the time it took, s."""
+    begin = time.thread_time()
+    ground = ground_peak(scene, pairs[part])
+    shaken = ground >= LEAST_ACCELERATION
+    found.status[part] = Outcome.NO_GROUND_MOTION.value
+    places = np.arange(len(pairs))[part][shaken]
+    moving_pairs = pairs[places]
+    if summed:
+        peaks = superpose_harmonics(scene, system, moving_pairs, demand)
     else:
-        solve(slice(0, 1))  # compiled once, before the threads need it
-        with ThreadPoolExecutor(threads) as pool:
-            cost = sum(pool.map(solve, split_points(count, PARTS_PER_THREAD * threads)))
-    share = displacement / scene.radius
-    return Amplification(mu, error, status, instant, cost, share, pairs, displacement, **basis).reshaped(shape)
+        peaks = peaks_with_error(system, moving_pairs, demand, whole=full)
+    outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
+    outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
+    known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
+    found.status[places] = [outcome.value for outcome in outcomes]
+    found.mu[places[known]] = peaks.value[known] / ground[shaken][known, None]
+    found.displacement[places[known]] = peaks.reach[known]
+    found.error[places[known]] = peaks.error[known] / ground[shaken][known, None]
+    found.instant[places] = np.where(outcomes == Outcome.OK, np.nan, peaks.instant)
+    return time.thread_time() - begin
+
+
+def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) -> float:
+    """Solve `count` points in slices, on all threads unless `alone`; return the sum of the times, s."""
+    threads = numba.get_num_threads()
+    if alone or threads == 1 or count < 2:
+        return solve(slice(0, count))
+    solve(slice(0, 1))  # compiled once, before the threads need it
+    with ThreadPoolExecutor(threads) as pool:
+        return sum(pool.map(solve, split_points(count, PARTS_PER_THREAD * threads)))
 
 
 def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:

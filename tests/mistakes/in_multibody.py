@@ -99,7 +99,7 @@ MISTAKES = (
     Mistake("multibody/motion.py", "shares = tuple(share for _, share in point.coarser)",
             "shares = tuple(0.0 for _, share in point.coarser)", "Demands have no error of the solution.",
             (NUMBERS + "test_a_motion_comes_with_the_accuracy_of_all_its_numbers",)),
-    Mistake("multibody/surface.py", "displacement[m] = point.finest.max_displacement * reduced.built.units.length",
+    Mistake("multibody/surface.py", "displacement[m] = point.finest.max_displacement * self.built.units.length",
             "displacement[m] = point.finest.max_displacement", "Displacements are in units of rho.",
             (NUMBERS + "test_displacements_are_meters_and_their_shares_those_of_rho",)),
     Mistake("multibody/surface.py", "cost, cap_share = time.process_time() - clock, displacement / scene.radius",
