@@ -71,7 +71,7 @@ class Look:
 @dataclass(frozen=True)
 class Drawing:
     """
-    All that is drawn, in m, magnified: F frames, N bodies, K supports.
+    Picture of a motion, in m, magnified: F frames, N bodies, K supports.
 
     corners: of the boxes, (F, N, 8, 3). centers: (F, N, 3). supports: (K, 2). paths: of the contact points, (F, K, 2).
     swing: x and z of the curve that the platform's center swings on, (S, 2), from its place at `rest`, (2,).

@@ -13,9 +13,9 @@ from reference.support.arguments import Range
 
 LOAD_PER_SUPPORT = Range(1e3, 1e8, "N")
 NORMALIZED = 10.0  # kg: a scene of unit masses, as those of the paper, is meant as no building
-LEAST_RATE = 1.0  # s/m, of the growth of friction with the speed
-LARGEST_EXTENT = 300.0  # m, of the places of the supports
-EXTENT_OVER_SIZE = 2.0  # of the places of the supports, over the size of the platform
+LEAST_RATE = 1.0  # s/m, rate of the growth of friction with the speed
+LARGEST_EXTENT = 300.0  # m, extent of the places of the supports
+EXTENT_OVER_SIZE = 2.0  # extent of the places of the supports over the size of the platform
 FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # period of the first mode along either axis
 LARGEST_RADIUS = 50.0  # m
 LARGEST_FRICTION = 1.0
@@ -91,7 +91,7 @@ def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
         yield f"the weight on each support is {word_force(load)}, {limit}: is mass in kg?"
     if len(scene.bodies) == 1:
         return
-    with np.errstate(divide="ignore"):  # beside a mass in which all others vanish
+    with np.errstate(divide="ignore"):  # a mass in which all others vanish has an infinite share
         shares = scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)
     place = int(np.argmax(np.abs(np.log(shares))))
     if (share := float(shares[place])) not in MASS_SHARE:

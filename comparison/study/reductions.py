@@ -7,13 +7,13 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.reductions import (
+    body_cannot_tilt,
     half_turn,
     linear,
     no_friction,
     own_axes,
     planar,
     planar_chain,
-    untilted,
     unused_harmonics,
 )
 
@@ -22,7 +22,7 @@ LEFT_OUT = (
     ("every run but one per harmonic", linear, "equations", ("small",)),
     ("motion across its plane", planar, "equations", ("small", "exact")),
     ("motion across its plane, of the bodies", planar_chain, "model", ("translational",)),
-    ("rotations, all supports but one", untilted, "model", ("spatial",)),
+    ("rotations, all supports but one", body_cannot_tilt, "model", ("spatial",)),
 )
 
 

@@ -59,12 +59,12 @@ class Candidate:
 
     @property
     def misses_compliance_error(self) -> bool:
-        """Whether the error that the contact's compliance leaves is still missing."""
+        """True if the error that the contact's compliance leaves is still missing."""
         return self.shares_contact and self.compliance is None
 
     @property
     def is_complete(self) -> bool:
-        """Whether no part of the error is missing."""
+        """True if no part of the error is missing."""
         return not self.misses_compliance_error and bool(np.isfinite(self.errors).all())
 
     @property

@@ -84,7 +84,7 @@ class EngineRun:
 
     @property
     def lifts_off(self) -> bool:
-        """Whether a support of those that share the load opened."""
+        """True if a support of those that share the load opened."""
         return self.last_open > -math.inf
 
     def terminate(self, outcome: Outcome, instant: float) -> EngineRun:

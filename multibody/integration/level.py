@@ -177,7 +177,7 @@ class Level:
 
     @property
     def precedes_level_0(self) -> bool:
-        """Whether it comes before level 0."""
+        """True if it comes before level 0."""
         return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:

@@ -95,7 +95,7 @@ class LevelRuns:
 
     @property
     def whole(self) -> bool:
-        """Whether every run goes to the end."""
+        """True if every run goes to the end."""
         return self.keep or self.pair.whole
 
     def can_run_next(self) -> bool:

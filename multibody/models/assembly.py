@@ -11,7 +11,7 @@ from multibody.models.system import EngineModel
 from multibody.models.translational import assemble_translational
 from reference.problem import Scene
 from reference.problem.ranges import REGULARIZATION
-from reference.problem.reductions import untilted
+from reference.problem.reductions import body_cannot_tilt
 from reference.support.arguments import check_choice, check_number
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}
@@ -19,7 +19,7 @@ BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_tra
 
 def choose_model(scene: Scene, model: str, full: bool) -> str:
     """Choose the model that answers for `model`: a platform that cannot tilt needs no rotations, unless `full`."""
-    return "translational" if model == "spatial" and not full and untilted(scene).allowed else model
+    return "translational" if model == "spatial" and not full and body_cannot_tilt(scene).allowed else model
 
 
 def assemble(

@@ -1,8 +1,8 @@
 """
 The law of friction: its keys in a scene file, and its coefficient over slip speed, load and heat.
 
-This is the one place of the law. `reference/solver/contact/friction.py` has its compiled form, `yielding.py` beside it
-that of friction that yields, and `multibody/models/speed_friction.py` gives its coefficients to the engine.
+This is the one place of the law. `reference/solver/contact/friction.py` has its compiled form, `yielding.py` next to
+it that of friction that yields, and `multibody/models/speed_friction.py` gives its coefficients to the engine.
 """
 
 from __future__ import annotations

@@ -56,8 +56,8 @@ def own_axes(scene: Scene) -> Reduction:
     return Reduction(False, "a harmonic acts along both axes, or both along one")
 
 
-def untilted(scene: Scene) -> Reduction:
-    """Find whether nothing turns the body of the spatial model: then (vi) holds, and the translational one answers."""
+def body_cannot_tilt(scene: Scene) -> Reduction:
+    """Find whether nothing turns the body of the spatial model: (vi) holds, and the translational one answers."""
     # All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
     # shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the
     # ring. The weight of a second body shifts with its displacement across the direction of sliding, and turns the
@@ -177,12 +177,12 @@ def linear(scene: Scene) -> Reduction:
         return Reduction(False, RECORDED)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading: it is no part of the sum and varies the pendulum's stiffness")
-    if not fastest(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
+    if not fastest_rate(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
         return Reduction(False, f"more than {MAX_VIBRATION_ANGLE:g} rad of the fastest vibration: cheaper to step over")
     return Reduction(True, "no friction, no vertical loading: the small equations are linear, the surface is a sum")
 
 
-def fastest(scene: Scene) -> float:
+def fastest_rate(scene: Scene) -> float:
     """Return an upper bound of every angular frequency and rate of decay in the small equations, rad/s."""
     below = np.vstack([np.full((1, 2), scene.total_mass * GRAVITY / scene.radius), scene.stiffness])
     above = np.vstack([scene.stiffness, np.zeros((1, 2))])

@@ -55,7 +55,7 @@ def first_scene_error(
     without_loading = any(error["type"] == "missing" and error["loc"] == ("excitation",) for error in said)
     if without_loading:  # a record would bring its duration along
         said = [error for error in said if error["type"] != "missing" or error["loc"] != ("duration",)]
-    errors = [_said_of(file, error, keys) for error in said] + ([unread] if unread else [])
+    errors = [_word_error(file, error, keys) for error in said] + ([unread] if unread else [])
     errors = list({(error.key, error.rule): error for error in errors}.values())
     if tables is not None:
         errors.sort(key=lambda error: _place_in(tables, error.key))
@@ -64,7 +64,7 @@ def first_scene_error(
 
 
 def _place_in(tables: Any, key: str) -> list[int]:
-    """Where in the file a dotted key stands, for the order of errors; behind everything where it does not."""
+    """Return the place of a dotted key in the file, for the order of errors; behind everything where it has none."""
     place = []
     for part in key.split("."):
         if isinstance(tables, Mapping) and part in tables:
@@ -78,8 +78,8 @@ def _place_in(tables: Any, key: str) -> list[int]:
     return place
 
 
-def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) -> SceneError:
-    """One error of pydantic in the words of the scene file."""
+def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) -> SceneError:
+    """Return one error of pydantic in the words of the scene file."""
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)

@@ -20,7 +20,7 @@ ONE_SURFACE = (
     "sum of their effective radii, a triple pendulum is not modeled (docs/guide/building.md)"
 )
 NO_DAMPER = (
-    "the isolator has no damper beside its friction: remove this key, or write lubrication in place of friction; "
+    "the isolator has no damper but its friction: remove this key, or write lubrication in place of friction; "
     "damping belongs to a body, for the link below it"
 )
 EFFECTIVE = "write radius, the effective radius rho = R - r of the one sliding surface, m"
@@ -74,10 +74,10 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
-        super().__init__(f"{one_line(file)}: {'; also '.join(error._said for error in (self, *self.others))}")
+        super().__init__(f"{one_line(file)}: {'; also '.join(error._sentence for error in (self, *self.others))}")
 
     @property
-    def _said(self) -> str:
+    def _sentence(self) -> str:
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
         value = "" if absent else f" = {brief(self.value)}"
         return f"{one_line(self.key)}{value}: {self.rule}"

@@ -9,7 +9,7 @@ from scenes_at_hand import assert_agree
 import multibody
 from multibody import surface
 from reference.problem import Scene, load_scene
-from reference.problem.reductions import planar, untilted
+from reference.problem.reductions import body_cannot_tilt, planar
 
 PHASES = [(2.0, 0.7), (0.3, 1.1)]
 LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]}  # with the depressions
@@ -19,15 +19,15 @@ CASES: dict[str, tuple[Any, str, dict[str, Any]]] = {
     "lubricated": (planar, "fig4-viscous", {}),
     "oblique, vertical too": (planar, "fig4-dry", {"excitation.amplitudes": [[1.0, 0.5], [-0.8, -0.4], [0.5, 0.3]]}),
     "links of two stiffnesses and dampers": (planar, "fig3-I", {**ALONG_Y, "bodies.1.damping": [0.2, 0.7]}),
-    "level": (untilted, "fig3-I", LEVEL),
-    "level, three supports": (untilted, "fig3-II", {**LEVEL, "isolator.supports": 3}),
+    "level": (body_cannot_tilt, "fig3-I", LEVEL),
+    "level, three supports": (body_cannot_tilt, "fig3-II", {**LEVEL, "isolator.supports": 3}),
 }
 
 
 @pytest.mark.parametrize(("reduction", "name", "values"), CASES.values(), ids=CASES)
 def test_the_answer_is_that_of_the_whole_model(reduction: Any, name: str, values: dict[str, Any]) -> None:
     scene = load_scene(name).with_values({"duration": 3.0, **values})
-    model = "spatial" if reduction is untilted else "translational"
+    model = "spatial" if reduction is body_cannot_tilt else "translational"
     reduced, full = (multibody.amplification(scene, PHASES[:1], model, full=full) for full in (False, True))
     assert reduction(scene)
     assert_agree(reduced, full)

@@ -24,7 +24,7 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
 from comparison.study.models import Model
 from reference.problem import Scene, SceneError
-from reference.problem.reductions import untilted
+from reference.problem.reductions import body_cannot_tilt
 
 DURATION = 6.0  # s: the loading is strongest in its first seconds
 WITHIN = (0.01, 0.05)  # limits on the change of mu_i
@@ -101,7 +101,7 @@ def amplification_of(
 ) -> Trial:
     """Return mu of a model for a variation of a scene."""
     varied = scene if variation is None else variation.of(scene)
-    whole = {"full": True} if untilted(varied) else {}  # a check of assumption (vi) must not make use of it
+    whole = {"full": True} if body_cannot_tilt(varied) else {}  # a check of assumption (vi) must not make use of it
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))

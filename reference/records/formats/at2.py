@@ -63,7 +63,7 @@ def _check_unit(header: list[str], proposal: str) -> None:
     for number, line in found:
         at = UNIT_LINE.search(line)
         if NO_ACCELERATION.search(line):
-            raise RecordError(f"line {number}: {brief(line)}: is no acceleration: take the .AT2 file beside it")
+            raise RecordError(f"line {number}: {brief(line)}: is no acceleration: take the .AT2 file of the same name")
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
             raise RecordError(f"line {number}: the header names no unit that is known: {brief(line)}: {rule}")
     named = [(number, line) for number, line in enumerate(header, 1) if ACCELERATION_LINE.search(line)]

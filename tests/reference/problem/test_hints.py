@@ -9,7 +9,7 @@ TOP = 'title = "x"\nduration = 5.0\n'
 BODY = "[[bodies]]\nmass = 1000.0\n"
 LOADING = "[excitation]\namplitudes = [[1.0, 1.0], [0.0, 0.0]]\nperiods = [1.0, 2.0]\ndecay = [0.1, 0.1]\n"
 YIELDS, ONE_SURFACE = "friction that yields before it slides is a table", "one sliding surface is modeled"
-NO_DAMPER = "the isolator has no damper beside its friction"
+NO_DAMPER = "the isolator has no damper but its friction"
 
 
 def said_of(folder, isolator="radius = 2.0\nfriction = 0.05\n", body="", loading=LOADING):

@@ -12,6 +12,7 @@ import reference
 from reference.problem import Scene, load_scene
 from reference.problem.reductions import (
     Reduction,
+    body_cannot_tilt,
     half_turn,
     linear,
     mirror_symmetric,
@@ -19,7 +20,6 @@ from reference.problem.reductions import (
     own_axes,
     planar,
     planar_chain,
-    untilted,
     unused_harmonics,
 )
 from reference.problem.symmetry import complete_surface
@@ -45,20 +45,30 @@ def places(*supports: list[float]) -> dict[str, Any]:
 
 # values of fig3-I by key, whether something may be left out, and how the reason begins
 DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = [
-    (untilted, {}, False, "bodies above the platform"),
-    (untilted, {"isolator.ring": None, "isolator.supports": None}, False, "no supports are stated"),
-    (untilted, ALONE, True, "one body, its center level with the depressions"),
-    (untilted, {**ALONE, "bodies.0.offset": [0.01, 0.0]}, False, "supports or centers of mass at stated places"),
-    (untilted, {**ALONE, "isolator.period": None, "isolator.radius": math.inf}, False, "a flat slider"),
-    (untilted, {**ALONE, "bodies.0.height": 0.1}, False, "a body above the depressions"),
-    (untilted, {**ALONE, "isolator.support_stiffness": 1e4}, False, "supports that give way"),
-    (untilted, {**ALONE, **OIL}, False, "lubricated"),
-    (untilted, {**ALONE, **law(load_exponent=0.1)}, False, "friction that depends on the load"),
+    (body_cannot_tilt, {}, False, "bodies above the platform"),
+    (body_cannot_tilt, {"isolator.ring": None, "isolator.supports": None}, False, "no supports are stated"),
+    (body_cannot_tilt, ALONE, True, "one body, its center level with the depressions"),
+    (
+        body_cannot_tilt,
+        {**ALONE, "bodies.0.offset": [0.01, 0.0]},
+        False,
+        "supports or centers of mass at stated places",
+    ),
+    (body_cannot_tilt, {**ALONE, "isolator.period": None, "isolator.radius": math.inf}, False, "a flat slider"),
+    (body_cannot_tilt, {**ALONE, "bodies.0.height": 0.1}, False, "a body above the depressions"),
+    (body_cannot_tilt, {**ALONE, "isolator.support_stiffness": 1e4}, False, "supports that give way"),
+    (body_cannot_tilt, {**ALONE, **OIL}, False, "lubricated"),
+    (body_cannot_tilt, {**ALONE, **law(load_exponent=0.1)}, False, "friction that depends on the load"),
     # twice the friction, 2 mu (rho + r), within the square of four supports: 0.0844 m is the least ring
-    (untilted, {**ALONE, "isolator.ring": 0.085}, True, "one body"),
-    (untilted, {**ALONE, "isolator.ring": 0.084}, False, "a narrow ring"),
-    (untilted, {**ALONE, **law(fast=0.4, rate=10.0)}, False, "a narrow ring"),
-    (untilted, {**ALONE, "isolator.friction": {"slow": 0.4, "fast": 0.1, "rate": 10.0}}, False, "a narrow ring"),
+    (body_cannot_tilt, {**ALONE, "isolator.ring": 0.085}, True, "one body"),
+    (body_cannot_tilt, {**ALONE, "isolator.ring": 0.084}, False, "a narrow ring"),
+    (body_cannot_tilt, {**ALONE, **law(fast=0.4, rate=10.0)}, False, "a narrow ring"),
+    (
+        body_cannot_tilt,
+        {**ALONE, "isolator.friction": {"slow": 0.4, "fast": 0.1, "rate": 10.0}},
+        False,
+        "a narrow ring",
+    ),
     (mirror_symmetric, {}, True, "an even number of supports on a ring"),
     (mirror_symmetric, {"isolator.supports": 3}, False, "an odd number of supports"),
     (mirror_symmetric, {"bodies.1.offset": [0.0, 0.1]}, False, "a center of mass off the axis"),

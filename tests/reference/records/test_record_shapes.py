@@ -203,7 +203,7 @@ REFUSED = [  # name, text, options, and words of the line
         "a.VT2",
         (PEER + "VELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 5, DT= .0100 SEC\n" + FIELDS),
         {},
-        "line 3: 'VELOCITY TIME SERIES IN UNITS OF CM/S': is no acceleration: take the .AT2 file beside it",
+        "line 3: 'VELOCITY TIME SERIES IN UNITS OF CM/S': is no acceleration: take the .AT2 file of the same name",
     ),
     ("a.txt", "Response spectra of an accelerogram\n" + ONE, {}, "its header names spectra: it is no record"),
     ("a.V1c", "counts\n" + ONE, {}, "a file of a network that is not read as it is: docs/guide/networks.md converts"),
