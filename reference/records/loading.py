@@ -78,6 +78,11 @@ def _load_samples(record: Any, label: str) -> tuple[Array, list[str]]:
     if isinstance(record, str) and record in shipped_examples() and not (Path(label).parent / record).exists():
         text = (EXAMPLES / f"{record}.toml").read_text("utf-8")
         return _load_samples(tomllib.loads(text)["excitation"]["record"], record)
+    return _read_files(record, label)
+
+
+def _read_files(record: Any, label: str) -> tuple[Array, list[str]]:
+    """Samples (K, 4) of one file, or of files by axis, and where they are from."""
     files = files_by_axis(record)
     if not files or (files is record and not set(files) <= set(AXES)):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)

@@ -52,13 +52,7 @@ def recognizes_csv(head: Sequence[str]) -> bool:
 @lru_cache(maxsize=32)  # the files are the same while other keys of a family run
 def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> RecordSamples:
     """Return what a table holds; unit: of columns whose header names none. Raises RecordError."""
-    lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
-    rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    separator, rows = _separator_line(rows)
-    while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves separators behind
-        rows.pop()
-    if not rows:
-        raise RecordError(f"empty: must have {HEADER}, and samples")
+    separator, rows = _split_lines(text)
     found = _header_row(rows, separator)
     top, separator = (0, separator or _guess_separator(rows[0][1])) if found is None else found
     head, header = rows[top]
@@ -76,6 +70,17 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
     values = {axis: column.factor * table[:, column.place] for axis, column in directions.items()}
     names = {axis: column.word for axis, column in directions.items() if column.word}
     return RecordSamples(FORMAT, time, values, names, notes=tuple(notes))
+
+
+def _split_lines(text: str) -> tuple[str | None, list[tuple[int, str]]]:
+    """The separator that the text states, and its numbered lines, without blank ones and comments. RecordError."""
+    lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
+    separator, rows = _separator_line([(number, line) for number, line in lines if not line.lstrip().startswith("#")])
+    while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves separators behind
+        rows.pop()
+    if not rows:
+        raise RecordError(f"empty: must have {HEADER}, and samples")
+    return separator, rows
 
 
 def _separator_line(rows: list[tuple[int, str]]) -> tuple[str | None, list[tuple[int, str]]]:
@@ -195,16 +200,15 @@ def _header_column(place: int, cell: str) -> HeaderCell:
     if words and all(word in TIMES for word in words):
         return HeaderCell(place, cell, "time")
     rest = [word for word in words if word not in ACCELERATIONS]
-    told = bool(words) and len(rest) < len(words)
     if words and not rest:
         return HeaderCell(place, cell, "acceleration")
-    if len(rest) == 1:
-        fused = FUSED.fullmatch(rest[0])
-        word = fused[1] if fused else rest[0]
-        if parse_direction(word) is not None and (fused or told or unit or not word.isdigit()):
-            if unit and unit_factor(unit) is None and not fused and not told:
-                return HeaderCell(place, cell, "other")  # N [counts], v [m/s]
-            return HeaderCell(place, cell, "acceleration", name if fused else word.upper() if len(word) < 4 else word)
+    told = len(rest) < len(words)
+    if len(rest) == 1 and FUSED.fullmatch(rest[0]):
+        return HeaderCell(place, cell, "acceleration", name)
+    if len(rest) == 1 and parse_direction(rest[0]) is not None and (told or unit or not rest[0].isdigit()):
+        if unit and unit_factor(unit) is None and not told:
+            return HeaderCell(place, cell, "other")  # N [counts], v [m/s]
+        return HeaderCell(place, cell, "acceleration", rest[0].upper() if len(rest[0]) < 4 else rest[0])
     return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 
 

@@ -213,12 +213,20 @@ def _column_values(
             if len(row) < column:
                 raise RecordError(f"line {number}: {len(row)} values: column = {column}: must have as many")
         return [row[column - 1] for _, row in rows]
+    _check_widths(rows, column is None, counted, propose)
+    return [value for _, row in rows for value in row]
+
+
+def _check_widths(
+    rows: Sequence[tuple[int, list[float]]], column_unstated: bool, counted: bool, propose: Callable[[], str]
+) -> None:
+    """Raise RecordError where lines may be rows of columns, or differ in the number of their values."""
     widths = [len(row) for _, row in rows]
-    timed = len(set(widths)) == 1 and widths[0] > 1 and _even_step([row for _, row in rows]) is not None
-    if column is None and timed:
+    alike = len(set(widths)) == 1 and widths[0] > 1
+    if column_unstated and alike and _even_step([row for _, row in rows]) is not None:
         rule = "the first of them rises evenly as a time does: state the column"
         raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose()}")
-    if column is None and not counted and len(rows) > 1 and len(set(widths)) == 1 and 1 < widths[0] <= MOST_COLUMNS:
+    if column_unstated and alike and not counted and len(rows) > 1 and widths[0] <= MOST_COLUMNS:
         rule = f"{widths[0]} values a line: state column, from 1; column = 0 takes all of them in their order"
         raise RecordError(f"line {rows[0][0]}: {rule}: {propose()}")
     other = widths[min(1, len(widths) - 1)] if widths else 0
@@ -226,7 +234,6 @@ def _column_values(
         if width != other:
             rule = f"{width} values, {other} in other lines: a header, or a broken line"
             raise RecordError(f"line {number}: {rule}: {propose()}")
-    return [value for _, row in rows for value in row]
 
 
 def _check_count(header: Sequence[str], count: int) -> None:
