@@ -8,15 +8,16 @@ rounds no more than a sphere of radius one, wherever the platform is.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.contact import ContactLaw
+from multibody.models.contact import ContactLaw, place_on_sphere
 from multibody.models.engine import exudyn, items
 from multibody.models.units import Units
-from reference.problem import Scene
+from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
@@ -45,7 +46,7 @@ def set_plane_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
     mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
 
 
-def largest_distance_possible(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
+def _largest_distance_possible(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
     """Bound of the distance that the start and the loading alone may take a body, in units of length."""
     end = scene.duration / units.time
     loading = 2.0 * scene.largest_acceleration / units.acceleration
@@ -57,6 +58,36 @@ def place_on_plane(offset: Array, speed: Array, ground: Array, penetration: floa
     pressed = penetration * float(1.0 + ground[2])
     place = np.array([*offset, penetration - pressed])
     return place, np.array([*speed, 0.0]), -pressed, float(np.hypot(*speed))
+
+
+def start_platform(
+    scene: Scene,
+    units: Units,
+    bodies: NDArray[np.int_],
+    count: int,
+    initial: State | None,
+    ground: Array,
+    penetration: float,
+    set_extent: Callable[[float], None],
+) -> tuple[Array, Array, float, float]:
+    """
+    Place the platform on its sphere or plane, and the other bodies as an initial state says (None: at rest).
+
+    bodies: index of the coordinates of the bodies, (N, 3), among `count`. ground: acceleration of the plate, m/s^2,
+    (3,). set_extent: makes the plane large enough for a distance. Returns coordinates and velocities (count,), gap and
+    slip speed of the contact.
+    """
+    coordinates, velocities = np.zeros((2, count))
+    if initial is not None:
+        coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
+        velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
+    if scene.flat:
+        set_extent(_largest_distance_possible(scene, units, coordinates, velocities))
+    on_surface = place_on_plane if scene.flat else place_on_sphere
+    coordinates[:3], velocities[:3], gap, slip = on_surface(
+        coordinates[:2], velocities[:2], ground / units.acceleration, penetration
+    )
+    return coordinates, velocities, gap, slip
 
 
 def _make_triangle(extent: float, height: float) -> Any:

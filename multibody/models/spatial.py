@@ -34,7 +34,6 @@ from multibody.models.contact import (
     ContactLaw,
     contact_law,
     corner_and_relaxation,
-    place_on_sphere,
     set_contact_parameters,
 )
 from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
@@ -43,7 +42,7 @@ from multibody.models.friction_springs import add_turning_spheres, make_friction
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import Link, RigidBodies, add_links, fastest_bar_frequency
 from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
-from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
+from multibody.models.plane import make_plane_contact, set_plane_extent, start_platform
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -295,28 +294,24 @@ class _SpatialSystem:
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         """Return the state for an initial state (None: at rest), the plate's acceleration, m/s^2, and a penetration."""
-        units, index = self.units, self.index
-        coordinates, velocities = np.zeros((2, self.body_coordinates + self.supports.coordinates))
-        if initial is not None:
-            coordinates[index[:, :2]] = np.asarray(initial.position, float) / units.length
-            velocities[index[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-        plate_acceleration = ground_acceleration / units.acceleration
-        pressed = self.bearing_penetration or penetration
-        if self.scene.flat:
-            way = largest_distance_possible(self.scene, units, coordinates, velocities)
+        index, pressed = self.index, self.bearing_penetration or penetration
+
+        def set_extent(way: float) -> None:
             for contact in self.contacts:
                 set_plane_extent(self.mbs, contact, way, 1.0 + self.radius)
-        on_surface = place_on_plane if self.scene.flat else place_on_sphere
-        place, velocity, gap, slip = on_surface(coordinates[:2], velocities[:2], plate_acceleration, pressed)
-        coordinates[:3], velocities[:3] = place, velocity
-        coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
+
+        count = self.body_coordinates + self.supports.coordinates
+        coordinates, velocities, gap, slip = start_platform(
+            self.scene, self.units, index, count, initial, ground_acceleration, pressed, set_extent
+        )
+        coordinates[index[1:, 2]], velocities[index[1:, 2]] = coordinates[2], velocities[2]
         # spheres and stiff links spring back as far as the loading takes the weight off them
         relief = 1.0 + gap / pressed
         coordinates[index[:, 2]] += relief * self.supports.sinking(penetration)
         coordinates[index[1:, 2]] += relief * np.cumsum([link.sinking(penetration) for link in self.links])
         coordinates[self.body_coordinates + self.supports.vertical] = relief * self.supports.sinking(penetration)
-        count = len(self.contacts)
-        data, load = np.tile([gap, slip, 0.0, 0.0], count), np.full(count, -gap / pressed)
+        contacts = len(self.contacts)
+        data, load = np.tile([gap, slip, 0.0, 0.0], contacts), np.full(contacts, -gap / pressed)
         return EngineState(coordinates, velocities, data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:

@@ -23,7 +23,6 @@ from multibody.models.contact import (
     ContactLaw,
     contact_law,
     corner_and_relaxation,
-    place_on_sphere,
     set_contact_parameters,
     settle_contact,
 )
@@ -31,7 +30,7 @@ from multibody.models.depressions import Depressions, FlatUnderside
 from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn, items
 from multibody.models.friction_springs import TurningSpheres, add_turning_spheres, make_friction_springs
 from multibody.models.loading import Push, load_coordinates, make_ground
-from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
+from multibody.models.plane import make_plane_contact, set_plane_extent, start_platform
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -147,18 +146,10 @@ class _TranslationalSystem:
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
         """Return the state for an initial state (None: at rest), the plate's acceleration, m/s^2, and a penetration."""
-        scene, units = self.scene, self.units
-        coordinates, velocities = np.zeros((2, self.coordinates))
-        if initial is not None:
-            coordinates[self.bodies[:, :2]] = np.asarray(initial.position, float) / units.length
-            velocities[self.bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
-        if scene.flat:
-            way = largest_distance_possible(scene, units, coordinates, velocities)
-            set_plane_extent(self.mbs, self.contact, way, self.height)
-        on_surface = place_on_plane if scene.flat else place_on_sphere
-        coordinates[:3], velocities[:3], gap, slip = on_surface(
-            coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
-        )
+        coordinates, velocities, gap, slip = start_platform(
+            self.scene, self.units, self.bodies, self.coordinates, initial, ground_acceleration, penetration,
+            lambda way: set_plane_extent(self.mbs, self.contact, way, self.height),
+        )  # fmt: skip
         contact_data, load = np.array([gap, slip, 0.0, 0.0]), np.array([-gap / penetration])
         return EngineState(coordinates, velocities, contact_data, load=load)
 
