@@ -44,21 +44,28 @@ def text_of_table(table: Mapping[str, Any]) -> str:
 
 def change_of(key: str, before: Any, value: Any) -> str:
     """Return the part of a scene's name that a changed value adds; "" where it changes no result."""
-    if key.split(".")[0] in WITHOUT_EFFECT:
+    if key.split(".")[0] in WITHOUT_EFFECT or (value is None and before is None):
         return ""
     short, number = short_key(key), as_float(value)
     if value is None:
-        return "" if before is None else f"{short}=none"
+        return f"{short}=none"
     if isinstance(value, Real) and not isinstance(value, bool):
         return "" if number == as_float(before) else f"{short}={number:.12g}"
+    if isinstance(value, bool | str) and value == before:
+        return ""
+    return _short_entry(short, value) or f"{short} changed"
+
+
+def _short_entry(short: str, value: Any) -> str:
+    """Return a key with its text, or the files or numbers of its table; "" where that is too long for a name."""
     if isinstance(value, bool | str):
         text = Path(str(value)).stem
-        shown = text.isprintable() and len(text) <= LONGEST_TEXT
-        return "" if value == before else f"{short}={text}" if shown else f"{short} changed"
-    if isinstance(value, dict) and value and all(isinstance(part, str | Real) for part in value.values()):
-        text = f"{short}={text_of_table(value)}"
-        return text if len(text) <= LONGEST_TEXT and text.isprintable() else f"{short} changed"
-    return f"{short} changed"
+        entry = f"{short}={text}"
+    elif isinstance(value, dict) and value and all(isinstance(part, str | Real) for part in value.values()):
+        text = entry = f"{short}={text_of_table(value)}"
+    else:
+        return ""
+    return entry if len(text) <= LONGEST_TEXT and text.isprintable() else ""
 
 
 def name_with_changes(name: str, changes: Sequence[str]) -> str:

@@ -153,13 +153,8 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
     speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     if system.law == SET_VALUED and speed2 == 0.0:
         excess, reaction = rest_excess(system, load)
-        limit = static_limit(system, load.k_t, reaction)
         if excess <= 0.0:
-            largest = sqrt(ground.x * ground.x + ground.y * ground.y)
-            nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
-            if nearly:
-                gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
-                largest = max(largest, largest_near_stop(gx, gy, gx, gy, ground, limit))
+            nearly, largest = bound_held_acceleration(system, load, ground, excess, reaction)
             return largest, (nearly and far) or not reaction >= least
     sx, sy = slip_in_state(system, vx, vy, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
@@ -188,6 +183,20 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
     work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y
     ax, ay = (share * free_x - vx) / h + ground.x, (share * free_y - vy) / h + ground.y
     return sqrt(ax * ax + ay * ay), far
+
+
+@compiled
+def bound_held_acceleration(
+    system: System, load: Load, ground: Ground, excess: float, reaction: float
+) -> tuple[bool, float]:
+    """Return True if the drive of a platform at rest comes near its limit, and a bound on its acceleration, m/s^2."""
+    largest = sqrt(ground.x * ground.x + ground.y * ground.y)
+    limit = static_limit(system, load.k_t, reaction)
+    nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
+    if nearly:
+        gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
+        largest = max(largest, largest_near_stop(gx, gy, gx, gy, ground, limit))
+    return nearly, largest
 
 
 @compiled

@@ -132,7 +132,7 @@ def test_a_tolerance_out_of_reach_gives_the_error_reached() -> None:
     [
         ({"regularization": None}, "v_reg"),
         ({"phases": [[0.0, 1.0, 2.0]]}, "phases"),
-        ({"loading": "shaker"}, "loading"),
+        ({"model": "shaker"}, "model"),
         ({"scene": one_body(), "model": "spatial"}, r"isolator\.supports.*bodies\.0\.height"),
         ({"phase": PHASE}, "exactly one"),
         ({"phase": PHASE, "step": 1e-3, "level": multibody.levels(load_scene("fig3-I"))[0]}, "exactly one"),
