@@ -151,7 +151,7 @@ def amplification(
 
 
 class _PointAnswers(NamedTuple):
-    """What is found for M phase pairs and N bodies, to be filled in."""
+    """Answers of M phase pairs and N bodies, to be filled in."""
 
     mu: Array  # (M, N)
     error: Array  # (M, N)

@@ -70,19 +70,19 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     Raises ValueError if the scene has no data of supports or bodies.
     """
     units = units_of(scene)
-    building = _measure_building(scene, units)
-    masses, centers = building.masses, building.centers
+    geometry = _measure_geometry(scene, units)
+    masses, centers = geometry.masses, geometry.centers
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    nodes, numbers = _add_boxes(mbs, building)
-    links = _add_links(mbs, scene, units, building, numbers)
+    nodes, numbers = _add_boxes(mbs, geometry)
+    links = _add_links(mbs, scene, units, geometry, numbers)
     ground = make_ground(mbs, scene, units)
-    bearings, count = scene.isolator.support_stiffness, len(building.places)
+    bearings, count = scene.isolator.support_stiffness, len(geometry.places)
     bearing_penetration = 0.0 if bearings is None else units.force / (count * bearings * units.length)
     shared = not bearing_penetration and count > DETERMINATE
-    supports = _add_supports(mbs, scene, units, building, shared)
+    supports = _add_supports(mbs, scene, units, geometry, shared)
     engine_law = contact_law(scene, regularization, units)
-    contacts, contact_nodes = _add_contacts(mbs, supports.markers, numbers[0], building, engine_law, scene.flat)
+    contacts, contact_nodes = _add_contacts(mbs, supports.markers, numbers[0], geometry, engine_law, scene.flat)
     for mass, node in zip(masses, nodes):
         add_coordinate_load(mbs, node, 2, -float(mass))
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
@@ -94,17 +94,17 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     index = BODY_COORDINATES * np.arange(len(masses))[:, None] + np.arange(3)
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, engine_law.threshold, contacts, ground)
-    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, building.radius, bearing_penetration)
+    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, geometry.radius, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
     underside = FlatUnderside if scene.flat else Depressions
-    under_platform = underside(building.places, centers[0], building.radius, vertical)
+    under_platform = underside(geometry.places, centers[0], geometry.radius, vertical)
     springs = make_friction_springs(mbs, scene, units, contacts, parts.body_coordinates, under_platform)
     law = DryFriction(engine_law.friction, engine_law.friction, 0.0) if varying is None else varying.law
     law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # a spring has no impulse
-    impact_law = _make_impact_law(scene, building, under_platform, links, law, engine_law.threshold)
+    impact_law = _make_impact_law(scene, geometry, under_platform, links, law, engine_law.threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     # positions round in proportion to the distance, and so do the moments of the forces that they make
-    farthest_place = max(1.0, float(building.distances.max()), float(centers[:, 2].max()))
+    farthest_place = max(1.0, float(geometry.distances.max()), float(centers[:, 2].max()))
     return EngineModel(
         mbs=mbs,
         units=units,
@@ -123,19 +123,19 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
         warping_displacement=parts.warping_displacement,
         bearing_penetration=bearing_penetration,
         depressions=under_platform,
-        critical_tilt=_critical_tilt(building.places, building.radius, masses, centers),
+        critical_tilt=_critical_tilt(geometry.places, geometry.radius, masses, centers),
         impact=None if bearing_penetration else impact_law,
         bar_lags=parts.bar_lags,
         take_out_open_contacts=parts.take_out_open_contacts,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
         springs=springs,
-        fastest_bar_frequency=fastest_bar_frequency(links, masses, building.tensors, centers),
+        fastest_bar_frequency=fastest_bar_frequency(links, masses, geometry.tensors, centers),
     )
 
 
 @dataclass(frozen=True)
-class _Building:
+class _Geometry:
     """
     Bodies and places of supports, in units of the model.
 
@@ -159,7 +159,7 @@ class _Building:
         return turned
 
 
-def _measure_building(scene: Scene, units: Units) -> _Building:
+def _measure_geometry(scene: Scene, units: Units) -> _Geometry:
     """Return bodies and supports of a scene. Raises ValueError where the scene lacks data of them."""
     isolator = scene.isolator
     required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
@@ -181,59 +181,59 @@ def _measure_building(scene: Scene, units: Units) -> _Building:
         distances = np.hypot(*places[:1].T)
     masses, radius = scene.masses / units.mass, isolator.sphere_radius / units.length
     sizes = np.array([body.size for body in scene.bodies]) / units.length
-    inertias = masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)  # of homogeneous boxes
+    inertias = masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)  # homogeneous boxes
     heights = np.array([body.height for body in scene.bodies])
     centers = np.column_stack([scene.offsets, heights]) / units.length
     if scene.flat:
         height_of_plane = 1.0 + radius
         centers[:, 2] += height_of_plane
     axes = rotation_matrices(scene.yaws[:, None] * [0.0, 0.0, 1.0])
-    return _Building(places, distances, radius, masses, centers, inertias, axes)
+    return _Geometry(places, distances, radius, masses, centers, inertias, axes)
 
 
-def _add_boxes(mbs: Any, building: _Building) -> tuple[list[Any], list[Any]]:
+def _add_boxes(mbs: Any, geometry: _Geometry) -> tuple[list[Any], list[Any]]:
     """Add the bodies; return their nodes and numbers."""
     nodes, bodies = [], []
-    for mass, center, tensor in zip(building.masses, building.centers, building.tensors):
+    for mass, center, tensor in zip(geometry.masses, geometry.centers, geometry.tensors):
         nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*center, 0.0, 0.0, 0.0])))
         moments = [*np.diag(tensor), tensor[1, 2], tensor[0, 2], tensor[0, 1]]
         bodies.append(mbs.AddObject(items.ObjectRigidBody(nodeNumber=nodes[-1], mass=mass, inertia=moments)))
     return nodes, bodies
 
 
-def _add_links(mbs: Any, scene: Scene, units: Units, building: _Building, numbers: list[Any]) -> list[Link]:
+def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, numbers: list[Any]) -> list[Link]:
     """Add the links between the bodies, along the axes of the upper one."""
-    directions = building.axes[1:, :2, :2]
+    directions = geometry.axes[1:, :2, :2]
     shear, damping = (
         directions @ (values[:, :, None] * directions.swapaxes(1, 2))
         for values in (link_stiffness(scene, units), link_damping(scene, units))
     )
-    bodies = RigidBodies(numbers, building.masses, building.centers)
-    return add_links(mbs, scene, units, bodies, shear, damping, float((building.distances**2).mean()))
+    bodies = RigidBodies(numbers, geometry.masses, geometry.centers)
+    return add_links(mbs, scene, units, bodies, shear, damping, float((geometry.distances**2).mean()))
 
 
-def _add_supports(mbs: Any, scene: Scene, units: Units, building: _Building, shared: bool) -> Supports:
+def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, shared: bool) -> Supports:
     """Add the spheres: fixed, or sharing the load elastically, or turning on springs where friction yields."""
-    places = building.places
+    places = geometry.places
     if scene.dry_friction.elastic:
         moved = SPHERES_MASS if shared else 0.0
-        turning = add_turning_spheres(mbs, scene, units, places, building.radius, moved)
+        turning = add_turning_spheres(mbs, scene, units, places, geometry.radius, moved)
         return make_turning_supports(mbs, places, turning, shared)
     return add_sharing_supports(mbs, places) if shared else add_fixed_supports(mbs, places)
 
 
 def _make_impact_law(
-    scene: Scene, building: _Building, under_platform: Depressions, links: list[Link], law: DryFriction, corner: float
+    scene: Scene, geometry: _Geometry, under_platform: Depressions, links: list[Link], law: DryFriction, corner: float
 ) -> ImpactLaw:
     """Return the law of contacts that close, with friction by `law` above the slip speed `corner`."""
     restitution = scene.isolator.restitution or 0.0
     rigid = np.array([link.bars is None for link in links], dtype=bool)
     return ImpactLaw(
         under_platform,
-        building.masses,
-        building.inertias,
-        building.axes,
-        building.centers,
+        geometry.masses,
+        geometry.inertias,
+        geometry.axes,
+        geometry.centers,
         restitution,
         law,
         corner,
@@ -334,11 +334,11 @@ def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) ->
 
 
 def _add_contacts(
-    mbs: Any, supports: list[Any], platform: Any, building: _Building, law: ContactLaw, flat: bool
+    mbs: Any, supports: list[Any], platform: Any, geometry: _Geometry, law: ContactLaw, flat: bool
 ) -> tuple[list[Any], list[Any]]:
     """Add contacts of the spheres in the platform's depressions, or under its plane, and their data nodes."""
-    radius, ring = building.radius, building.places
-    depressions = np.column_stack([ring, np.zeros(len(ring))]) - building.centers[0]
+    radius, ring = geometry.radius, geometry.places
+    depressions = np.column_stack([ring, np.zeros(len(ring))]) - geometry.centers[0]
     contacts, nodes = [], []
     for place, support in zip(depressions, supports):
         nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))

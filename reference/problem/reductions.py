@@ -26,7 +26,7 @@ LOAD_SHIFT_FACTOR = 2.0  # times the shift of the supports' load on a level sphe
 
 @dataclass(frozen=True)
 class Reduction:
-    """What a scene lets be left out, and why, or what forbids it. True where it may."""
+    """Part of the work that a scene may let be left out, and why, or what forbids it. True where it may."""
 
     allowed: bool
     reason: str
