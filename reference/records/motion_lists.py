@@ -6,7 +6,7 @@ import csv
 import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +35,7 @@ class Motion:
     One motion of a suite: its name, its files by axis, "" where one file holds all directions, and its factor.
 
     magnitude: of the earthquake, None where the list does not state it. options: what the list states of the plain
-    texts, by axis.
+    texts, by axis. line: its number in the list, 0 of a motion that is not listed.
     """
 
     name: str
@@ -43,6 +43,7 @@ class Motion:
     factor: float = 1.0
     magnitude: float | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    line: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True)
@@ -98,14 +99,14 @@ def read_motion_list(folder: Path) -> MotionList | None:
         text = decode_text(read_file(file, LARGEST))
     except (OSError, RecordError) as error:
         raise RecordError(f"{FILE}: {getattr(error, 'strerror', None) or error}") from None
-    heads, *rows = _split_cells(text)
+    heads, rows = _split_cells(text)
     motions: dict[str, Motion] = {}
     faults = []
-    for number, row in enumerate(rows, 2):
+    for number, row in rows:
         try:
             if any(row[len(heads) :]):
                 raise RecordError(f"{len(row)} cells, and {len(heads)} columns: a decimal comma needs quotes")
-            motion = _read_motion(dict(zip(heads, row)), folder)
+            motion = replace(_read_motion(dict(zip(heads, row)), folder), line=number)
             if motion.name in motions:
                 raise RecordError(f"{brief(motion.name)}: two motions have one name")
             motions[motion.name] = motion
@@ -117,22 +118,22 @@ def read_motion_list(folder: Path) -> MotionList | None:
     return MotionList(tuple(motions.values()), listed=True)
 
 
-def _split_cells(text: str) -> list[list[str]]:
-    """Return the columns of the file in small letters, and the cells of its other lines. Raises RecordError."""
-    lines = [line for line in text.splitlines() if line.strip()]
-    if not lines:
+def _split_cells(text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return the columns of the file in small letters, and the cells of its other lines by number. RecordError."""
+    first = next((line for line in text.splitlines() if line.strip()), "")
+    reader = csv.reader(text.splitlines(), delimiter=next((mark for mark in "\t;," if mark in first), ","))
+    rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
+    if not rows:
         raise RecordError(f"{FILE}: empty: must have the columns {', '.join(COLUMNS)}")
-    mark = next((mark for mark in "\t;," if mark in lines[0]), ",")
-    first, *rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
-    heads = [head.lower() for head in first]
+    number, heads = rows[0][0], [head.lower() for head in rows[0][1]]
     twice = any(heads.count(head) > 1 for head in heads if head)
     if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, *STATED, MAGNITUDE, ""}:
         optional = ", ".join((*STATED, MAGNITUDE))
         rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {optional}"
-        raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
-    if not rows:
+        raise RecordError(f"{FILE}: line {number}: {brief(first)}: {rule}")
+    if not rows[1:]:
         raise RecordError(f"{FILE}: no motions: must have a line for each")
-    return [heads, *rows]
+    return heads, rows[1:]
 
 
 def _read_motion(row: Mapping[str, str], folder: Path) -> Motion:
@@ -204,8 +205,9 @@ def motion_list_text(motions: Iterable[Motion]) -> str:
         names = {axis or "x": file.name for axis, file in motion.files.items()}
         row = [motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:g}"]
         stated = next(iter(motion.options.values()), {})
-        columns = " ".join(str(each["column"]) for each in motion.options.values() if "column" in each)
+        columns = [str(each["column"]) for each in motion.options.values() if "column" in each]
+        columns = columns[:1] if len({*columns}) == 1 else columns
         step = f"{stated['step']:g}" if "step" in stated else ""
-        row += [step, str(stated.get("unit", "")), str(stated.get("skip", "")), columns] if stating else []
+        row += [step, str(stated.get("unit", "")), str(stated.get("skip", "")), " ".join(columns)] if stating else []
         writer.writerow(row)
     return stream.getvalue()

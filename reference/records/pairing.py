@@ -44,6 +44,14 @@ def pair_files(files: Sequence[Path]) -> list[Motion]:
     return sorted(motions, key=lambda motion: min(motion.files.values()))
 
 
+def find_motion(file: Path, files: Sequence[Path]) -> Motion:
+    """The motion that a file is a component of, with the others of its name among some files; or the file alone."""
+    for members in _group_files(files).values():
+        if file in members and (axes := assign_axes([one for _, one in members.values()])) is not None:
+            return Motion(members[file][0], {axis: [*members][number] for axis, number in axes.items()})
+    return Motion(file.stem, {"x": file})
+
+
 def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
     """Return one message on all components that make no motion."""
     shares: dict[str, list[Path]] = {}

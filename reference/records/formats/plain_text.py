@@ -46,6 +46,7 @@ NAMED_STEP = re.compile(
     r"|(?P<rate>[0-9]+(?:\.[0-9]*)?) ?(?:hz|sps)\b",
     re.IGNORECASE,
 )
+WRITE = "write record = "  # begins the proposal for a scene
 NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
 COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*", re.IGNORECASE)
 
@@ -137,7 +138,7 @@ def propose_line(text: str, name: str) -> str:
     parts = [f"file = {quote_name(name)}", f"step = {proposal.step:g}", f'unit = "{proposal.unit}"']
     parts += [f"skip = {proposal.skip}"] if proposal.skip else []
     parts += [f"column = {proposal.columns[0]}"] if proposal.columns else []
-    return f"write record = {{{', '.join(parts)}}}{word_guess(proposal.missing)}"
+    return f"{WRITE}{{{', '.join(parts)}}}{word_guess(proposal.missing)}"
 
 
 def word_guess(missing: Sequence[str]) -> str:

@@ -189,6 +189,52 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
     assert list_motions(str(place), place) == listed, "what is written says the same"
 
 
+def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
+    place = make_folder(tmp_path / "suite")
+    for name in ("A_X.txt", "A_Y.txt", "B_X.txt"):
+        (place / name).write_text("0.00 0.5\n0.02 1.5\n0.04 -0.5\n")
+    said = str(refusal(list_motions, str(place), place, kind=SuiteError))
+    assert "A_X.txt and A_Y.txt have numbers" in said
+    assert '"A,A_X.txt,A_Y.txt,,1,0.02,g,0,2", with the unit of your source' in said
+
+
+M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0\n"
+
+
+@pytest.mark.parametrize(
+    ("listed", "files", "place", "words"),
+    [
+        (
+            "\nB,A_X.txt,A_Y.txt,,2,0.02,gal,0,\n",
+            {"A_X.txt": "0 1\n0.02 2\n0.04 1\n", "A_Y.txt": "0 1\n0.02 2\n0.04 1\n"},
+            ("suite/motions.csv", "line 3, name", "B"),
+            'write "B,A_X.txt,A_Y.txt,,2,0.02,gal,0,2" in place of this line of motions.csv, below the first',
+        ),
+        (
+            "",
+            {"A_H1.AT2": M_S2, "A_H2.AT2": M_S2},
+            ("suite", "motion", "A"),
+            'write "A,A_H1.AT2,A_H2.AT2,,1,0.01,M/S2,4,0" into a file motions.csv in this folder, below',
+        ),
+        (
+            "B,A_H1.AT2,A_H2.AT2,,2,,,,\n",
+            {"A_H1.AT2": M_S2, "A_H2.AT2": M_S2.replace("M/S2", "G")},
+            ("suite/motions.csv", "line 2, name", "B"),
+            "bring the files of this motion into one unit: a line of motions.csv states one",
+        ),
+    ],
+)
+def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, files, place, words):
+    folder = make_folder(tmp_path / "suite")
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    if listed:
+        (folder / FILE).write_text(f"name,x,y,z,factor,step,unit,skip,column\n{listed}")
+    error = refusal(load_scene, scene_file(tmp_path, 'record = {suite = "suite", motion = 1}'), kind=SceneError)
+    assert (error.file, error.key, error.value) == (str(tmp_path / place[0]), *place[1:])
+    assert words in error.rule
+
+
 def test_a_written_list_says_what_was_paired(tmp_path):
     place = make_folder(tmp_path / "suite", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2", "B000.AT2", "B090.AT2")
     before = list_motions(str(place), place)
@@ -203,6 +249,7 @@ def test_a_written_list_says_what_was_paired(tmp_path):
     ("text", "said"),
     [
         ("", "motions.csv: empty"),
+        (",,\n", "motions.csv: empty"),
         ("file,x\na,b\n", "motions.csv: line 1: 'file,x': must have the columns name, x, y, z, factor"),
         ("name,x\n", "motions.csv: no motions"),
         ("name,x\na,gone.AT2\n", "motions.csv: line 2: 'gone.AT2': no such file in the folder"),
@@ -222,7 +269,7 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         (f"name,x\na,{'A' * 5000}\n", "AAA...: no such file in the folder"),
         ("name,x\na,A.AT2\0\n", "motions.csv: must be text in UTF-8"),
         (f"name,x\n{'a' * 2**20}", "motions.csv: larger than 1 MiB"),
-        ("name,x,factor\na,B\n\nb,A.AT2,0\n", "'B': no such file in the folder; also line 3: factor = '0': must be"),
+        ("name,x,factor\na,B\n\nb,A.AT2,0\n", "'B': no such file in the folder; also line 4: factor = '0': must be"),
         ("name,x\n" + "a,B\n" * 12, "line 11: 'B': no such file in the folder; also 2 more lines"),
     ],
 )
