@@ -146,15 +146,17 @@ def known_ensemble() -> ensemble.EnsembleResult:
     )
     mean, largest, smallest = (ensemble.Statistic(value, 0.0) for value in (0.21, 0.3, 0.1))
     none, named = ensemble.Statistic(None, None), ("tower", "displacement", None, "exact", "m")
-    stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
-               ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
-    spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
+    stripes = [ensemble.DemandAtScale(*named, 1.0, 3, mean, low, largest, smallest),
+               ensemble.DemandAtScale(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
+    spectrum = ensemble.FloorSpectrumStatistics(
+        "tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2
+    )
     moved = ensemble.ChosenMotion("tower", "motion 2", 2.0, ["largest displacement"], {"translational": "ok"})
     return ensemble.EnsembleResult(
         schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
         scales=(1.0, 2.0), spectra=[spectrum],
         motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
-        engine=ensemble.Engine("translational", [moved]), run=MADE,
+        engine=ensemble.EngineMotions("translational", [moved]), run=MADE,
         suite=[ensemble.GroundMotion(motion, 20.0, 1.5) for motion in known],
     )  # fmt: skip
 

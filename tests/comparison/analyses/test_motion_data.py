@@ -19,7 +19,7 @@ from comparison.analyses.motions.analysis import (
     Motions,
     StoredMotion,
     choose_places,
-    compute_motion,
+    compute_stored_motion,
     decimate,
 )
 from comparison.analyses.motions.page_data import contact_geometry, encode_motions, list_pairs_with_motions
@@ -32,7 +32,7 @@ PHASE = (2.0, 0.7)
 
 
 def stored(scene: Scene, model: Model) -> StoredMotion:
-    motion = compute_motion(
+    motion = compute_stored_motion(
         (scene, model, 1e-6 if model.side == "reference" else 1e-3, MotionPlace(scene.name, 0, 0, "why"), PHASE)
     )
     assert motion.error_message == ""
@@ -164,9 +164,9 @@ def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     model = replace(SMALL, trajectory="test_motion_data:slides", settings={"cutoff": 1e-3})
     rest = 1e-3, MotionPlace("fig3-I", 0, 0, "why"), (0.0, 0.0)
     scene = load_scene("fig3-I")
-    motion, whole = compute_motion((scene, model, *rest)), slides(scene, None, 0.0)
+    motion, whole = compute_stored_motion((scene, model, *rest)), slides(scene, None, 0.0)
     peak = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0)
     assert (motion.status, motion.error_message) == ("ok", "")
     assert set(whole.time[peak]) <= set(motion.time), "the peak of every body is kept as it is"
-    missing = compute_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
+    missing = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
     assert (missing.status, missing.error_message.split(":")[0]) == ("solver failed", "AttributeError")

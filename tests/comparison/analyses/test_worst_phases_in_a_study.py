@@ -148,7 +148,9 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
         results.put(task, result_without_value(Outcome.TIME_LIMIT, "took too long"))
     rows = analysis.WorstPhases().collect(study, None, results)
     assert len(rows) == len(tasks) + 2  # the engine's rows
-    assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NO_PHASES for row in rows)
+    assert all(
+        row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NO_PHASES for row in rows
+    )
     assert EXACT.key in {row.model for row in rows}
 
 
