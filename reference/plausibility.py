@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from reference.building import Building, word_force
+from reference.building import NAMED, Building, word_force
 from reference.problem import GRAVITY, Scene
-from reference.support.arguments import Range
+from reference.records.description import IN_G, RecordDescription
+from reference.support.arguments import Range, name_some
 
 LOAD_PER_SUPPORT = Range(1e3, 1e8, "N")
 NORMALIZED = 10.0  # kg: a scene of unit masses, as those of the paper, is meant as no building
@@ -24,6 +25,9 @@ LEAST_MASS = 0.05  # share of the mass above the platform that a mode moves whic
 LARGEST_PEAK = 3.0  # g
 LARGEST_DRIFT_RATIO = 0.1
 MASS_SHARE = Range(0.01, 100.0)  # mass of a body over the mean of the others
+UNEQUAL_LOADS = 1.5  # largest dead load of a support over the smallest
+LEAST_ACCELERATION = 1.0  # m/s^2, limit on the acceleration of a floor
+LEAST_PEAK = 0.2  # peak of a motion over the median of its suite
 
 
 def implausible_values(scene: Scene, building: Building) -> list[str]:
@@ -36,11 +40,31 @@ def implausible_values(scene: Scene, building: Building) -> list[str]:
         lines.append(f"the radius of the isolator is {scene.radius:.4g} m, above {LARGEST_RADIUS:g} m: {unit}?")
     if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > LARGEST_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
-    lines += _implausible_limits(scene)
+    lines += _implausible_limits(scene, building)
     # What a record has by itself is said where it is described.
     as_read = scene.largest_acceleration / (scene.excitation.scale or 1.0) if scene.recorded else 0.0
     if (peak := building.ground_peak / GRAVITY) > LARGEST_PEAK and as_read <= LARGEST_PEAK * GRAVITY:
         lines.append(f"the peak of the ground is {peak:.4g} g, above {LARGEST_PEAK:g} g: unit or scale?")
+    return lines
+
+
+def implausible_suite(motions: Sequence[RecordDescription]) -> list[str]:
+    """Return the lines for motions that are hardly meant beside the others: fewer components, or a far smaller peak."""
+    lines = []
+    axes = ["".join(one.axis for one in motion.directions) for motion in motions]
+    common = max(axes, key=lambda own: (axes.count(own), len(own)), default="")
+    for own in dict.fromkeys(each for each in axes if len(each) < len(common)):
+        names = name_some([motion.title for motion, each in zip(motions, axes) if each == own], NAMED)
+        verb, kind = ("has", "") if axes.count(own) == 1 else ("have", " each")
+        others = f"{axes.count(common)} others have" if axes.count(common) > 1 else "the other has"
+        has = f"{' and '.join(own)}{' alone' * (len(own) == 1)}{kind}" if own else "no acceleration"
+        lines.append(f"{names} {verb} {has}, the {others} {' and '.join(common)}: is a file left out?")
+    peaks = [motion.largest_peak for motion in motions]
+    median = float(np.median(peaks)) if peaks else 0.0
+    for motion, peak in zip(motions, peaks):
+        if 0.0 < peak < LEAST_PEAK * median:
+            few = f"{peak / GRAVITY:.3g} g, below a fifth of the median of the suite, {median / GRAVITY:.3g} g"
+            lines.append(f"the peak of {motion.title} is {few}: unit? {IN_G}")
     return lines
 
 
@@ -52,8 +76,8 @@ def implausible_drift(ratio: float, place: str) -> str:
     return f"the drift {place} is {share}: is stiffness in N/m?"
 
 
-def _implausible_limits(scene: Scene) -> Iterator[str]:
-    """Yield the lines for limits on demands that hold whatever happens."""
+def _implausible_limits(scene: Scene, building: Building) -> Iterator[str]:
+    """Yield the lines for limits on demands that hold, or are not met, whatever happens."""
     limits = scene.acceptance.demands
     if limits is None:
         return
@@ -62,6 +86,16 @@ def _implausible_limits(scene: Scene) -> Iterator[str]:
     if limits.drift_ratio is not None and limits.drift_ratio > LARGEST_DRIFT_RATIO:
         share = f"{limits.drift_ratio:.4g}, above {LARGEST_DRIFT_RATIO:g}"
         yield f"the limit on the drift ratio is {share}: percent?"
+    load = building.load_per_support if building.support_loads is None else float(building.support_loads.max())
+    if limits.support_force_max is not None and load is not None and limits.support_force_max < load:
+        in_kilonewtons = (
+            f": kN? Write {1e3 * limits.support_force_max:g}" if 1e3 * limits.support_force_max > load else ""
+        )
+        stated = f"{limits.support_force_max:.4g} N, below the dead load of {word_force(load)}"
+        yield f"the limit on the force of a support is {stated}{in_kilonewtons}"
+    if limits.acceleration is not None and limits.acceleration < LEAST_ACCELERATION and scene.total_mass > NORMALIZED:
+        stated = f"{limits.acceleration:.4g} m/s^2, below {LEAST_ACCELERATION:g} m/s^2"
+        yield f"the limit on the acceleration is {stated}: g? Write {limits.acceleration * GRAVITY:.4g}"
 
 
 def _implausible_modes(building: Building) -> list[str]:
@@ -112,6 +146,7 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
         elif size is not None and extent > EXTENT_OVER_SIZE * max(size[:2]):
             largest = f"more than twice the platform of {max(size[:2]):.4g} m"
             yield f"the supports stand {extent:.4g} m apart, {largest}: are places and size both in m?"
+    yield from _unequal_loads(scene, building)
     if building.heights is None:
         return
     if (falls := np.flatnonzero(np.diff(building.heights) <= 0.0)).size:
@@ -127,6 +162,23 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
         f"the center of mass of {_name_body(scene, 0)} lies {-float(building.heights[0]):.3g} m below the sliding "
         "contact: height counts from the centers of the depressions. Where yours count from the contact, add "
         f"R = {depression:.4g} m to every height: {stated[0] + depression:.4g} for {stated[0]:.4g} m above the contact"
+    )
+
+
+def _unequal_loads(scene: Scene, building: Building) -> Iterator[str]:
+    """Yield the line for dead loads of supports that are far from equal."""
+    loads, places = building.support_loads, scene.support_places
+    if loads is None or places is None or loads.max() <= UNEQUAL_LOADS * loads.min():
+        return
+    ends = (
+        f"{word_force(loads[place])} on support {place + 1} at [{places[place][0]:.4g}, {places[place][1]:.4g}] m"
+        for place in map(int, (loads.argmin(), loads.argmax()))
+    )
+    off = scene.center_of_mass - places.mean(axis=0)
+    offset = ", or an offset of a body too large" if scene.offsets.any() else ""
+    yield (
+        f"the dead loads of the supports go from {' to '.join(ends)}, as the center of mass is [{off[0]:.3g}, "
+        f"{off[1]:.3g}] m off their middle: is a support missing{offset}?"
     )
 
 

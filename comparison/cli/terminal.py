@@ -20,7 +20,7 @@ from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
 from reference.building import Building, describe_building, word_buildings
-from reference.plausibility import implausible_values
+from reference.plausibility import implausible_suite, implausible_values
 from reference.problem import Family, Scene
 from reference.support.arguments import name_some
 
@@ -105,12 +105,19 @@ def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> Non
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 
 
-def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: bool = False) -> None:
-    """Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files."""
+def print_records(
+    console: Console, named: Sequence[tuple[str, Scene]], short: bool = False, is_suite: bool = False
+) -> None:
+    """
+    Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files.
+
+    is_suite: the motions are of one suite, and a line says which of them is hardly meant beside the others.
+    """
     names, scenes = zip(*named) if named else ((), ())
-    for one in describe_records(scenes, names):
-        for line in one.short_lines if short else one.lines:
-            console.print(line, soft_wrap=True, markup=False, highlight=False)
+    records = describe_records(scenes, names)
+    lines = [line for one in records for line in (one.short_lines if short else one.lines)]
+    for line in lines + [f"Warning: {line}" for line in implausible_suite(records) if is_suite]:
+        console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
 def print_models_left_out(console: Console, study: Study) -> None:

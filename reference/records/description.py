@@ -11,7 +11,10 @@ from reference.records.samples import AXES, Array
 from reference.support.constants import GRAVITY
 
 LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.005  # g; 0.005 g is 0.05 m/s^2
-IN_G = 'values in g that are called m/s^2? Write [g] in the head of the file, or unit = "g" beside a plain text'
+IN_G = (
+    'values in g that are called m/s^2? Write [g] in the head of the file, or unit = "g" beside a plain text, '
+    "which motions.csv has in its column unit"
+)
 UNEVEN = 0.01  # relative difference of steps from which a column of times counts as uneven
 FEW_SAMPLES = 100  # samples, below which no zero line is judged
 # Share of the largest velocity of a record that its last may have: at most 0.07 in 289 public records
@@ -33,6 +36,8 @@ class DirectionRead:
         Largest size of the acceleration, m/s^2.
     mean : float
         Mean acceleration, m/s^2: the zero line.
+    peak_velocity : float
+        Largest size of the velocity, integrated from rest, m/s.
     final_velocity : float
         Velocity at the last sample, integrated from rest, m/s.
     final_displacement : float
@@ -42,6 +47,7 @@ class DirectionRead:
     axis: str
     peak: float
     mean: float
+    peak_velocity: float
     final_velocity: float
     final_displacement: float
 
@@ -111,6 +117,11 @@ class RecordDescription:
         return [f"{self._head}, peaks {peaks or 'none'}", *(f"  Warning: {line}" for line in self.warnings)]
 
     @property
+    def largest_peak(self) -> float:
+        """The largest peak of its horizontal directions, times the scale, m/s^2."""
+        return abs(self.scale) * max((one.peak for one in self.directions if one.axis != "z"), default=0.0)
+
+    @property
     def _head(self) -> str:
         taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
         taken += f', detrend = "{self.detrend}"' if self.detrend else ""
@@ -133,13 +144,16 @@ def describe_samples(
                 velocity = np.concatenate([[0.0], np.cumsum(0.5 * steps * (values[1:] + values[:-1]))])
                 gains = steps * (velocity[:-1] + steps * (2.0 * values[:-1] + values[1:]) / 6.0)
                 peak, mean = float(np.abs(values).max()), float(values.mean())
-                read.append(DirectionRead(axis, peak, mean, float(velocity[-1]), float(gains.sum())))
+                fastest, last = float(np.abs(velocity).max()), float(velocity[-1])
+                read.append(DirectionRead(axis, peak, mean, fastest, last, float(gains.sum())))
                 warnings += _warnings_of(read[-1], values, velocity, time, detrend)
     largest = max((one.peak for one in read), default=0.0) / GRAVITY
     if largest > LARGEST_PEAK:
         warnings.append(f"the peak is {largest:.4g} g, above {LARGEST_PEAK:g} g: is the unit right?")
     elif largest < SMALLEST_PEAK:
         warnings.append(f"the peak is {largest:.4g} g, below {SMALLEST_PEAK:g} g: {IN_G}")
+    if samples[:, 1].any() and np.array_equal(samples[:, 1], samples[:, 2]):
+        warnings.append("x and y have the same samples: one file for both?")
     if np.ptp(steps) > UNEVEN * step:
         warnings.append(f"the steps are not equal: {steps.min():.4g} to {steps.max():.4g} s")
     duration = float(time[-1])

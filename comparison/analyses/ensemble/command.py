@@ -113,7 +113,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
-    print_records(console, [(member.motion, member.scene) for member in members], short=not options.plan)
+    named = [(member.motion, member.scene) for member in members]
+    print_records(console, named, short=not options.plan, is_suite=True)
     print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks = ensemble.make_equation_tasks()
     print_work(console, ensemble, tasks, asked, jobs)
@@ -161,8 +162,11 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
     wall = f"about {STARTING + seconds + WRITING:.0f} s on idle cores with {workers}"
     console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
     if ensemble.spatial and asked != 0:
-        for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
-            console.print(f"{line}.", soft_wrap=True, markup=False)
+        for scene, name in {m.structure: (m.scene, m.structure) for m in first if why_not_spatial(m.scene)}.values():
+            limits = scene.acceptance.demands
+            asked_of_it = limits is not None and limits.uplift is not None
+            line = f"{name}: {why_not_spatial(scene)}{': no model has the uplift that a limit is on' * asked_of_it}."
+            console.print(f"{'Warning: ' * asked_of_it}{line}", soft_wrap=True, markup=False)
 
 
 def make_demand_check(

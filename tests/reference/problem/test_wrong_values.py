@@ -2,13 +2,15 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 from chains import refusal
 
 from reference import plausibility
-from reference.building import describe_building
-from reference.plausibility import implausible_drift
+from reference.building import describe_building, word_force
+from reference.plausibility import implausible_drift, implausible_suite
 from reference.problem import Scene, SceneError, load_scene
+from reference.records.description import RecordDescription, describe_samples
 from reference.support.arguments import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
@@ -179,7 +181,7 @@ PERIOD = "the period above a fixed base is {}: stiffness in N/m, mass in kg?"
 MASS = "the mass of {} is {} kg, {} times the mean of the others, {}: kg in one place and t in another?"
 ROOF = {"mass": 9.0, "stiffness": [4e4, 4e4], "floor": "roof"}
 DIFFERENT = {"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 50.0}}
-WIDE = {"isolator.supports": [[-14000.0, -8000.0], [14000.0, -8000.0], [0.0, 8000.0]]}
+WIDE = places([-14e3, -8e3], [14e3, -8e3], [14e3, 8e3], [-14e3, 8e3])
 SIZED = {"isolator.ring": 2.0, "isolator.sphere_radius": 0.1, "bodies.0.size": [5.0, 4.0, 0.5]}
 APART = "the supports stand {} m apart, more than twice the platform of 5 m: are places and size both in m?"
 BELOW = (
@@ -249,6 +251,53 @@ def test_limits_that_always_hold_are_hardly_meant() -> None:
         "the limit on the displacement is 400 m, above the radius of the isolator: mm?",
         "the limit on the drift ratio is 0.4, above 0.1: percent?",
     ]
+
+
+def test_limits_that_are_never_met_are_hardly_meant() -> None:
+    scene, key = load_scene("fig3-I").with_values({"bodies": BODIES, "isolator.supports": 4}), "acceptance.demands"
+    load = describe_building(scene).load_per_support
+    assert load is not None
+    assert implausible_values(scene.with_values({key: {"support_force_max": 1.001 * load, "acceleration": 1.0}})) == []
+    (line,) = implausible_values(scene.with_values({key: {"support_force_max": 0.9 * load}}))
+    assert line.endswith(f"N, below the dead load of {word_force(load)}: kN? Write {900 * load:g}")
+    assert implausible_values(scene.with_values({key: {"acceleration": 0.4}})) == [
+        "the limit on the acceleration is 0.4 m/s^2, below 1 m/s^2: g? Write 3.924"
+    ]
+
+
+def test_dead_loads_far_from_equal_are_hardly_meant() -> None:
+    corners = [[4.0, 3.0], [-4.0, 3.0], [-4.0, -3.0], [4.0, -3.0], [4.0, 0.0], [-4.0, 0.0]]
+    scene = load_scene("fig3-I").with_values({"bodies": BODIES, **places(*corners)})
+    assert implausible_values(scene) == []
+    assert implausible_values(scene.with_values(places(*corners[:5]))) == []  # 1.27 times
+    (line,) = implausible_values(scene.with_values({"bodies.1.offset": [3.0, 0.0]}))
+    loads = describe_building(scene.with_values({"bodies.1.offset": [3.0, 0.0]})).support_loads
+    assert loads is not None
+    assert f"from {word_force(loads.min())} on support 2 at [-4, 3] m to {word_force(loads.max())} on support 1" in line
+    assert line.endswith("m off their middle: is a support missing, or an offset of a body too large?")
+    (line,) = implausible_values(scene.with_values(places(*corners[1:4], [1.0, 1.0])))
+    assert line.endswith("is a support missing?")
+
+
+def test_motions_unlike_the_others_of_their_suite_are_hardly_meant() -> None:
+    wave = np.sin(np.arange(200.0))
+
+    def motion(title: str, x: float, y: float = 0.0, scale: float = 1.0) -> RecordDescription:
+        columns = [0.01 * np.arange(200.0), x * wave, y * wave[::-1], 0.0 * wave]
+        return describe_samples(title, (), np.column_stack(columns), scale)
+
+    suite = [motion(name, 4.0, 3.0) for name in "abc"]
+    assert implausible_suite([*suite, motion("d", 1.0, 0.9, scale=0.85), motion("e", 0.1, 0.1, scale=20.0)]) == []
+    assert implausible_suite([motion("d", 4.0), *suite]) == [
+        "d has x alone, the 3 others have x and y: is a file left out?"
+    ]
+    assert implausible_suite([*suite, motion("d", 4.0), motion("e", 4.0)]) == [
+        "d, e have x alone each, the 3 others have x and y: is a file left out?"
+    ]
+    (line,) = implausible_suite([*suite, motion("d", 1.0, 0.9, scale=0.75)])
+    assert line.startswith("the peak of d is 0.0765 g, below a fifth of the median of the suite, 0.408 g: unit?")
+    same = describe_samples("a", (), np.column_stack([0.01 * np.arange(200.0), wave, wave, wave]))
+    assert "x and y have the same samples: one file for both?" in same.warnings
 
 
 def test_a_drift_above_a_tenth_of_the_height_is_hardly_meant() -> None:
