@@ -1,8 +1,11 @@
 """Assembly of the result of an ensemble from its points, for its files, its page and the terminal."""
 
+import hashlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from comparison.analyses.ensemble import result
 from comparison.analyses.ensemble.analysis import EnsemblePoints
@@ -18,9 +21,13 @@ from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from reference import describe_building
 from reference.building import horizontal_peak
-from reference.measures import effective_isolator
+from reference.measures import effective_isolator, response_spectrum
 from reference.problem import GRAVITY, Outcome, Scene
+from reference.problem.tables import Record
+from reference.records.description import describe_samples
 from reference.records.motion_lists import Motion
+
+GROUND_PERIODS = np.geomspace(0.05, 5.0, 40)  # s, of the motions' spectra
 
 
 def build_result(
@@ -59,6 +66,7 @@ def build_result(
         suite=suite,
         supports=list(find_support_extremes(points)),
         ended=list_ended_motions(points),
+        ground_periods=GROUND_PERIODS.tolist(),
     )
 
 
@@ -91,8 +99,23 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
         peak = horizontal_peak(member.scene) / member.scale
         about = listed.get(motion)
         factor, magnitude = (about.factor, about.magnitude) if about else (1.0, None)
-        found.append(result.GroundMotion(motion, member.scene.duration, peak, factor * member.factor, magnitude))
+        known = motion, member.scene.duration, peak, factor * member.factor, magnitude
+        found.append(result.GroundMotion(*known, **describe_ground(member)))
     return found
+
+
+def describe_ground(member: EnsembleMember) -> dict[str, Any]:
+    """Return what a motion is at scale 1, with its factor: files, step, components, digest of samples, spectrum."""
+    samples = member.scene.record / np.array([1.0, *[member.scale] * 3])
+    origin = member.scene.excitation.origin if isinstance(member.scene.excitation, Record) else ()
+    read, moving = describe_samples(member.motion, origin, samples), samples[:, 1:3][:, samples[:, 1:3].any(axis=0)]
+    return {
+        "files": [line for line in origin if not line.startswith("times ")],
+        "step": read.step,
+        "components": [result.GroundComponent(one.axis, one.peak, one.peak_velocity) for one in read.directions],
+        "digest": hashlib.sha256(samples.astype("<f8").tobytes()).hexdigest(),
+        "spectrum": response_spectrum(samples[:, 0], moving, GROUND_PERIODS).tolist() if moving.shape[1] else (),
+    }
 
 
 def describe_structures(

@@ -5,6 +5,7 @@ Exit codes: 0 done; 1 a limit of --check is not met; 2 a wrong scene or option; 
 """
 
 import argparse
+import hashlib
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -219,7 +220,8 @@ def write_ensemble(
 ) -> EnsembleResult:
     """Write the files of the ensemble, print its tables, write its page; return the result."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
-    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
+    scenes = {source: hashlib.sha256(scene_text(source)).hexdigest() for source in options.scenes}
+    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1), "scenes": scenes}
     result = build(points, run)
     checks = check(result)
     result = replace(result, limits=list_verdicts(checks))

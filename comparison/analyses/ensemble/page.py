@@ -34,6 +34,7 @@ from comparison.runner.attempts import LostParts
 from comparison.study.models import EXACT
 from comparison.verdicts import count_verdicts, word_counts
 from reference.problem import GRAVITY
+from reference.records.samples import AXES
 
 Context = Mapping[str, Any]
 ContextReader = Callable[[EnsembleResult, LostParts], Context]
@@ -57,6 +58,8 @@ def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
         "target_sentence": sentences.target_sentence,
         "has_magnitudes": any(each.magnitude is not None for each in ensemble.suite),
         "gravity": GRAVITY,
+        "components": {each.motion: {one.axis: one for one in each.components} for each in ensemble.suite},
+        "axes": [axis for axis in AXES if any(axis == one.axis for each in ensemble.suite for one in each.components)],
         "panels": draw_panels(panels.make_ground_panels(ensemble), lost),
     }
 
@@ -143,7 +146,7 @@ def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    return {"run": ensemble.run}
+    return {"run": ensemble.run, "digests": sentences.digest_sentence(ensemble)}
 
 
 class PagePart(NamedTuple):

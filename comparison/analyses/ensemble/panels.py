@@ -50,7 +50,7 @@ def make_floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Pan
 
 def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Return the makers of plots of the motions' response spectra at scale 1 with their factors, and the target."""
-    return [partial(_ground_spectra, ensemble)] if ensemble.target else []
+    return [partial(_ground_spectra, ensemble)] if ensemble.target or any(m.spectrum for m in ensemble.suite) else []
 
 
 def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
@@ -166,19 +166,27 @@ def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:
 
 def _ground_spectra(ensemble: EnsembleResult) -> Panel:
     target = ensemble.target
-    assert target is not None
-    x = list(target.period)
-    motions = [
-        {"x": x, "y": [value / GRAVITY for value in each.acceleration], "name": "one motion", "color": 0, "width": 0.7}
-        for each in target.motions
-    ]
-    series = [{**line, "legend": number == 0} for number, line in enumerate(motions)]
-    mean = np.exp(np.log([each.acceleration for each in target.motions]).mean(axis=0)) / GRAVITY
+    x = list(target.period if target else ensemble.ground_periods)
+    spectra = (
+        [(each.motion, each.acceleration) for each in target.motions]
+        if target
+        else [(each.motion, each.spectrum) for each in ensemble.suite if each.spectrum]
+    )
+    series: list[dict[str, Any]] = [
+        {
+            "x": x, "y": [value / GRAVITY for value in values], "name": "one motion", "color": 0, "width": 0.7,
+            "legend": number == 0, "titles": [motion] * len(x),
+        }
+        for number, (motion, values) in enumerate(spectra)
+    ]  # fmt: skip
+    mean = np.exp(np.log([values for _, values in spectra]).mean(axis=0)) / GRAVITY
     series.append({"x": x, "y": mean.tolist(), "name": "geometric mean of the motions", "color": 0, "width": 2.4})
-    wanted = [value / GRAVITY for value in target.acceleration]
-    series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
+    if target:
+        wanted = [value / GRAVITY for value in target.acceleration]
+        series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
     y = _from_zero("pseudo-acceleration, 5 % damping, g", series)
-    label = f"response spectra of the ground and their target, {word_motion_count(ensemble.motions)} at scale 1"
+    of = " and their target" if target else ""
+    label = f"response spectra of the ground{of}, {word_motion_count(ensemble.motions)} at scale 1"
     return make_panel("response spectra of the ground", label, PERIOD_AXIS, y, series)
 
 

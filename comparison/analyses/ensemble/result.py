@@ -216,6 +216,15 @@ class EngineMotions:
 
 
 @result
+class GroundComponent:
+    """A component of a motion at scale 1, with the factor."""
+
+    axis: Annotated[str, "x, y or z"]
+    peak: Annotated[float, "largest acceleration, m/s^2"]
+    velocity: Annotated[float, "largest velocity, integrated from rest, m/s"]
+
+
+@result
 class GroundMotion:
     """A motion of the suite at scale 1."""
 
@@ -224,6 +233,11 @@ class GroundMotion:
     peak: Annotated[float, "largest horizontal acceleration with the factor, resultant of x and y, m/s^2"]
     factor: Annotated[float, "factor of the motion as it was recorded"] = 1.0
     magnitude: Annotated[float | None, "of the earthquake; null where it is not known"] = None
+    files: Annotated[Sequence[str], "a line for every file, with its format and the unit that was stated"] = ()
+    step: Annotated[float | None, "time from sample to sample, s"] = None
+    components: Annotated[Sequence[GroundComponent], "along x, y and z"] = ()
+    digest: Annotated[str, "SHA-256 of time and acceleration with the factor, as 64-bit numbers"] = ""
+    spectrum: Annotated[Sequence[float], "pseudo-acceleration at every one of ground_periods, m/s^2"] = ()
 
 
 @result
@@ -285,6 +299,7 @@ class EnsembleResult:
     supports: Annotated[Sequence[SupportExtremes], "by model, structure and support"] = ()
     limits: Annotated[Sequence[LimitVerdict], "by structure; empty without [acceptance.demands] and --against"] = ()
     ended: Annotated[Sequence[EndedMotion], "by structure; empty where all motions are ok"] = ()
+    ground_periods: Annotated[Sequence[float], "of the motions' spectra at 5 % damping, s"] = ()
 
     def __post_init__(self) -> None:
         require(len(self.structures) > 0, "structures must be at least one")

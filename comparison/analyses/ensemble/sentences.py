@@ -1,6 +1,7 @@
 """Sentences for the page and the terminal of an ensemble, each worded by one function from the result."""
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from comparison.analyses.ensemble.quantities import display_unit, word_value
 from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, TargetSpectrum
@@ -21,6 +22,7 @@ from reference.support.arguments import name_some
 TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
 MAX_LISTED_MOTIONS = 12  # largest number of motions that are listed by name
 MAX_LISTED_IN_SENTENCE = 3  # largest number of motions listed by name in a sentence that states other facts, too
+DIGITS = 12  # of a digest
 DEFINITIONS = (
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
@@ -325,6 +327,15 @@ def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
     named = label_structures(ensemble) if len(ensemble.structures) > 1 else {}
     lines = ((named.get(each.name, ""), missing_sentences(ensemble, each)) for each in ensemble.structures)
     return [f"{bound}: {line}" if bound else line for bound, of_bound in lines for line in of_bound]
+
+
+def digest_sentence(ensemble: EnsembleResult) -> str:
+    """Return the beginnings of the digests of the scene files and of the samples of every motion; "" without any."""
+    scenes = [f"{Path(source).name} {digest[:DIGITS]}" for source, digest in ensemble.run.get("scenes", {}).items()]
+    motions = [f"{each.motion} {each.digest[:DIGITS]}" for each in ensemble.suite if each.digest]
+    said = [f"scene files: {', '.join(scenes)}"] * bool(scenes)
+    said += [f"samples of the motions with their factors: {', '.join(motions)}"] * bool(motions)
+    return f"SHA-256, its first {DIGITS} digits, of {'; of '.join(said)}." if said else ""
 
 
 def ground_sentence(ensemble: EnsembleResult) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
@@ -70,7 +71,7 @@ def read_plain_text(
         whole = isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
         if not whole and not (key == "column" and value is None):
             raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
-    return _read_stated(text, name, spacing, factor, skip, column)
+    return replace(_read_stated(text, name, spacing, factor, skip, column), format=f"{FORMAT} in {unit}")
 
 
 @lru_cache(maxsize=64)  # behind the checks of what is stated: what a scene file may hold in its place has no hash

@@ -1,6 +1,7 @@
 """The report of an ensemble: its page and the paper it prints to, its sentences, and what it refuses."""
 
 import csv
+import hashlib
 import json
 import math
 from collections.abc import Iterator, Sequence
@@ -198,6 +199,31 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
     assert suite["pulse 3"].factor == 1.3
     raw = np.loadtxt(folder / "suite" / "m3.csv", delimiter=",", skiprows=1)
     assert suite["pulse 3"].peak == pytest.approx(1.3 * np.hypot(raw[:, 1], raw[:, 2]).max())
+    third = suite["pulse 3"]
+    assert (list(third.files), third.step) == (["m3.csv, CSV"], pytest.approx(0.05))
+    for column, one in enumerate(third.components, start=1):
+        assert one.axis == "xyz"[column - 1]
+        assert one.peak == pytest.approx(1.3 * np.abs(raw[:, column]).max())
+        velocity = np.cumsum(0.5 * 0.05 * 1.3 * (raw[1:, column] + raw[:-1, column]))
+        assert one.velocity == pytest.approx(np.abs(velocity).max())
+        assert f">{one.peak / GRAVITY:.3g}<" in text
+        assert f">{one.velocity:.3g}<" in text
+    spectrum = reference.response_spectrum(raw[:, 0], 1.3 * raw[:, 1:3], found.ground_periods)
+    np.testing.assert_allclose(third.spectrum, spectrum, rtol=1e-12)
+    scene = hashlib.sha256(Path("mine.toml").read_bytes()).hexdigest()
+    samples = reference.load_family("mine.toml").scenes[4].record
+    assert third.digest == hashlib.sha256(samples.tobytes()).hexdigest()
+    assert (said := sentences.digest_sentence(found)) in text
+    assert said.startswith(f"SHA-256, its first 12 digits, of scene files: mine.toml {scene[:12]}; of samples of the")
+    assert f"pulse 3 {third.digest[:12]}" in said
+    assert f"pulse 3 {third.digest[:12]}" not in sentences.digest_sentence(
+        replace(found, suite=[replace(each, digest="0" * 64) for each in found.suite])
+    )
+    (panel,) = [make() for make in panels.make_ground_panels(found)]
+    *motions, mean = panel["series"]
+    assert [each["titles"][0] for each in motions] == [each.motion for each in found.suite]
+    spectra = np.array([each.spectrum for each in found.suite]) / GRAVITY
+    np.testing.assert_allclose(mean["y"], np.prod(spectra, axis=0) ** 0.25, rtol=1e-12)
 
 
 def test_forces_over_the_height_agree_with_those_of_the_supports(found: EnsembleResult) -> None:
