@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from reference.problem.result import Array, Trajectory, takes_motion
 from reference.problem.scene import Scene
 from reference.problem.supports import static_shares
 from reference.support.constants import GRAVITY
+
+ReadVectors = Callable[[DemandSamples], Array]  # vectors in the plane at every instant, (T, 2)
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,11 @@ class StoryForces:
         Smallest and largest normal force of every support. None where the scene does not place its supports.
     uplift : tuple of Estimate or None, (K,), m
         Largest gap of every support. None where the model has no single supports.
+    shear_along, moment_along : tuple of tuple of Estimate, (2, N)
+        Sizes of `shear` and `moment` along x and y, the moment that of the forces along that axis. Moments are None
+        as above.
+    drift_along : tuple of tuple of Estimate, (2, N - 1), m
+        Largest displacement of every body relative to the one below along x and y.
     """
 
     shear: tuple[Estimate, ...]
@@ -37,6 +45,9 @@ class StoryForces:
     support_min: tuple[Estimate, ...] | None
     support_max: tuple[Estimate, ...] | None
     uplift: tuple[Estimate, ...] | None
+    shear_along: tuple[tuple[Estimate, ...], ...]
+    moment_along: tuple[tuple[Estimate, ...], ...] | None
+    drift_along: tuple[tuple[Estimate, ...], ...]
 
 
 @takes_motion
@@ -80,12 +91,26 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
         support = _support_of_model
     elif places is not None and heights is not None:
         support = _keep_by_samples(_support_by_statics(scene, heights, places))
+    shears = [_force_below(scene.masses[body:], body) for body in bodies]
+    arms = [] if heights is None else [_arms_below(scene, heights, body) for body in bodies]
+    moments = [_force_below(own, body) for body, own in enumerate(arms)]
+    drifts = [_drift_above(link) for link in bodies[:-1]]
+
+    def lengths(vectors: Sequence[ReadVectors]) -> tuple[Estimate, ...]:
+        return tuple(read.extreme(partial(_largest_length, vector)) for vector in vectors)
+
+    def along(vectors: Sequence[ReadVectors]) -> tuple[tuple[Estimate, ...], ...]:
+        return tuple(tuple(read.extreme(partial(_largest_along, v, axis)) for v in vectors) for axis in (0, 1))
+
     return StoryForces(
-        shear=tuple(read.extreme(_shear_below(scene, body)) for body in bodies),
-        moment=None if heights is None else tuple(read.extreme(_moment_below(scene, heights, body)) for body in bodies),
+        shear=lengths(shears),
+        moment=None if heights is None else lengths(moments),
         support_min=_of_supports(read, support, np.min),
         support_max=_of_supports(read, support, np.max),
         uplift=_of_supports(read, _uplift_of_model, np.max) if has_supports else None,
+        shear_along=along(shears),
+        moment_along=None if heights is None else along(moments),
+        drift_along=along(drifts),
     )
 
 
@@ -140,20 +165,28 @@ def _of_supports(
     return tuple(read.extreme(read_support(number)) for number in range(count))
 
 
-def _shear_below(scene: Scene, body: int) -> Callable[[DemandSamples], float]:
-    """Largest resultant of the forces of inertia from a body on upwards, N."""
-    masses = scene.masses[body:]
-    return lambda samples: _largest_length(np.einsum("i,tia->ta", masses, samples.acceleration[:, body:]))
+def _force_below(weights: Array, body: int) -> ReadVectors:
+    """Return a reader of the forces of inertia from a body on upwards (T, 2), N; or with arms of their moments, N m."""
+    return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 
-def _moment_below(scene: Scene, heights: Array, body: int) -> Callable[[DemandSamples], float]:
-    """Largest moment of the forces of inertia from a body on upwards about the body below, N m."""
-    arms = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
-    return lambda samples: _largest_length(np.einsum("i,tia->ta", arms, samples.acceleration[:, body:]))
+def _arms_below(scene: Scene, heights: Array, body: int) -> Array:
+    """Return masses times heights above the body below, from a body on upwards, kg m."""
+    arms: Array = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
+    return arms
 
 
-def _largest_length(vectors: Array) -> float:
-    return float(np.linalg.norm(vectors, axis=1).max())
+def _drift_above(link: int) -> ReadVectors:
+    """Return a reader of the displacement of the body above a link relative to the one below (T, 2), m."""
+    return lambda samples: samples.place[:, link + 1] - samples.place[:, link]
+
+
+def _largest_length(vectors: ReadVectors, samples: DemandSamples) -> float:
+    return float(np.linalg.norm(vectors(samples), axis=1).max())
+
+
+def _largest_along(vectors: ReadVectors, axis: int, samples: DemandSamples) -> float:
+    return float(np.abs(vectors(samples)[:, axis]).max())
 
 
 def support_loads_at_rest(scene: Scene) -> Array | None:

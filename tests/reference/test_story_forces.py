@@ -67,6 +67,21 @@ def test_overturning_moments_are_those_of_the_floor_forces(moved: tuple[Trajecto
     assert all(0.0 <= each.error < 0.02 * each.value for each in forces.moment)
 
 
+def test_forces_and_drifts_along_x_and_y_are_those_of_one_axis_each(moved: tuple[Trajectory, StoryForces]) -> None:
+    motion, forces = moved
+    force = MASSES[:, None] * motion.absolute_acceleration[:, :, :2]
+    drift = np.abs(np.diff(motion.position[:, :, :2], axis=1)).max(axis=0)
+    assert forces.moment_along is not None
+    for axis in (0, 1):
+        for body in range(3):
+            shear = np.abs(force[:, body:, axis].sum(axis=1)).max()
+            about = HEIGHTS[body - 1] if body else 0.0
+            moment = np.abs(((HEIGHTS - about)[body:] * force[:, body:, axis]).sum(axis=1)).max()
+            assert forces.shear_along[axis][body].value == pytest.approx(shear, rel=1e-12)
+            assert forces.moment_along[axis][body].value == pytest.approx(moment, rel=1e-12)
+        assert [each.value for each in forces.drift_along[axis]] == pytest.approx(drift[:, axis], rel=1e-12)
+
+
 def moments(motion: Trajectory) -> np.ndarray:
     """Overturning moment on the supports over time, (T, 2), N m: of the floor forces, and of the displaced weight."""
     of_floors = np.einsum("i,tia->ta", MASSES * HEIGHTS, motion.absolute_acceleration[:, :, :2])

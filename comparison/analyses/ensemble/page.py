@@ -8,12 +8,21 @@ from markupsafe import Markup
 
 from comparison.analyses.ensemble import panels, sentences
 from comparison.analyses.ensemble.hand_checks import list_hand_check_rows
-from comparison.analyses.ensemble.quantities import FRACTILES, demand_title, display_unit, word_value
+from comparison.analyses.ensemble.quantities import (
+    ALONG,
+    DIRECTED_DEMANDS,
+    DISPLAY_UNITS,
+    FRACTILES,
+    demand_title,
+    display_unit,
+    word_value,
+)
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import (
     PROFILE_QUANTITIES,
     label_structures,
     make_demand_rows,
+    make_direction_rows,
     make_motion_heads,
     make_motion_rows,
     make_profile_rows,
@@ -100,6 +109,14 @@ def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     }
 
 
+def _directions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    tables = [
+        (f"{title}, {DISPLAY_UNITS[unit][0]}", make_direction_rows(ensemble, name))
+        for name, (title, unit) in DIRECTED_DEMANDS.items()
+    ]
+    return {"tables": [(title, rows) for title, rows in tables if rows]}
+
+
 def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
@@ -164,6 +181,12 @@ PARTS = (
     PagePart("demands", "Demands", _demands_context),
     PagePart("limits", "Limits", _limits_context, lambda ensemble: bool(ensemble.limits)),
     PagePart("height", "Over the height", _height_context),
+    PagePart(
+        "directions",
+        "By direction",
+        _directions_context,
+        lambda ensemble: any(each.quantity in ALONG for each in ensemble.stripes),
+    ),
     PagePart("supports", "Support forces", _supports_context, lambda ensemble: bool(ensemble.supports)),
     PagePart("motions", "Demands of every motion", _motions_context),
     PagePart("hand_checks", "Checks by hand", lambda ensemble, lost: {"rows": list_hand_check_rows(ensemble)}),

@@ -10,6 +10,16 @@ from reference.problem import GRAVITY, Scene
 Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the isolator
 
 SUPREMUM = "acceleration_supremum"
+DIRECTED_DEMANDS = {  # of every story, read along x and y, too
+    "story_shear": ("story shear", "N"),
+    "drift": ("drift", "m"),
+    "overturning_moment": ("overturning moment of the forces", "N m"),
+}
+ALONG = {
+    f"{name}_{axis}": (f"{title} along {axis}", unit)
+    for name, (title, unit) in DIRECTED_DEMANDS.items()
+    for axis in "xy"
+}
 DEMANDS: dict[str, tuple[str, str]] = {
     **{name: about for name, about in QUANTITIES.items() if name != "energy_balance"},
     "acceleration": ("floor acceleration, as integrated", "m/s^2"),
@@ -17,6 +27,7 @@ DEMANDS: dict[str, tuple[str, str]] = {
     "drift_ratio": ("drift over the height of the story", "1"),
     "story_shear": ("story shear", "N"),
     "overturning_moment": ("overturning moment", "N m"),
+    **ALONG,
 }
 BODY_DEMAND_TITLES = {
     "acceleration": "acceleration of body {}, as integrated",
@@ -26,6 +37,7 @@ BODY_DEMAND_TITLES = {
     "story_shear": "story shear below body {}",
     "overturning_moment": "overturning moment below body {}",
     "torsion": "rotation of body {}",
+    **{name: f"{title} below body {{}}" for name, (title, _) in ALONG.items()},
 }
 FRACTILES = (0.16, 0.5, 0.84)  # share of the motions whose value lies below the fractile
 SMALLEST_IS_WORST = ("contact_force_min", "support_force_min")  # demands whose smallest value is the unfavorable one
@@ -95,6 +107,11 @@ def collect_demand_values(
                 values["drift_ratio", body] = Estimate(drift.value / story, drift.error / story)
     values |= {("story_shear", body): number for body, number in enumerate(forces.shear, start=1)}
     values |= {("overturning_moment", body): number for body, number in enumerate(forces.moment or (), start=1)}
+    for axis, place in zip("xy", (0, 1)):
+        moment = forces.moment_along[place] if forces.moment_along else ()
+        values |= {(f"story_shear_{axis}", body): number for body, number in enumerate(forces.shear_along[place], 1)}
+        values |= {(f"drift_{axis}", body): number for body, number in enumerate(forces.drift_along[place], 2)}
+        values |= {(f"overturning_moment_{axis}", body): number for body, number in enumerate(moment, 1)}
     worst = {"support_force_min": (forces.support_min, min), "support_force_max": (forces.support_max, max)}
     for name, (supports, choose) in worst.items():
         if supports:

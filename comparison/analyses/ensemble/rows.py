@@ -200,6 +200,14 @@ def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> 
     return rows
 
 
+def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[DemandRow, list[str]]]:
+    """Return mean and largest value along x, then y, by story and bound, with the row along x."""
+    along_x, along_y = (make_profile_rows(ensemble, f"{demand}_{axis}", ensemble.largest_scale) for axis in ("x", "y"))
+    return [
+        (x, [each.cells[place] for each in (x, y) for place in (0, WORST_COLUMN)]) for x, y in zip(along_x, along_y)
+    ]
+
+
 def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
     """Return the demand columns of the table of motions: base shear in kN, demands of bodies as their largest."""
     known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
