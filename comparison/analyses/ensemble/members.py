@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from comparison.study.models import Model, has_spatial_data, why_not_spatial
 from reference.problem import Family, Scene, SceneError
 from reference.problem.families import BOUNDS
+from reference.problem.keys import range_of
 from reference.problem.tables import Record
 
 SCALE = "excitation.scale"
@@ -40,8 +41,14 @@ def with_suite(
     scale = own.get("scale", 1.0)
     kept = {key: own[key] for key in ("detrend",) if key in own}
     loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **kept}
-    under_suite = {key: value for key, value in data.items() if key != "duration"} | {"excitation": loading}
-    return {"combine": "product", **under_suite}
+    under_suite = {key: value for key, value in data.items() if key != "duration" or _is_wrong_duration(value)}
+    return {"combine": "product", **under_suite, "excitation": loading}
+
+
+def _is_wrong_duration(value: Any) -> bool:
+    """Return whether a duration, which counts for nothing beside a suite, is to be refused with whatever is wrong."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return not (isinstance(value, dict) or (number and value in range_of(Scene, "duration")))
 
 
 def members_of(families: Sequence[Family]) -> tuple[Member, ...]:

@@ -14,6 +14,7 @@ from reference.problem import (
     ground_displacement,
     ground_peak,
     ground_velocity,
+    loading_period,
     phase_grid,
 )
 
@@ -68,6 +69,10 @@ def test_ground_peak_is_the_maximum_of_dense_samples(duration, decay):
             sampled = np.sqrt((ground_acceleration(load, phase, times) ** 2).sum(axis=1).max())
             assert sampled * (1.0 - 1e-13) <= peak
             assert peak**2 - sampled**2 <= 4.0 * (envelope * fastest * times[1]) ** 2 + 1e-14
+
+
+def test_the_loading_changes_within_the_shorter_period_whichever_it_is():
+    assert [loading_period(chain(periods=periods)) for periods in ((0.7, 1.1), (1.1, 0.7))] == [0.7, 0.7]
 
 
 def test_phase_grid_covers_the_torus_once_with_alpha2_fastest():

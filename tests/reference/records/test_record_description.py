@@ -170,6 +170,8 @@ def test_components_with_other_instants_are_refused(tmp_path):
             assert said in refusal(load_scene, place, kind=SceneError).rule
         else:
             assert (load_scene(place).record[:, 1] == load_scene(place).record[:, 2]).all()
+    third = scene_file(tmp_path, 'record = {x = "a.csv", y = "a.csv", z = "b.csv"}')
+    assert "other instants along y than along z" in refusal(load_scene, third, kind=SceneError).rule
 
 
 @pytest.mark.parametrize(("name", "directions"), [("synthetic-pair", "xy"), ("synthetic-triple", "xyz")])

@@ -125,6 +125,7 @@ NO_AT2 = [
     ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
     ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
     ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.0101)}, "DT = 0.01 s along x and 0.0101 s along y"),
+    ({**dict.fromkeys("xy", at2([1.0, 2.0])), "z": at2([1.0, 2.0], 0.02)}, "0.01 s along y and 0.02 s along z"),
     ({"x": at2([1.0, 2.0], sizes="NPTS= {}, DT= 0.x{} SEC,")}, "line 4: '0.x0.01': must be a number"),
     ({"x": at2([1.0])}, "1 samples"),
     ({"x": at2([1.0, 2.0]) + " " + 32_000 * "9" + "x"}, "line 5: '9999"),

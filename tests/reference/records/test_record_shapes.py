@@ -333,6 +333,12 @@ def test_files_of_jma_have_three_directions_and_no_time():
         ("a.ASC", ESM.format("E").replace("NDATA: 3", "NDATA: 4"), "3 values: the header says NDATA: 4"),
         ("a.ASC", ESM.format("E").replace("cm/s^2", "cm/s"), "UNITS: 'cm/s': must be that of an acceleration"),
         ("a.csv", JMA.replace("5.0", "x"), "line 8: 'x': must be a number"),
+        ("a.csv", JMA.replace(",6.0", ""), "line 8: 2 values: the header names 3 columns"),
+        ("a.csv", JMA.replace("3.0", "3.0,7.0"), "line 7: 4 values: the header names 3 columns"),
+        ("a.csv", JMA.replace("= 100Hz", "= 0Hz"), "SAMPLING RATE = 0 Hz: must be gal, and greater than 0"),
+        ("a.csv", JMA.replace("gal(cm/s/s)", "counts"), "UNIT = 'counts'"),
+        ("a.NS", KNET.format("N-S").replace("8388608", "0"), "must be greater than 0"),
+        ("a.NS", KNET.format("N-S").replace("100Hz", "0Hz"), "must be greater than 0"),
         ("a.csv", JMA.replace("NS,EW,UD", "north"), "the header must have a line 'NS,EW,UD'"),
         ("a.V2", COSMOS.replace("   3 acc", "   9 acc"), "must be a number"),
         ("a.V2", COSMOS + COSMOS, "2 channels of acceleration: must be one: take the channels apart"),
@@ -342,6 +348,11 @@ def test_files_of_jma_have_three_directions_and_no_time():
 )
 def test_a_broken_file_of_a_network_is_refused(name, text, said):
     assert said in str(refusal(read, text, name, kind=RecordError))
+
+
+def test_what_stands_behind_the_values_of_a_network_is_noticed():
+    _, reading = read(ESM.format("E") + "*** end\n", "a.ASC")
+    assert len(reading.notes) == 1
 
 
 def test_readers_have_names_of_their_own_and_one_recognizes_each_shape():

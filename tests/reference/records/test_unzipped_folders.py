@@ -119,11 +119,14 @@ def test_all_names_that_make_no_pair_come_in_one_message(tmp_path, names, said):
 
 
 def test_single_components_are_plane_motions_where_asked_for(tmp_path):
-    make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2")
+    place = make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", *(f"A_{way}.AT2" for way in ("H1", "H2", "UP")))
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all", components = 1}'))
     assert family.labels == {"excitation.record.motion": ("A_H1", "A_H2", "GM001", "GM002")}
     peaks = [scene.record[0, 1:].tolist() for scene in family.scenes]
     assert peaks == [[GRAVITY * number, 0.0, 0.0] for number in (3.0, 4.0, 1.0, 2.0)]
+    for name in ("B_N.AT2", "B_Z.AT2"):
+        (place / name).write_text(AT2.format(6))
+    assert "Ignored: 2 vertical components." in list_motions(str(place), place, 1).sentence
     for wrong in ("3", '"one"', "true"):
         record = f'record = {{suite = "suite", motion = 1, components = {wrong}}}'
         assert refusal(load_scene, scene_file(tmp_path, record), kind=SceneError).key == "excitation.record.components"
