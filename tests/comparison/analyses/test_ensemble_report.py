@@ -450,7 +450,8 @@ def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reach
 
 
 def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
-    assert sentences.travel_sentence(two_bounds()) == (
+    smaller = EndedMotion("b", "m9", 0.5, "travel reached", 3.0)
+    assert sentences.travel_sentence(replace(two_bounds(), ended=[smaller, *two_bounds().ended])) == (
         "The travel is reached under m4 at 12.35 s (b). No demand has a value there. A run without `travel` gives the "
         "displacement that is needed."
     )
