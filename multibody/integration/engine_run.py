@@ -54,7 +54,7 @@ class EngineRun:
     - warping_load: Largest load that warping of the supports takes so far, in shares of the weight.
     - last_open: The latest instant at which a support carried no load.
     - max_displacement: Largest horizontal displacement of the platform.
-    - max_vertical: Largest vertical acceleration of any body, relative to the plate.
+    - max_vertical: Largest vertical acceleration of the platform, relative to the plate.
     - last_large: The last instant at which an acceleration or the displacement of the platform came within
       `SETTLED_FRACTION` of its largest value.
     - peaks_count_from: Instant at which contact forces have settled after the last impact: peaks are read from here on.
@@ -118,7 +118,7 @@ def record_steps(
     time, slip = motion.time, motion.slip
     if run.peaks_count_from > time[0]:
         time, slip, size, distance = _rows_from(run.peaks_count_from, time, slip, size, distance)
-    vertical = float(np.abs(motion.accelerations[:, model.bodies[:, 2]]).max())
+    vertical = float(np.abs(motion.accelerations[:, model.bodies[0, 2]]).max())
     run.max_vertical = max(run.max_vertical, vertical)
     if read and len(time):
         run.peaks.add(time, size, slip)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 from typing import Any
 
@@ -252,3 +253,7 @@ def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float
             assert not place.rows_beyond_rim(coordinates).any()
             assert (rotation_matrices(coordinates[:, 3:6])[:, 2, 2] > 0.0).all()
     assert 100 < proved < 400
+    for across, (upright, way) in product((0, 1), ((2, 1.1), (6, -1.1), (9, -1.1))):  # a lift, or a sphere that sinks
+        out = np.zeros((1, 10))
+        out[0, [across, upright]] = 1.1, way
+        assert (place.rows_beyond_rim(out).any(), place.is_near_rest(out)) == (True, False)

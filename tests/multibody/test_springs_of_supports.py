@@ -17,6 +17,7 @@ from multibody.integration.level_runs import MAX_FIRST_SHARE
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
+from multibody.models import supports
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from reference.problem import Outcome, load_scene
 
@@ -227,3 +228,11 @@ def test_a_softer_contact_without_an_answer_leaves_the_error_open(refined: Any) 
     done = refined(runs, 3, stiffenings=1)
     assert (done.asked, done.answer.outcome) == ("0s 1s 2s 2~", BEYOND)
     np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [1.01, 0.015 * 1.001 + 1.01e-6])
+
+
+def test_springs_give_way_as_stated_and_do_not_ring() -> None:
+    """Under a weight of one on five supports; each carries a fifth of the mass."""
+    rest, damping = supports._sharing_springs(5, 3e-7, 7e-5)
+    np.testing.assert_allclose(0.2 / np.array(rest), [3e-8, 7e-5])
+    for stiffness, damper in zip(rest, damping):
+        np.testing.assert_allclose(np.roots([0.2, damper, stiffness]), -np.sqrt(stiffness / 0.2), rtol=1e-6)

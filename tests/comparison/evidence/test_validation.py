@@ -258,9 +258,7 @@ def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
     off = [100.0 * (0.5 * math.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) - 1.0) for angle in (1.5, 1.25, 1.0)]
     said = "-14.0 % at 1.5 rad, -9.7 % at 1.25 rad, -6.2 % at 1 rad"
     assert [float(part.split(" %")[0]) for part in said.split(", ")] == pytest.approx(off, abs=0.1)
-    assert found.facts == [
-        f"pendulum, large angles: the half period of the small-vibration equations is off by {said}"
-    ]
+    assert found.facts == [f"pendulum, large angles: the half period of the small-vibration equations is off by {said}"]
 
 
 @pytest.mark.long
