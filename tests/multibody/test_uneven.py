@@ -190,7 +190,7 @@ def test_a_box_at_an_angle_has_the_turned_tensor_of_inertia() -> None:
 
 
 def test_a_building_falls_over_the_edge_of_its_supports_nearest_its_center() -> None:
-    """The edges of three supports on a ring of 0.9 m are 0.45 m off its center, heights count from a radius above them."""
+    """The edges of three supports on a ring of 0.9 m are 0.45 m off; heights count from a radius above the contact."""
     values = {"isolator.supports": 3, "isolator.ring": 0.9, "isolator.sphere_radius": 0.07, "isolator.radius": 0.31}
     uneven = {"bodies.0.offset": [0.1, 0.0], "bodies.1.offset": [-0.06, 0.0], "bodies.1.mass": 3.0}
     raised = {"bodies.0.mass": 1.0, "bodies.0.height": 0.7, "bodies.1.height": 2.9, "isolator.period": None}
