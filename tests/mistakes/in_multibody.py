@@ -288,5 +288,15 @@ MISTAKES = (
     Mistake("multibody/surface.py", "reading=reading_of(scene, regularization),", 'reading="literal supremum",',
             "A peak under regularized friction is called the literal supremum.",
             ("tests/reference/problem/test_readings.py::test_the_engine_says_its_reading_and_its_law",)),
+    Mistake("multibody/models/spatial.py", "center[2] - (1.0 + radius)))", "center[2] - 1.0))",
+            "Critical tilt without the radius of the spheres.", ("tests/multibody/test_uneven.py::test_a_building_falls_over_the_edge_of_its_supports_nearest_its_center",)),
+    Mistake("multibody/models/supports.py", "2.0 * np.sqrt(soft / count))", "0.2 * np.sqrt(soft / count))",
+            "Warping of supports is damped tenfold less.", ("tests/multibody/test_springs_of_supports.py::test_springs_give_way_as_stated_and_do_not_ring",)),
+    Mistake("multibody/models/depressions.py", "shift, lift, turn = sum(largest[:3]), largest[2], sum(largest[3:6])", "shift, lift, turn = sum(largest[:3]), largest[1], sum(largest[3:6])",
+            "The proof of rest takes the lift from y.", ("tests/multibody/test_impact.py::test_a_platform_near_its_rest_has_all_spheres_in",)),
+    Mistake("multibody/models/loading.py", "float(-self.exponents.real.min())", "float(-self.exponents.real.max())",
+            "Rate of decay is that of the slower harmonic.", ("tests/multibody/test_damped_links.py::test_steps_follow_the_fastest_swing_damper_and_harmonic_wherever_they_are",)),
+    Mistake("multibody/integration/time_scales.py", "for axis in range(2):", "for axis in range(1):",
+            "Shortest period looks at links along x alone.", ("tests/multibody/test_damped_links.py::test_steps_follow_the_fastest_swing_damper_and_harmonic_wherever_they_are",)),
 )
 # fmt: on
