@@ -298,5 +298,7 @@ MISTAKES = (
             "Rate of decay is that of the slower harmonic.", ("tests/multibody/test_damped_links.py::test_steps_follow_the_fastest_swing_damper_and_harmonic_wherever_they_are",)),
     Mistake("multibody/integration/time_scales.py", "for axis in range(2):", "for axis in range(1):",
             "Shortest period looks at links along x alone.", ("tests/multibody/test_damped_links.py::test_steps_follow_the_fastest_swing_damper_and_harmonic_wherever_they_are",)),
+    Mistake("multibody/models/surface_heat.py", "nearest, way = min(last.distance, distance)", "nearest, way = max(last.distance, distance)",
+            "Share of a step under the cover from the far end.", ("tests/multibody/test_speed_friction.py::test_a_step_heats_for_the_share_in_which_it_covers_the_center",)),
 )
 # fmt: on
