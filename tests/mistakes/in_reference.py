@@ -457,11 +457,11 @@ MISTAKES = (
             "Loading period is the first one, not the shorter.", ("tests/reference/problem/test_loading.py::test_the_loading_changes_within_the_shorter_period_whichever_it_is",)),
     Mistake("reference/records/formats/jma.py", "if len(cells) < len(words) or any(cell.strip() for cell in cells[len(words) :]):", "if len(cells) < len(words):",
             "Cells beyond the columns are dropped in silence.", ("tests/reference/records/test_record_shapes.py::test_a_broken_file_of_a_network_is_refused",)),
-    Mistake("reference/records/formats/esm.py", "names=names, notes=notes)", "names=names)",
+    Mistake("reference/records/formats/esm.py", "np.array(values), word, notes)", "np.array(values), word)",
             "Notes on an ESM file are lost.", ("tests/reference/records/test_record_shapes.py::test_what_stands_behind_the_values_of_a_network_is_noticed",)),
     Mistake("reference/records/samples.py", "in pairwise(readings.items()):", "in list(pairwise(readings.items()))[:1]:",
             "The step of z is not compared.", ("tests/reference/records/test_record_files.py::test_what_is_no_record_is_refused_in_one_short_line_at_once",)),
-    Mistake("reference/records/suites.py", 'ignored["vertical components"] = len(upright)', 'ignored["vertical components"] = 1',
+    Mistake("reference/records/suites.py", 'Counter({"vertical components": len(upright)})', 'Counter({"vertical components": min(len(upright), 1)})',
             "Number of vertical components left out.", ("tests/reference/records/test_unzipped_folders.py::test_single_components_are_plane_motions_where_asked_for",)),
 )
 # fmt: on
