@@ -521,6 +521,7 @@ def test_support_forces_say_of_how_many_motions_they_are() -> None:
         replace(two_bounds(), supports=[about, replace(about, structure="c", motions=4)])
     )
     assert "statics, 3 of 4 motions of the b, 4 motions of the c: " in said
+    assert said.endswith("The worst may be under a motion without a value."), "of one bound, and so of all"
     (said,) = sentences.support_sentences(replace(planted(), supports=[replace(about, model="spatial", motions=2)]))
     assert said.startswith("By the spatial engine, 2 of 4 motions: ")
     shown = page.page_of(some)
@@ -547,8 +548,36 @@ def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> Non
 
 def test_one_duration_is_no_range() -> None:
     assert sentences.ground_sentence(planted()).endswith("; duration 10 s.")
-    longer = [GroundMotion("m1", 10.0, 2.0), GroundMotion("m2", 30.0, 2.0)]
-    assert sentences.ground_sentence(replace(planted(), suite=longer)).endswith("; durations from 10 to 30 s.")
+    unlike = [GroundMotion("m1", 30.0, 3.5), GroundMotion("m2", 10.0, 2.0), GroundMotion("m3", 20.0, 3.0)]
+    assert sentences.ground_sentence(replace(planted(), suite=unlike)) == (
+        "Peaks from 0.204 g to 0.357 g, resultant of x and y, with the factors; durations from 10 to 30 s."
+    )
+
+
+def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
+    chosen = [
+        ChosenMotion("b", "m3", 1.0, ["displacement"], {"spatial": "ok", "small": "step limit"}),
+        ChosenMotion("c", "m4", 1.0, ["base shear", "median"], {"spatial": "step limit"}),
+        ChosenMotion("c", "m2", 1.0, ["asked for"], {"spatial": "ok"}),
+    ]
+    found = replace(two_bounds(), engine=Engine("spatial", chosen, 0.02))
+    assert sentences.engine_sentences(found) == [
+        "The spatial engine computed, b: m3 (displacement).",
+        "The spatial engine computed, c: m4 (base shear, median; step limit); m2 (asked for).",
+        "The engine was asked for largest accelerations to 2 %.",
+    ]
+    numbers = {
+        ("b", 1, 3.0, 2.0): ((-2e3, "m3"), (7e3, "m4"), 0.002), ("c", 2, -3.5, 2.5): ((1e3, "m4"), (9e3, "m1"), 0.0),
+        ("c", 3, 0.5, -2.5): ((2e3, "m2"), (8e3, "m2"), 0.001),
+    }  # fmt: skip
+    supports = [
+        SupportExtremes(*at, "spatial", 2, Statistic(low, 1.0), one, Statistic(high, 1.0), two, Statistic(gap, 0.0))
+        for at, ((low, one), (high, two), gap) in numbers.items()
+    ]
+    assert sentences.support_sentences(replace(found, supports=supports)) == [
+        "By the spatial engine, 2 of 4 motions of each bound: largest force 9 kN, support 2 at [-3.5, 2.5] m (m1, c); "
+        "smallest force -2 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1."
+    ]
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
