@@ -786,5 +786,9 @@ MISTAKES = (
             "Limits of engines of the second scene are not checked.", ("tests/comparison/surfaces/test_lost_points.py::test_a_wrong_limit_is_one_line_with_the_nearest_key",)),
     Mistake("comparison/cli/user_models.py", '"like-for-like", *Acceptance.model_fields}', '"like-for-like"}',
             "An engine may have the name of a limit.", ("tests/comparison/study/test_user_engines.py::test_a_wrong_spelling_is_one_line_and_exit_code_2",)),
+    Mistake("comparison/analyses/ensemble/sentences.py", 'f"Peaks from {peak_in_g(min(peaks))} to {peak_in_g(max(peaks))}', 'f"Peaks from {peak_in_g(max(peaks))} to {peak_in_g(min(peaks))}',
+            "Range of peaks turned round.", ("tests/comparison/analyses/test_ensemble_report.py::test_one_duration_is_no_range",)),
+    Mistake("comparison/analyses/ensemble/sentences.py", "lacking = model == EXACT.key and any(each.motions < ensemble.motions for each in rows)", "lacking = model == EXACT.key and all(each.motions < ensemble.motions for each in rows)",
+            "One bound with a motion lost is not said.", ("tests/comparison/analyses/test_ensemble_report.py::test_support_forces_say_of_how_many_motions_they_are",)),
 )
 # fmt: on
