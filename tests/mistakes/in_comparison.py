@@ -790,5 +790,9 @@ MISTAKES = (
             "Range of peaks turned round.", ("tests/comparison/analyses/test_ensemble_report.py::test_one_duration_is_no_range",)),
     Mistake("comparison/analyses/ensemble/sentences.py", "lacking = model == EXACT.key and any(each.motions < ensemble.motions for each in rows)", "lacking = model == EXACT.key and all(each.motions < ensemble.motions for each in rows)",
             "One bound with a motion lost is not said.", ("tests/comparison/analyses/test_ensemble_report.py::test_support_forces_say_of_how_many_motions_they_are",)),
+    Mistake("comparison/analyses/ensemble/rows.py", 'motions = f"{len(known)} of {ensemble.motions} ({ensemble.engine.model} engine)"', 'motions = f"{len(values)} of {ensemble.motions} ({ensemble.engine.model} engine)"',
+            "Motions without a value count in the row of the engine.", ("tests/comparison/analyses/test_ensemble_report.py::test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine",)),
+    Mistake("comparison/evidence/validation/frame.py", "and by {off:.3f} mm with {setup.ratio:.3f}", "and by {off:.3f} mm with {own.ratio:.3f}",
+            "Ratio of a fact is the other one.", ("tests/comparison/evidence/test_validation.py::test_one_run_is_fitted_and_the_others_predicted",)),
 )
 # fmt: on

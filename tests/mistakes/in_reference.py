@@ -471,5 +471,9 @@ MISTAKES = (
             "Periods and decay beside a record.", ("tests/reference/problem/test_wrong_values.py::test_a_wrong_value_is_one_line_with_scene_key_value_and_rule",)),
     Mistake("reference/problem/supports.py", "return bool(extents[1] <= MIN_EXTENT_RATIO * extents[0])", "return bool(extents[1] == 0.0)",
             "Places nearly on one line are taken.", ("tests/reference/problem/test_wrong_values.py::test_a_wrong_value_is_one_line_with_scene_key_value_and_rule",)),
+    Mistake("reference/measures/peak_demands.py", 'start=2 if field.name == "drift" else 1', "start=1",
+            "A drift is listed under the body below.", ("tests/reference/test_demands.py::test_a_motion_that_ends_early_has_a_status_and_no_numbers",)),
+    Mistake("reference/solver/contact/yielding.py", "slope * py - qy + load.uy * lever, reaction", "slope * py - qy + load.ux * lever, reaction",
+            "Small equations, yielding friction: lever of the ground along y is that along x.", ("tests/reference/test_yielding_motion.py::test_factors_are_those_of_the_other_program",)),
 )
 # fmt: on

@@ -618,6 +618,12 @@ def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(fo
     for row in uplift:
         assert "of 4 (spatial engine)" in row.motions
     assert all("engine" not in row.motions for row in shown if row.name not in of_engine)
+    lifts = [
+        DemandCurve("b", "uplift", None, "spatial", name, (1.0,), (value,), (None,))
+        for name, value in (("m2", None), ("m3", 2e-3), ("m4", 5e-3), ("m1", 1e-3))
+    ]
+    (row,) = (row for row in rows.demand_rows(replace(planted(), curves=lifts), 1.0) if row.name == of_engine[0])
+    assert (row.cells[4], row.motion, row.motions) == ("5", "m4", "3 of 4 (spatial engine)")
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
