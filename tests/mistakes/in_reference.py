@@ -475,5 +475,7 @@ MISTAKES = (
             "A drift is listed under the body below.", ("tests/reference/test_demands.py::test_a_motion_that_ends_early_has_a_status_and_no_numbers",)),
     Mistake("reference/solver/contact/yielding.py", "slope * py - qy + load.uy * lever, reaction", "slope * py - qy + load.ux * lever, reaction",
             "Small equations, yielding friction: lever of the ground along y is that along x.", ("tests/reference/test_yielding_motion.py::test_factors_are_those_of_the_other_program",)),
+    Mistake("reference/problem/phases.py", "or min(phases.shape[:2]) < 2:", "or max(phases.shape[:2]) < 2:",
+            "One row of phases counts as a grid.", ("tests/reference/problem/test_loading.py::test_phase_grid_covers_the_torus_once_with_alpha2_fastest",)),
 )
 # fmt: on

@@ -17,6 +17,7 @@ from reference.problem import (
     loading_period,
     phase_grid,
 )
+from reference.problem.phases import grid_axes
 
 PHASE = (0.3, 1.1)
 LOAD = chain(amplitudes=((1.0, 0.4), (-0.3, 1.2), (0.2, 0.7)), decay=(0.33, 0.0))
@@ -82,3 +83,6 @@ def test_phase_grid_covers_the_torus_once_with_alpha2_fastest():
     np.testing.assert_allclose(grid[:5, 0], [0.0, 0.0, 0.0, 0.0, 0.5 * np.pi])
     assert grid.max() < 2.0 * np.pi
     assert len({tuple(pair) for pair in grid.tolist()}) == 16
+    assert [axis.tolist() for axis in grid_axes(grid) or ()] == [grid[::4, 0].tolist(), grid[:4, 1].tolist()]
+    for less in (grid[:4], grid[::4], grid[:4, None], grid[None, :4], grid[[0, 1, 4, 6]], grid[:6]):
+        assert grid_axes(less) is None, "one row or column, or no grid"
