@@ -1,11 +1,14 @@
 """Reading the largest value between samples: smooth tops, corners of the law, and the error given for both."""
 
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from multibody.integration.peak import PeakReader, _alternating_part, _read_corner
+from multibody.integration.step_control import KINK_STEP_RATIO, StepControl
 
 TIME = np.arange(0.0, 1.0, 0.02)
 CHUNKS = pytest.mark.parametrize("chunks", [1, 2, 7, 16])
@@ -132,3 +135,19 @@ def test_what_a_longer_last_step_misses_counts_in_full() -> None:
         at = np.array(time)
         size = 1.0 + 0.5 * at - 0.1 * at**2 + 0.02 * at**3 + [0.0, 0.0, 0.0, 0.0, 0.3]
         assert _alternating_part(at, size) == pytest.approx(0.3 * share)
+
+
+@pytest.mark.parametrize("way", [1, -1], ids=["first body", "second body"])
+def test_a_step_behind_a_kink_is_short_where_a_body_is_near_its_peak_and_a_contact_creeps(way: int) -> None:
+    ground = SimpleNamespace(knots=np.array([0.2, 0.6, 1.0]), near=1e-9)
+    model: Any = SimpleNamespace(ground=ground, corner=1e-2, relaxation=0.05)
+    level: Any = SimpleNamespace(error_floor=1e-3)
+    time = 0.1 * np.arange(11)
+    bent = 1.0 - 0.3 * (1.0 - np.exp(-np.maximum(time - 0.2, 0.0) / 0.07))
+    for slowest, peak, expected in ((1e-3, 1.001, 1.5), (2e-2, 1.001, 0.0), (1e-3, 2.0, 0.0)):
+        motion: Any = SimpleNamespace(
+            time=time, slip=np.column_stack([0.0 * time + 0.5, 0.0 * time + slowest])[:, ::way]
+        )
+        size, peaks = np.column_stack([bent, 1.0 + 0.1 * time])[:, ::way], np.array([peak, 1.0])[::way]
+        ratio = StepControl(model, level)._kink_step_ratio(motion, size, peaks, 0.075 * KINK_STEP_RATIO)
+        np.testing.assert_allclose(ratio, np.where(np.arange(11) == 3, expected, 0.0))
