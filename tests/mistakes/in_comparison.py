@@ -794,5 +794,7 @@ MISTAKES = (
             "Motions without a value count in the row of the engine.", ("tests/comparison/analyses/test_ensemble_report.py::test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine",)),
     Mistake("comparison/evidence/validation/frame.py", "and by {off:.3f} mm with {setup.ratio:.3f}", "and by {off:.3f} mm with {own.ratio:.3f}",
             "Ratio of a fact is the other one.", ("tests/comparison/evidence/test_validation.py::test_one_run_is_fitted_and_the_others_predicted",)),
+    Mistake("comparison/analyses/motions/page_data.py", "float(alpha2[place.column])]", "float(alpha2[place.row])]",
+            "Second phase of a place is that of its row.", ("tests/comparison/analyses/test_motion_data.py::test_a_refused_motion_has_no_numbers_and_unknown_demands",)),
 )
 # fmt: on

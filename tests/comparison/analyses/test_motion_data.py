@@ -33,7 +33,7 @@ PHASE = (2.0, 0.7)
 
 def stored(scene: Scene, model: Model) -> StoredMotion:
     motion = compute_motion(
-        (scene, model, 1e-6 if model.side == "reference" else 1e-3, Place(scene.name, 0, 0, "why"), PHASE)
+        (scene, model, 1e-6 if model.side == "reference" else 1e-3, Place(scene.name, 0, 1, "why"), PHASE)
     )
     assert motion.error_message == ""
     return motion
@@ -41,8 +41,8 @@ def stored(scene: Scene, model: Model) -> StoredMotion:
 
 def found(*motions: StoredMotion) -> Any:
     """What the report is made from, as far as motions are concerned."""
-    axis = np.array([0.0, np.pi])
-    return SimpleNamespace(found={"motions": motions}, surfaces={"alpha1": axis, "alpha2": axis})
+    surfaces = {"alpha1": np.array([0.2, 1.0]), "alpha2": np.array([0.5, 2.0])}
+    return SimpleNamespace(found={"motions": motions}, surfaces=surfaces)
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +87,7 @@ def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
     [place] = places_with_motions(found(motion), long)
+    assert (place["row"], place["column"], place["phases"]) == (0, 1, [0.2, 2.0])
     [about] = place["motions"]
     assert (about["status"], about["count"], about["blocks"]) == ("step limit", 0, {})
     assert about["demands"]["drift"] == [[None, None]]
