@@ -796,5 +796,7 @@ MISTAKES = (
             "Ratio of a fact is the other one.", ("tests/comparison/evidence/test_validation.py::test_one_run_is_fitted_and_the_others_predicted",)),
     Mistake("comparison/analyses/motions/page_data.py", "float(alpha2[place.column])]", "float(alpha2[place.row])]",
             "Second phase of a place is that of its row.", ("tests/comparison/analyses/test_motion_data.py::test_a_refused_motion_has_no_numbers_and_unknown_demands",)),
+    Mistake("comparison/evidence/extremes/analysis.py", "if (error < 0.0).any() or", "if (error < 0.0).all() or",
+            "One negative error is taken.", ("tests/comparison/evidence/test_extremes.py::test_an_error_estimate_that_is_none_of_one_body_fails",)),
 )
 # fmt: on
