@@ -477,5 +477,7 @@ MISTAKES = (
             "Small equations, yielding friction: lever of the ground along y is that along x.", ("tests/reference/test_yielding_motion.py::test_factors_are_those_of_the_other_program",)),
     Mistake("reference/problem/phases.py", "or min(phases.shape[:2]) < 2:", "or max(phases.shape[:2]) < 2:",
             "One row of phases counts as a grid.", ("tests/reference/problem/test_loading.py::test_phase_grid_covers_the_torus_once_with_alpha2_fastest",)),
+    Mistake("reference/problem/phases.py", "if pair.size != 2:", "if pair.size < 2:",
+            "Three phases are refused in the words of NumPy.", ("tests/reference/problem/test_loading.py::test_a_phase_pair_has_two_phases",)),
 )
 # fmt: on

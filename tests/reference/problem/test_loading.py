@@ -76,6 +76,12 @@ def test_the_loading_changes_within_the_shorter_period_whichever_it_is():
     assert [loading_period(chain(periods=periods)) for periods in ((0.7, 1.1), (1.1, 0.7))] == [0.7, 0.7]
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_phase_pair_has_two_phases(count):
+    with pytest.raises(ValueError, match=rf"^phases: shape \({count},\): must be \(2,\), rad$"):
+        ground_velocity(LOAD, np.zeros(count), [0.0])
+
+
 def test_phase_grid_covers_the_torus_once_with_alpha2_fastest():
     grid = phase_grid(4)
     assert grid.shape == (16, 2)
