@@ -419,7 +419,7 @@ MISTAKES = (
             (TESTS + "test_results_in_python.py::test_a_surface_is_drawn_with_its_heights_where_they_belong",)),
     Mistake("reference/measures/story_forces.py", "+ lean * samples.place[:, 0]", "",
             "The weight stays in the middle of the supports however far the platform goes.",
-            (TESTS + "test_story_forces.py::test_supports_by_statics_carry_weight_and_moment",)),
+            (TESTS + "test_story_forces.py::test_supports_of_uneven_places_balance_weight_and_moment_about_any_point",)),
     Mistake("reference/measures/story_forces.py", "- (0.0 if scene.flat else _depression(scene))", "",
             "Heights above the centers of the depressions are taken as those above the contact.",
             (TESTS + "test_story_forces.py::test_overturning_moments_are_those_of_the_floor_forces",)),
