@@ -422,7 +422,7 @@ class Scene(Table):
             return self.isolator.lubrication
         return self.dry_friction.largest
 
-    @property
+    @cached_property
     def dry_friction(self) -> DryFriction:
         """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
         sliders = 1 if self.support_places is None else len(self.support_places)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from browsers import CHROMIUM, LAPTOP, OVERLAPS, PHONE, opened, unfolded
 from fake_models import fake_hierarchy
+from known_analyses import analyses_are
 from playwright.sync_api import Browser
 from printed_pages import BEYOND, CUT, as_printed, letters, printed_page
 from runs import SMALL, quick_figures
@@ -766,6 +767,7 @@ def test_a_report_of_another_kind_is_refused_and_not_shown(
 ) -> None:
     """No study shows an ensemble, and neither takes the place of the other."""
     quick_figures(monkeypatch)
+    analyses_are(monkeypatch)
     words = [*SMALL, "--out", "out"]
     assert study(words, fake_hierarchy(), ThreadPoolExecutor) == 2
     rule = "--out = 'out': holds the page of `ensemble`, of this building or another: give a directory of its own"
