@@ -19,7 +19,7 @@ from comparison.analyses.assumptions.validity import (
 from comparison.analyses.assumptions.variations import TURNED_LINK, Variation
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
-from comparison.analyses.worst_phases.analysis import Worst
+from comparison.analyses.worst_phases.analysis import LargestOverPhases
 from comparison.evidence.benchmarks import table as benchmarks
 from comparison.evidence.extremes import matrix as extremes
 from comparison.evidence.extremes.columns import ModelColumn
@@ -51,9 +51,13 @@ FOUND = Matrix(
      "reduced": False, "provenance": {"commit": "abc"}},
 )  # fmt: skip
 SEARCHED = [
-    Worst("fig3-I", "exact", "amplification", 1, 8.765, 1e-4, (1.0, 2.0), "smooth", runner_up=8.5, climbs=4, reached=3),
-    Worst("fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5),
-    Worst("fig3-I", "exact", "amplification", 2, 7.321, 3e-4, (5.0, 6.0), "jump", (0.25, -0.75), 7.1, 8, 7),
+    LargestOverPhases(
+        "fig3-I", "exact", "amplification", 1, 8.765, 1e-4, (1.0, 2.0), "smooth", runner_up=8.5, climbs=4, reached=3
+    ),
+    LargestOverPhases(
+        "fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5
+    ),
+    LargestOverPhases("fig3-I", "exact", "amplification", 2, 7.321, 3e-4, (5.0, 6.0), "jump", (0.25, -0.75), 7.1, 8, 7),
 ]
 COMPUTED = [
     ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok"),
@@ -142,15 +146,17 @@ def known_ensemble() -> ensemble.EnsembleResult:
     )
     mean, largest, smallest = (ensemble.Statistic(value, 0.0) for value in (0.21, 0.3, 0.1))
     none, named = ensemble.Statistic(None, None), ("tower", "displacement", None, "exact", "m")
-    stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
-               ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
-    spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
+    stripes = [ensemble.DemandAtScale(*named, 1.0, 3, mean, low, largest, smallest),
+               ensemble.DemandAtScale(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
+    spectrum = ensemble.FloorSpectrumStatistics(
+        "tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2
+    )
     moved = ensemble.ChosenMotion("tower", "motion 2", 2.0, ["largest displacement"], {"translational": "ok"})
     return ensemble.EnsembleResult(
         schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
         scales=(1.0, 2.0), spectra=[spectrum],
         motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
-        engine=ensemble.Engine("translational", [moved]), run=MADE,
+        engine=ensemble.EngineMotions("translational", [moved]), run=MADE,
         suite=[ensemble.GroundMotion(motion, 20.0, 1.5) for motion in known],
     )  # fmt: skip
 

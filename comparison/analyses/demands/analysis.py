@@ -1,5 +1,5 @@
 """
-Demands of every phase pair: surfaces of displacement, base shear, drifts, contact forces, and their statistics.
+Demand surfaces over all phase pairs (displacement, base shear, drifts, contact forces) and their statistics.
 
 Every model moves at the phases of its own surface. Motions go to their end, which takes many times as long as mu: a
 study makes this analysis where it is asked for by name.
@@ -27,17 +27,17 @@ from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_mot
 from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
 
-BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
-PREFIX = "demand_"  # name of a demand in surfaces.nc
+MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # motions of one task, by side: they take about two seconds
+VARIABLE_PREFIX = "demand_"  # prefix of the variables of demands in surfaces.nc
 
-# scene, model, relative error asked, phases (M, 2), rad
-Arguments = tuple[Scene, Model, float, Array]
-Batch = tuple[dict[str, Estimates], list[str]]  # demands and statuses of some phase pairs
+# arguments of a task: scene, model, asked relative error, phase pairs (M, 2) in rad
+DemandTaskArguments = tuple[Scene, Model, float, Array]
+TaskDemands = tuple[dict[str, Estimates], list[str]]  # demands of a task's motions by name, and their statuses
 
 
 @result
 class PhaseExtreme:
-    """The largest or smallest value on the phases that were computed."""
+    """Largest or smallest value of a demand on the phases that were computed."""
 
     value: Annotated[Number, "largest or smallest value, in the unit of the demand"]
     error: Annotated[Number, "estimated absolute error; null where it is not known"]
@@ -46,7 +46,7 @@ class PhaseExtreme:
 
 @result
 class DemandStatistics:
-    """One demand of one model over phases that are independent and uniform; under a record its one value."""
+    """Statistics of one demand by one model over independent uniform phases; under a record its one value."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands`, with the unit stated there"]
@@ -60,12 +60,12 @@ class DemandStatistics:
     curve: Annotated[tuple[Number, ...], "the demand at 50 probabilities from 0.01 to 0.99"]
 
     def fractile(self, probability: float) -> float:
-        """The value at one of FRACTILES."""
+        """Return the value of the demand at one of the probabilities in FRACTILES."""
         return self.fractiles[FRACTILES.index(probability)].value
 
 
-def compute_demands(task: Arguments) -> Batch:
-    """Demands of the motions of one task. Runs inside a worker process."""
+def compute_demands(task: DemandTaskArguments) -> TaskDemands:
+    """Return the demands and statuses of the motions of one task. Runs inside a worker process."""
     scene, model, tolerance, phases = task
     trajectory, settings = import_function(model.trajectory), dict(model.settings)
     demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
@@ -73,7 +73,7 @@ def compute_demands(task: Arguments) -> Batch:
 
 
 class DemandSurfaces(MappedAnalysis[xr.Dataset]):
-    """Demands at every phase pair of every model's surface."""
+    """Analysis that computes the demands at every phase pair of every model's surface."""
 
     key, stage, level = "demands", "demands", 2
     function = staticmethod(compute_demands)
@@ -87,15 +87,15 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
             for model in _models_with_own_motions(study, scene)
         )
 
-    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
-        """Motions of about two seconds each."""
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[DemandTaskArguments]:
+        """Yield the arguments of every task: motions that take about two seconds together."""
         phases = phase_grid(study.grid)
-        for scene, model, places in _list_batches(study):
+        for scene, model, places in _list_task_motions(study):
             yield scene, model, model.tolerance(study.tolerance), phases[places]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
         """
-        Demands on dimensions scene, model, body, alpha1, alpha2.
+        Return the demands of all tasks on the dimensions scene, model, body, alpha1, alpha2.
 
         By the names of the fields of `Demands`; "_error" behind the name of the estimated absolute errors. `status`
         names the outcome of each pair.
@@ -105,7 +105,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
         status = np.full((len(names), len(models), grid**2), NOT_ASKED, dtype=object)
         numbers: dict[str, Array] = {}
         answers = self.values(study, surfaces, results)
-        for (scene, model, places), (estimated, outcomes) in zip(_list_batches(study), answers, strict=True):
+        for (scene, model, places), (estimated, outcomes) in zip(_list_task_motions(study), answers, strict=True):
             where = names.index(scene.name), models.index(model.key)
             status[where][places] = outcomes
             for name, estimates in estimated.items():
@@ -132,33 +132,34 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
 
 def _models_with_own_motions(study: Study, scene: Scene) -> list[Model]:
-    """Return the models whose motions differ: as integrated is another reading of the same motion."""
+    """Return the models that move differently: a second reading of (5.1) needs no motion of its own."""
     models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
     return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 
 
-def _list_batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
-    """Scene, model, places on the whole grid."""
+def _list_task_motions(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
+    """Yield the scene, the model and the indices of the phase pairs on the whole grid for every task."""
     for scene in study.scenes:
         for model in _models_with_own_motions(study, scene):
-            places, size = study.solved(scene, model), BATCH[model.side]
+            places, size = study.solved(scene, model), MOTIONS_PER_TASK[model.side]
             for first in range(0, len(places), size):
                 yield scene, model, places[first : first + size]
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:
-    """The surfaces and those of the demands, as surfaces.nc has them."""
+    """Return the surfaces with the demands added as the variables that surfaces.nc has."""
     if demands is None:
         return surfaces
-    renamed = demands.rename({name: f"{PREFIX}{name}" for name in demands.data_vars})
+    renamed = demands.rename({name: f"{VARIABLE_PREFIX}{name}" for name in demands.data_vars})
     empty: dict[Any, Any] = dict.fromkeys(renamed.data_vars, np.nan)
-    empty[f"{PREFIX}status"] = NOT_ASKED
+    empty[f"{VARIABLE_PREFIX}status"] = NOT_ASKED
     aligned = renamed.reindex(scene=surfaces["scene"], body=surfaces["body"], fill_value=empty)
-    return surfaces.assign(aligned.data_vars).assign_coords(surfaces.coords)  # which have their units
+    # The coordinates of the surfaces, because these have units
+    return surfaces.assign(aligned.data_vars).assign_coords(surfaces.coords)
 
 
 def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) -> list[DemandStatistics]:
-    """One for each demand, body and model with an answer, in the order of QUANTITIES."""
+    """Return the statistics of each demand, body and model with an answer, in the order of QUANTITIES."""
     if demands is None or scene.name not in demands["scene"]:
         return []
     return [

@@ -1,4 +1,4 @@
-"""Demands over all phases: in the report."""
+"""Report section of the demands over all phases."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,7 +20,7 @@ STATISTICS = SceneField(
 
 
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
-    """One panel for each demand: the share of all phases at which it stays below a value, by model."""
+    """Return one panel per demand: the share of all phases where it stays below a value, by model."""
     panels = []
     for quantity, body, title, unit, scale in DEMANDS if not scene.recorded else ():
         curves = [
@@ -33,7 +33,7 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
 
 
 def demand_lines(results: Results) -> list[dict[str, Any]]:
-    """Rows of the table of demands, each with the names of its scene, demand and model."""
+    """Return the rows of the table of demands, each with the names of its scene, demand and model."""
     lines = []
     for scene in results.scenes:
         for row in STATISTICS.of(scene):

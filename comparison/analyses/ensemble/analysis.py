@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from comparison.analyses.ensemble.governing import Choice
-from comparison.analyses.ensemble.members import Member
-from comparison.analyses.ensemble.quantities import Quantity, values_of_motion
+from comparison.analyses.ensemble.governing import ChosenMember
+from comparison.analyses.ensemble.members import EnsembleMember
+from comparison.analyses.ensemble.quantities import Quantity, collect_demand_values
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
@@ -26,23 +26,25 @@ from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, dem
 from reference.problem import Outcome, Scene, ground_peak
 
 STAGE = "ensemble"
-REST = (0.0, 0.0)  # a record has no phases
-WITH_SPECTRA = 1.7  # processor time of a motion with its floor spectra over that without
-LIMIT = 900.0  # s of processor time of one motion
-TOLERANCE = 1e-2  # asked of the engine's largest accelerations: motions differ by far more
+NO_PHASES = (0.0, 0.0)  # phases passed to a model under a record, which has none
+SPECTRA_COST_RATIO = 1.7  # Processor time of a motion with floor spectra over the time without them.
+MOTION_TIME_LIMIT = 900.0  # s, largest processor time of one motion
+ENGINE_TOLERANCE = (
+    1e-2  # relative error asked of the engine's largest accelerations: between motions they differ by far more
+)
 
 
 @dataclass(frozen=True)
-class Point:
-    """One motion at one scale by one model. values: NaN if it ended early; empty if there is nothing at all."""
+class MotionDemandsAtScale:
+    """Demands of one motion at one scale by one model. values: NaN if it ended early; empty if nothing was computed."""
 
-    member: Member
-    model: str  # key
+    member: EnsembleMember
+    model: str  # key of the model
     status: str
     values: Mapping[Quantity, Estimate] = field(default_factory=dict)
     spectra: FloorSpectra | None = None
     forces: StoryForces | None = None
-    instant: float = math.nan  # when the status arose, s
+    instant: float = math.nan  # s, time at which the status arose
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
@@ -50,32 +52,32 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Points:
+class EnsemblePoints:
     """
-    Points of an ensemble.
+    Demands of every motion of an ensemble, by the exact equations and by the models compared with them.
 
     equations: in the order of the members. chosen: motions that the engine computes. compared: those motions by every
     other model, by key of the model.
     """
 
-    equations: Sequence[Point]
-    chosen: Sequence[Choice] = ()
-    compared: Mapping[str, Sequence[Point]] = field(default_factory=dict)
+    equations: Sequence[MotionDemandsAtScale]
+    chosen: Sequence[ChosenMember] = ()
+    compared: Mapping[str, Sequence[MotionDemandsAtScale]] = field(default_factory=dict)
 
     @property
-    def all_points(self) -> list[Point]:
-        """All points, those of the equations first."""
+    def all_points(self) -> list[MotionDemandsAtScale]:
+        """Return the points of all models, those of the exact equations first."""
         return [*self.equations, *(point for points in self.compared.values() for point in points)]
 
 
-Arguments = tuple[Scene, Model, float]
-# what is kept of a motion; accelerations as integrated, where its demands have others; when it ended early, s
-Answer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
+MotionTaskArguments = tuple[Scene, Model, float]
+# demands of a motion, story forces, spectra, accelerations as integrated where demands have suprema, s of an early end
+MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
-def models_beside(member: Member, spatial: bool) -> list[Model]:
+def list_comparison_models(member: EnsembleMember, spatial: bool) -> list[Model]:
     """
-    The models that compute a chosen motion beside the exact equations.
+    Return the models that compute a chosen motion in addition to the exact equations.
 
     The small equations show what the geometry adds, the equations with the engine's friction law whether the codes
     agree, the translational engine what its contact adds, and the spatial one what the turning of the bodies adds.
@@ -88,71 +90,74 @@ def models_beside(member: Member, spatial: bool) -> list[Model]:
 @dataclass(frozen=True)
 class Ensemble:
     """
-    Demands of every scene by the equations, and of chosen ones by the other models.
+    Task list of an ensemble: every motion by the exact equations, chosen motions by the other models.
 
     members: every scene has a recorded motion. spatial: whether the spatial model is among those of the engine.
     tolerance: relative error asked of the largest accelerations by the engine; the equations take theirs.
     """
 
-    members: tuple[Member, ...]
+    members: tuple[EnsembleMember, ...]
     spatial: bool = True
-    tolerance: float = TOLERANCE
+    tolerance: float = ENGINE_TOLERANCE
 
-    def equation_tasks(self) -> list[Task]:
-        """One for each scene."""
+    def make_equation_tasks(self) -> list[Task]:
+        """Return a task of the exact equations for each scene."""
         return _drop_repeated_tasks(self._task(member, EXACT) for member in self.members)
 
-    def engine_tasks(self, chosen: Sequence[Choice]) -> list[Task]:
-        """Return those of all other models at the chosen motions."""
+    def make_engine_tasks(self, chosen: Sequence[ChosenMember]) -> list[Task]:
+        """Return the tasks of all other models at the chosen motions."""
         return _drop_repeated_tasks(self._task(each.member, model) for each in chosen for model in self._models(each))
 
-    def points(self, results: TaskResults, chosen: Sequence[Choice] = ()) -> Points:
-        """Every motion by every model that was asked for it."""
-        compared: dict[str, list[Point]] = {}
+    def collect_points(self, results: TaskResults, chosen: Sequence[ChosenMember] = ()) -> EnsemblePoints:
+        """Return the demands of every motion by every model that was asked for it."""
+        compared: dict[str, list[MotionDemandsAtScale]] = {}
         for each in chosen:
             for model in self._models(each):
                 compared.setdefault(model.key, []).append(self._point(each.member, model, results))
-        return Points([self._point(member, EXACT, results) for member in self.members], chosen, compared)
+        return EnsemblePoints([self._point(member, EXACT, results) for member in self.members], chosen, compared)
 
-    def _models(self, choice: Choice) -> list[Model]:
-        return models_beside(choice.member, self.spatial)
+    def _models(self, choice: ChosenMember) -> list[Model]:
+        return list_comparison_models(choice.member, self.spatial)
 
-    def _point(self, member: Member, model: Model, results: TaskResults) -> Point:
-        found: Answer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
+    def _point(self, member: EnsembleMember, model: Model, results: TaskResults) -> MotionDemandsAtScale:
+        found: MotionAnswer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
         if isinstance(found, str):
-            return Point(member, model.key, found)
+            return MotionDemandsAtScale(member, model.key, found)
         numbers, forces, spectra, resolved, instant = found
         if model != EXACT and numbers.status != Outcome.OK:
-            return Point(member, model.key, numbers.status, instant=instant)  # a status that is not ok is no value
-        values = values_of_motion(member.scene, numbers, forces, resolved)
-        return Point(member, model.key, numbers.status, values, spectra, forces, instant)
+            # A status other than ok means that there is no value.
+            return MotionDemandsAtScale(member, model.key, numbers.status, instant=instant)
+        values = collect_demand_values(member.scene, numbers, forces, resolved)
+        return MotionDemandsAtScale(member, model.key, numbers.status, values, spectra, forces, instant)
 
-    def _task(self, member: Member, model: Model) -> Task:
+    def _task(self, member: EnsembleMember, model: Model) -> Task:
         scene = member.scene
-        seconds = seconds_per_motion(scene, model) * (WITH_SPECTRA if model == EXACT else 1.0)
-        arguments: Arguments = scene, model, model.tolerance(self.tolerance)
-        return Task(compute_demands, arguments, STAGE, seconds, scene, model.side == "reference", timeout=LIMIT)
+        seconds = seconds_per_motion(scene, model) * (SPECTRA_COST_RATIO if model == EXACT else 1.0)
+        arguments: MotionTaskArguments = scene, model, model.tolerance(self.tolerance)
+        return Task(
+            compute_demands, arguments, STAGE, seconds, scene, model.side == "reference", timeout=MOTION_TIME_LIMIT
+        )
 
 
 def _drop_repeated_tasks(tasks: Iterable[Task]) -> list[Task]:
-    """Each task once."""
+    """Return the tasks without repetitions."""
     return list({task.key: task for task in tasks}.values())
 
 
-def compute_demands(task: Arguments) -> Answer:
-    """The demands of one motion by one model, and its floor spectra by the equations."""
+def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
+    """Return the demands of one motion by one model, with floor spectra if it is the exact equations."""
     scene, model, tolerance = task
-    motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **model.motion_settings)
+    motion = import_function(model.trajectory)(scene, NO_PHASES, tolerance=tolerance, **model.motion_settings)
     spectra = floor_spectra(motion) if model == EXACT else None
     return demands(motion), story_forces(motion), spectra, read_as_integrated(task), motion.instant
 
 
-def read_as_integrated(task: Arguments) -> list[Estimate]:
-    """Return accelerations as integrated of equations that have the literal suprema; none of any other model."""
+def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
+    """Return accelerations as integrated for the exact equations, whose demands are suprema; none for other models."""
     scene, model, tolerance = task
     resolved = {SMALL.key: SMALL_RESOLVED, EXACT.key: RESOLVED}.get(model.key)
     if resolved is None or not resolved.applies(scene):
         return []
-    read = import_function(resolved.amplification)(scene, REST, tolerance=tolerance, **resolved.settings)
-    (ground,) = ground_peak(scene, [REST])
+    read = import_function(resolved.amplification)(scene, NO_PHASES, tolerance=tolerance, **resolved.settings)
+    (ground,) = ground_peak(scene, [NO_PHASES])
     return [Estimate(float(mu * ground), float(error * ground)) for mu, error in zip(read.mu, read.error)]

@@ -1,13 +1,19 @@
-"""The result of an ensemble, from its points: all that its files, its page and the terminal show."""
+"""Assembly of the result of an ensemble from its points, for its files, its page and the terminal."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analyses.ensemble import result
-from comparison.analyses.ensemble.analysis import Points
-from comparison.analyses.ensemble.members import Member, group_by
-from comparison.analyses.ensemble.statistics import MEDIAN, curves, spectrum_bands, stripes, support_extremes
+from comparison.analyses.ensemble.analysis import EnsemblePoints
+from comparison.analyses.ensemble.members import EnsembleMember, group_rows_by
+from comparison.analyses.ensemble.statistics import (
+    MEDIAN_INDEX,
+    find_support_extremes,
+    make_demand_curves,
+    summarize_demands,
+    summarize_spectra,
+)
 from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from reference import describe_building
@@ -18,10 +24,10 @@ from reference.records.motion_lists import Motion
 
 
 def build_result(
-    points: Points,
+    points: EnsemblePoints,
     run: Mapping[str, Any],
     tolerance: float,
-    target: result.Target | None = None,
+    target: result.TargetSpectrum | None = None,
     listed: Mapping[str, Motion] | None = None,
 ) -> result.EnsembleResult:
     """
@@ -30,7 +36,7 @@ def build_result(
     listed: motions of the suite by name, with the factors and magnitudes that its list states.
     """
     members = [point.member for point in points.equations]
-    rows = list(stripes(points))
+    rows = list(summarize_demands(points))
     scales = sorted({member.scale for member in members})
     asked = "displacement", EXACT.key, scales[-1]
     moved = {row.structure: row for row in rows if (row.quantity, row.model, row.scale) == asked}
@@ -38,26 +44,26 @@ def build_result(
     suite = read_suite(members, listed or {})
     return result.EnsembleResult(
         schema=result.SCHEMA,
-        structures=structures_of(members, moved),
+        structures=describe_structures(members, moved),
         scales=scales,
         motions=len(suite),
         outcomes=dict(statuses.most_common()),
         stripes=rows,
-        curves=list(curves(points)),
-        spectra=list(spectrum_bands(points.equations)),
-        engine=result.Engine(
-            SPATIAL.key if SPATIAL.key in points.compared else TRANSLATIONAL.key, engine_motions(points), tolerance
+        curves=list(make_demand_curves(points)),
+        spectra=list(summarize_spectra(points.equations)),
+        engine=result.EngineMotions(
+            SPATIAL.key if SPATIAL.key in points.compared else TRANSLATIONAL.key, list_engine_motions(points), tolerance
         ),
         run=run,
         target=target,
         suite=suite,
-        supports=list(support_extremes(points)),
+        supports=list(find_support_extremes(points)),
         ended=list_ended_motions(points),
     )
 
 
-def engine_motions(points: Points) -> list[result.ChosenMotion]:
-    """The motions of the engine, why they were chosen, and how they ended by every model."""
+def list_engine_motions(points: EnsemblePoints) -> list[result.ChosenMotion]:
+    """Return the motions of the engine with the reasons for their choice and the outcome by every model."""
     statuses: dict[tuple[str, str, float], dict[str, str]] = {}
     for point in points.all_points:
         member = point.member
@@ -66,8 +72,8 @@ def engine_motions(points: Points) -> list[result.ChosenMotion]:
     return [result.ChosenMotion(*at, each.reasons, statuses[at]) for at, each in zip(places, points.chosen)]
 
 
-def list_ended_motions(points: Points) -> list[result.EndedMotion]:
-    """The motions by the equations with another outcome than ok, and when it arose."""
+def list_ended_motions(points: EnsemblePoints) -> list[result.EndedMotion]:
+    """Return the motions that the equations did not complete, each with its outcome and the time when it arose."""
     return [
         result.EndedMotion(
             at.member.structure, at.member.motion, at.member.scale, at.status, finite_or_none(at.instant)
@@ -77,10 +83,10 @@ def list_ended_motions(points: Points) -> list[result.EndedMotion]:
     ]
 
 
-def read_suite(members: Sequence[Member], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:
-    """The motions in their order, each once, with their peaks at scale 1."""
+def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:
+    """Return the motions of the suite in their order, each once, with their peaks at scale 1."""
     found = []
-    for motion, own in group_by(members, "motion").items():
+    for motion, own in group_rows_by(members, "motion").items():
         member = own[0]
         peak = horizontal_peak(member.scene) / member.scale
         about = listed.get(motion)
@@ -89,12 +95,14 @@ def read_suite(members: Sequence[Member], listed: Mapping[str, Motion]) -> list[
     return found
 
 
-def structures_of(members: Sequence[Member], displacements: Mapping[str, result.Stripe]) -> list[result.Structure]:
-    """The structures in their order. displacements: their isolator displacements at the largest scale."""
+def describe_structures(
+    members: Sequence[EnsembleMember], displacements: Mapping[str, result.DemandAtScale]
+) -> list[result.Structure]:
+    """Return the structures in their order. displacements: their isolator displacements at the largest scale."""
     found = []
-    for name, own in group_by(members, "structure").items():
+    for name, own in group_rows_by(members, "structure").items():
         scene, isolator, stripe = own[0].scene, None, displacements.get(name)
-        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[MEDIAN].value}
+        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[MEDIAN_INDEX].value}
         statistic, displacement = next(((key, value) for key, value in at.items() if value), ("", 0.0))
         friction = 0.0 if scene.lubricated else scene.dry_friction.fast
         if displacement and not scene.flat and friction:
@@ -108,7 +116,7 @@ def structures_of(members: Sequence[Member], displacements: Mapping[str, result.
 
 
 def read_building(scene: Scene) -> result.BuildingRead:
-    """The building of a scene as it was read."""
+    """Return the properties of a building as read from its scene."""
     building = describe_building(scene)
     return result.BuildingRead(
         supports=building.supports,

@@ -15,33 +15,40 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.analyses.ensemble.analysis import STAGE, Ensemble, Points
+from comparison.analyses.ensemble.analysis import STAGE, Ensemble, EnsemblePoints
 from comparison.analyses.ensemble.build import build_result
 from comparison.analyses.ensemble.governing import (
-    ALL,
-    MOST,
-    Asked,
-    Choice,
+    ALL_MOTIONS,
+    MAX_ENGINE_MOTIONS,
+    ChosenMember,
+    EngineRequest,
+    bound_motion_count,
     choose_motions,
-    expected_count,
-    largest_count,
+    estimate_engine_motion_count,
     parse_engine_option,
 )
 from comparison.analyses.ensemble.limits import (
     NO_LIMITS,
-    WITHIN,
+    STORED_TOLERANCE_RANGE,
     DemandCheck,
     check_limits,
     compare_with_stored,
-    limits_of,
-    verdicts_of,
+    list_verdicts,
+    read_demand_limits,
     word_check,
     word_checks,
 )
-from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit, with_suite
-from comparison.analyses.ensemble.page import page_of
+from comparison.analyses.ensemble.members import (
+    SCALE_KEY,
+    EnsembleMember,
+    group_rows_by,
+    list_members,
+    refuse_scenes_without_model_data,
+    with_suite,
+)
+from comparison.analyses.ensemble.page import render_ensemble_page
 from comparison.analyses.ensemble.result import STORED, EnsembleResult
-from comparison.analyses.ensemble.table import table_text
+from comparison.analyses.ensemble.table import format_table
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.analyses.ensemble.terminal import print_engine, print_equations
 from comparison.cli.arguments import (
@@ -76,21 +83,21 @@ from reference.records.suites import list_motions
 from reference.support.files import write_new
 
 COMMAND = "comparison.ensemble"
-TABLE = "ensemble.csv"
-PAGE = "index.html"
-CHECKED = "junit.xml"
-FILES = (STORED.name, TABLE, PAGE, CHECKED)
-MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
+TABLE_FILE = "ensemble.csv"
+PAGE_FILE = "index.html"
+CHECKS_FILE = "junit.xml"
+WRITTEN_FILES = (STORED.name, TABLE_FILE, PAGE_FILE, CHECKS_FILE)
+WORKER_FUNCTIONS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # functions that the workers call
 ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}
 MAX_SCALES = 100
 
 
 @command
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
-    """Compute the ensemble that the command line names, and write what it shows; the exit code."""
+    """Compute the ensemble that the command line names and write its files; return the exit code."""
     options = _parser().parse_args(argv)
-    jobs = number_of_jobs(options)  # refused before anything else is looked at
-    members = members_of([family_of_options(options, scene) for scene in options.scenes])
+    jobs = number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    members = list_members([make_suite_family(options, scene) for scene in options.scenes])
     asked = parse_engine_option(options.engine, members)
     target = None
     if options.target is not None:
@@ -98,31 +105,31 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     elif options.periods is not None:
         raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
     if options.model is not None and asked != 0:
-        refuse_unfit(members, ENGINES[options.model])
-    check = demand_check(options, members)
+        refuse_scenes_without_model_data(members, ENGINES[options.model])
+    check = make_demand_check(options, members)
     out = resolve_destination(options.out)
     refuse_other_page(out, COMMAND)
-    refuse_foreign_files(out, FILES)
+    refuse_foreign_files(out, WRITTEN_FILES)
     console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
     print_records(console, [(member.motion, member.scene) for member in members], short=not options.plan)
     print_buildings(console, [(member.structure, member.scene) for member in members])
-    tasks = ensemble.equation_tasks()
+    tasks = ensemble.make_equation_tasks()
     print_work(console, ensemble, tasks, asked, jobs)
     if options.plan:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
     begin = command_start().wall
-    build = partial(build_result, tolerance=ensemble.tolerance, target=target, listed=listed_motions(options))
+    build = partial(build_result, tolerance=ensemble.tolerance, target=target, listed=read_listed_motions(options))
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
-    def then(results: TaskResults, display: Display) -> Sequence[Task]:
-        chosen = [] if asked == 0 else choose_motions(ensemble.points(results).equations, asked)
-        further = results.missing(ensemble.engine_tasks(chosen))
+    def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
+        chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
+        further = results.missing(ensemble.make_engine_tasks(chosen))
         if further:
-            write(results, ensemble.points(results), print_equations)
+            write(results, ensemble.collect_points(results), print_equations)
             display.extend(sum(task.seconds for task in further))
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
@@ -132,24 +139,24 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         shown.append((chosen, bool(further)))
         return further
 
-    shown: list[tuple[list[Choice], bool]] = []
-    results = compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, then)
+    shown: list[tuple[list[ChosenMember], bool]] = []
+    results = compute_tasks("ensemble", options, argv, tasks, WORKER_FUNCTIONS, console, executor, add_engine_tasks)
     ((chosen, said),) = shown
     if not said:
-        written = write(results, ensemble.points(results, chosen), print_equations)
+        written = write(results, ensemble.collect_points(results, chosen), print_equations)
     if chosen:
-        written = write(results, ensemble.points(results, chosen), print_engine)
+        written = write(results, ensemble.collect_points(results, chosen), print_engine)
     console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
     return print_checks(check(written), asked=options.check or options.against is not None)
 
 
-def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: Asked, jobs: int) -> None:
-    """Say what computes how many motions in what time, and why a structure has no spatial model. tasks: equations."""
+def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: EngineRequest, jobs: int) -> None:
+    """Print how many motions are computed by what in which time, and why a structure has no spatial model."""
     members = ensemble.members
-    first = expected_choices(members, asked)
-    later = ensemble.engine_tasks([Choice(member, ()) for member in first])
+    first = list_expected_choices(members, asked)
+    later = ensemble.make_engine_tasks([ChosenMember(member, ()) for member in first])
     seconds = sum(wall_seconds([task.seconds for task in each], jobs) for each in (tasks, later))
-    engine = f"at most {most}" if (most := largest_choices(members, asked)) > len(first) else f"{len(first)}"
+    engine = f"at most {most}" if (most := bound_engine_motion_count(members, asked)) > len(first) else f"{len(first)}"
     workers = f"{jobs} worker{'' if jobs == 1 else 's'}"
     wall = f"about {STARTING + seconds + WRITING:.0f} s on idle cores with {workers}"
     console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
@@ -158,12 +165,18 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
             console.print(f"{line}.", soft_wrap=True, markup=False)
 
 
-def demand_check(
-    options: argparse.Namespace, members: Sequence[Member]
+def make_demand_check(
+    options: argparse.Namespace, members: Sequence[EnsembleMember]
 ) -> Callable[[EnsembleResult], list[DemandCheck]]:
-    """Return what checks the demands of the ensemble that the command line asks for. Raises SceneError."""
-    limits = limits_of({member.structure: member.scene for member in members})
-    within = read_number("--within", options.within, WITHIN.lowest, WITHIN.highest, "a share of the stored demand")
+    """Return the function that checks the demands the command line limits. Raises SceneError."""
+    limits = read_demand_limits({member.structure: member.scene for member in members})
+    within = read_number(
+        "--within",
+        options.within,
+        STORED_TOLERANCE_RANGE.lowest,
+        STORED_TOLERANCE_RANGE.highest,
+        "a share of the stored demand",
+    )
     try:
         stored = None if options.against is None else STORED.load(Path(options.against))
     except ValueError as error:
@@ -180,8 +193,8 @@ def demand_check(
 
 
 def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
-    """Say on standard error, as the last lines, which demands are not met; the exit code."""
-    sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
+    """Print on standard error, as the last lines, the demands that are not met; return the exit code."""
+    sys.stdout.flush()  # In a file that takes both outputs these lines come last, too.
     lines = word_checks(checks)
     if asked:
         for line in lines or [f"--check: {NO_LIMITS}"]:
@@ -194,31 +207,31 @@ def write_ensemble(
     options: argparse.Namespace,
     argv: Sequence[str],
     begin: float,
-    build: Callable[[Points, Mapping[str, Any]], EnsembleResult],
+    build: Callable[[EnsemblePoints, Mapping[str, Any]], EnsembleResult],
     check: Callable[[EnsembleResult], list[DemandCheck]],
     results: TaskResults,
-    points: Points,
+    points: EnsemblePoints,
     show: Callable[[Console, EnsembleResult], None],
 ) -> EnsembleResult:
-    """Write the files of the ensemble, show on the terminal what they hold, write the page; return the result."""
+    """Write the files of the ensemble, print its tables, write its page; return the result."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = build(points, run)
     checks = check(result)
-    result = replace(result, limits=verdicts_of(checks))
+    result = replace(result, limits=list_verdicts(checks))
     files = {STORED.name: STORED.as_json(result)}
-    files |= {CHECKED: junit_of(checks, run)} if checks else {}
-    if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
-        files[TABLE] = table
+    files |= {CHECKS_FILE: format_demand_checks(checks, run)} if checks else {}
+    if (table := attempt(TABLE_FILE, lambda: format_table(points, result).encode())) is not None:
+        files[TABLE_FILE] = table
     written = write_and_show(options.out, partial(publish_files, out, files, COMMAND), partial(show, console, result))
     with report_write_errors(options.out):
-        written += publish_made(out, PAGE, lambda: page_of(result).encode(), COMMAND)
+        written += publish_made(out, PAGE_FILE, lambda: render_ensemble_page(result).encode(), COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
     return result
 
 
-def junit_of(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
-    """junit.xml of the checks of demands, a suite for every bound; what is not met, or not compared, is a failure."""
+def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
+    """Return junit.xml of the demand checks, a suite for each bound; a check not met or not compared is a failure."""
     suites = [
         JUnitSuite(
             bound,
@@ -235,28 +248,32 @@ def junit_of(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
     return junit_text(suites).encode()
 
 
-def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
-    """Members in place of those that the engine will compute, whose cost is alike."""
-    if asked == MOST:
+def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineRequest) -> list[EnsembleMember]:
+    """Return members that stand for those that the engine will compute: their cost is alike."""
+    if asked == MAX_ENGINE_MOTIONS:
         return list(members)
-    return [member for own in _by_structure(members) for member in own[: expected_count(asked, len(own))]]
+    return [
+        member
+        for own in _group_largest_scale_by_structure(members)
+        for member in own[: estimate_engine_motion_count(asked, len(own))]
+    ]
 
 
-def largest_choices(members: Sequence[Member], asked: Asked) -> int:
-    """Return the most motions that the engine may compute."""
-    if asked == MOST:
+def bound_engine_motion_count(members: Sequence[EnsembleMember], asked: EngineRequest) -> int:
+    """Return the largest number of motions that the engine may compute."""
+    if asked == MAX_ENGINE_MOTIONS:
         return len(members)
-    return sum(largest_count(asked, own[0].scene, len(own)) for own in _by_structure(members))
+    return sum(bound_motion_count(asked, own[0].scene, len(own)) for own in _group_largest_scale_by_structure(members))
 
 
-def _by_structure(members: Sequence[Member]) -> list[list[Member]]:
-    """Members at the largest scale of all, by structure."""
+def _group_largest_scale_by_structure(members: Sequence[EnsembleMember]) -> list[list[EnsembleMember]]:
+    """Return the members at the largest scale, grouped by structure."""
     top = max(member.scale for member in members)
-    return list(group_by([member for member in members if member.scale == top], "structure").values())
+    return list(group_rows_by([member for member in members if member.scale == top], "structure").values())
 
 
-def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
-    """Motions of the folders of suites by name: of `--suite`, or of the scene files."""
+def read_listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
+    """Return the motions of the suite folders by name: the folder of `--suite`, or those of the scene files."""
     suites = [(Path(), options.suite)]
     if options.suite is None:
         loadings = [(source, scene_tables(scene_text(source), source).get("excitation")) for source in options.scenes]
@@ -271,7 +288,7 @@ def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
 
 
 def print_suite(console: Console, options: argparse.Namespace) -> None:
-    """Say what the folder of the suite holds; with --write-motions write it into the folder as motions.csv."""
+    """Print what the folder of the suite contains; with --write-motions write the list into it as motions.csv."""
     listed = list_motions(options.suite, Path(), options.components)
     console.print(listed.sentence, soft_wrap=True, markup=False)
     if options.write_motions:
@@ -280,8 +297,8 @@ def print_suite(console: Console, options: argparse.Namespace) -> None:
         console.print(f"Motions: {place}", soft_wrap=True, markup=False)
 
 
-def family_of_options(options: argparse.Namespace, source: str) -> Family:
-    """The scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
+def make_suite_family(options: argparse.Namespace, source: str) -> Family:
+    """Return the scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
     if options.suite is not None:
@@ -302,7 +319,10 @@ def _parser() -> CommandParser:
         "ensemble", "Demands under every motion of a suite at many scale factors (incremental dynamic analysis)."
     )
     parser.add_argument(
-        "scenes", nargs="+", metavar="SCENE", help=f"TOML files or built-in names; {SCALE} and bounds may run in them"
+        "scenes",
+        nargs="+",
+        metavar="SCENE",
+        help=f"TOML files or built-in names; {SCALE_KEY} and bounds may run in them",
     )
     parser.add_argument("--suite", metavar="SUITE", help="fema-p695:farfield and the like, or a directory of records")
     parser.add_argument(
@@ -335,7 +355,7 @@ def _parser() -> CommandParser:
         "--engine",
         nargs="+",
         metavar="MOTION",
-        help=f"motions by the engine: {ALL}, their number, or their names (default: those that govern by the "
+        help=f"motions by the engine: {ALL_MOTIONS}, their number, or their names (default: those that govern by the "
         "equations, and the one nearest the median)",
     )
     parser.add_argument(
@@ -356,6 +376,6 @@ def _parser() -> CommandParser:
         metavar="X",
         help="with --against: share of a demand by which it may differ besides its errors (default %(default)s)",
     )
-    parser.add_out(f"where {', '.join(FILES)} go", default="ensemble")
+    parser.add_out(f"where {', '.join(WRITTEN_FILES)} go", default="ensemble")
     parser.add_computing()
     return parser

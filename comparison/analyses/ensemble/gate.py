@@ -1,4 +1,4 @@
-"""The demands of an ensemble computed in this process, and what is not met of their limits: for tests of users."""
+"""Check of demand limits in a user's tests: computes the ensemble in this process and lists what is not met."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,8 +7,8 @@ from typing import Any
 from comparison.analyses.ensemble.analysis import Ensemble
 from comparison.analyses.ensemble.build import build_result
 from comparison.analyses.ensemble.governing import choose_motions
-from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, limits_of, word_checks
-from comparison.analyses.ensemble.members import members_of, with_suite
+from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, read_demand_limits, word_checks
+from comparison.analyses.ensemble.members import list_members, with_suite
 from comparison.analyses.ensemble.result import STORED, EnsembleResult
 from comparison.runner.task import Task, execute
 from comparison.runner.task_results import TaskResults
@@ -29,8 +29,8 @@ def check_demands(
     """Return a line for every demand that is not met; limits: in place of those of the file. Raises ValueError."""
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
-    members = members_of([family_of(with_bounds(data, bounds), str(source))])
-    asked = limits_of({member.structure: member.scene for member in members})
+    members = list_members([family_of(with_bounds(data, bounds), str(source))])
+    asked = read_demand_limits({member.structure: member.scene for member in members})
     for member in members:
         own = asked.get(member.structure, DemandLimits()).model_dump(exclude_none=True)
         asked[member.structure] = DemandLimits.model_validate({**own, **limits})
@@ -49,10 +49,10 @@ def check_demands(
 def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
     """Return the ensemble computed in this process, by the engine at the motions that govern where it is asked for."""
     results = TaskResults()
-    _compute_tasks(results, ensemble.equation_tasks())
-    chosen = choose_motions(ensemble.points(results).equations, None) if engine else []
-    _compute_tasks(results, ensemble.engine_tasks(chosen))
-    return build_result(ensemble.points(results, chosen), {}, ensemble.tolerance)
+    _compute_tasks(results, ensemble.make_equation_tasks())
+    chosen = choose_motions(ensemble.collect_points(results).equations, None) if engine else []
+    _compute_tasks(results, ensemble.make_engine_tasks(chosen))
+    return build_result(ensemble.collect_points(results, chosen), {}, ensemble.tolerance)
 
 
 def _compute_tasks(results: TaskResults, tasks: Sequence[Task]) -> None:

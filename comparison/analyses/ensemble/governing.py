@@ -1,4 +1,4 @@
-"""The motions that the engine computes: those that govern by the equations, and the one nearest the median."""
+"""Choice of the motions for the engine: those that govern by the equations, and the one nearest the median."""
 
 from __future__ import annotations
 
@@ -9,47 +9,48 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from comparison.analyses.ensemble.members import Member, group_by
+from comparison.analyses.ensemble.members import EnsembleMember, group_rows_by
 from comparison.cli.arguments import read_whole_number
 from comparison.study.models import EXACT
 from reference.problem import Scene, SceneError
 
 if TYPE_CHECKING:
-    from comparison.analyses.ensemble.analysis import Point
+    from comparison.analyses.ensemble.analysis import MotionDemandsAtScale
     from comparison.analyses.ensemble.result import EnsembleResult
 
-ALL = "all"
-GOVERNING = {  # demands whose largest value chooses a motion, and the words for it; of a demand of bodies the largest
+ALL_MOTIONS = "all"
+GOVERNING = {  # demands whose largest value chooses a motion (over bodies, if they have it), and the reason in words
     "displacement": "largest displacement",
     "base_shear": "largest base shear",
     "drift": "largest drift",
     "support_force_max": "largest support force",
 }
-MEDIAN = "nearest the median displacement"
-ASKED, NEXT = "asked for", "next largest displacement"
-MOST = 100_000  # motions of every structure that may be asked for
-USUAL = 3  # motions of a structure that govern, before it is known which
+MEDIAN_REASON = "nearest the median displacement"
+ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"
+MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
+EXPECTED_GOVERNING_COUNT = 3  # governing motions of a structure as assumed before the equations have found them
 
-Asked = int | tuple[str, ...] | None  # so many of each structure, or these motions, or those that govern
+# Number of motions per structure, names of motions, or None for the governing ones
+EngineRequest = int | tuple[str, ...] | None
 
 
 @dataclass(frozen=True)
-class Choice:
-    """A motion of the engine, and why."""
+class ChosenMember:
+    """A motion that the engine computes, and the reasons for it."""
 
-    member: Member
+    member: EnsembleMember
     reasons: tuple[str, ...]
 
 
-def parse_engine_option(words: Sequence[str] | None, members: Sequence[Member]) -> Asked:
-    """Which motions `--engine all | N | NAME ...` asks for; those that govern without it. Raises SceneError."""
+def parse_engine_option(words: Sequence[str] | None, members: Sequence[EnsembleMember]) -> EngineRequest:
+    """Return which motions `--engine all | N | NAME ...` asks for; without it the governing ones. Raises SceneError."""
     if words is None:
         return None
     names = list(dict.fromkeys(member.motion for member in members))
-    if list(words) == [ALL]:
-        return MOST
+    if list(words) == [ALL_MOTIONS]:
+        return MAX_ENGINE_MOTIONS
     if len(words) == 1 and words[0] not in names and words[0].lstrip("+-").replace(".", "", 1).isdigit():
-        return read_whole_number("--engine", words[0], 0, MOST)
+        return read_whole_number("--engine", words[0], 0, MAX_ENGINE_MOTIONS)
     for word in words:
         if word not in names:
             shown = ", ".join(names[:10]) + (" and so on" if len(names) > 10 else "")
@@ -57,43 +58,44 @@ def parse_engine_option(words: Sequence[str] | None, members: Sequence[Member]) 
     return tuple(words)
 
 
-def expected_count(asked: Asked, motions: int) -> int:
-    """How many motions of a structure the engine will compute, before the equations say which."""
-    count = USUAL if asked is None else len(asked) if isinstance(asked, tuple) else asked
+def estimate_engine_motion_count(asked: EngineRequest, motions: int) -> int:
+    """Return how many motions of a structure the engine is expected to compute, before the equations are solved."""
+    count = EXPECTED_GOVERNING_COUNT if asked is None else len(asked) if isinstance(asked, tuple) else asked
     return min(count, motions)
 
 
-def largest_count(asked: Asked, scene: Scene, motions: int) -> int:
+def bound_motion_count(asked: EngineRequest, scene: Scene, motions: int) -> int:
     """Return the most motions of a structure that the engine may compute: every demand may choose another one."""
     if asked is not None:
-        return expected_count(asked, motions)
-    absent = (len(scene.bodies) == 1) + (scene.support_places is None)  # no drift, no support forces
+        return estimate_engine_motion_count(asked, motions)
+    # A single body has no drift, a scene without supports no support forces
+    absent = (len(scene.bodies) == 1) + (scene.support_places is None)
     return min(len(GOVERNING) + 1 - absent, motions)
 
 
-def choose_motions(points: Sequence[Point], asked: Asked) -> list[Choice]:
-    """The motions of the engine by the demands of the equations; with `all` at every scale, else at the largest."""
-    if asked == MOST:
-        return [Choice(point.member, (ASKED,)) for point in points]
+def choose_motions(points: Sequence[MotionDemandsAtScale], asked: EngineRequest) -> list[ChosenMember]:
+    """Return the engine's motions by the demands of the equations; with `all` at every scale, else at the largest."""
+    if asked == MAX_ENGINE_MOTIONS:
+        return [ChosenMember(point.member, (ASKED_REASON,)) for point in points]
     top = max((point.member.scale for point in points), default=0.0)
-    chosen: list[Choice] = []
-    for own in group_by([point for point in points if point.member.scale == top], "member.structure").values():
+    chosen: list[ChosenMember] = []
+    for own in group_rows_by([point for point in points if point.member.scale == top], "member.structure").values():
         if isinstance(asked, tuple):
-            chosen += [Choice(point.member, (ASKED,)) for point in own if point.member.motion in asked]
+            chosen += [ChosenMember(point.member, (ASKED_REASON,)) for point in own if point.member.motion in asked]
             continue
         reasons: dict[int, list[str]] = {}
         for place, reason in _find_governing(own):
             reasons.setdefault(place, []).append(reason)
         if asked is not None:
             for place in sorted(range(len(own)), key=lambda place: -_largest_demand(own[place], "displacement")):
-                reasons.setdefault(place, [NEXT])
+                reasons.setdefault(place, [NEXT_LARGEST_REASON])
             reasons = dict(list(reasons.items())[:asked])
-        chosen += [Choice(own[place].member, tuple(why)) for place, why in reasons.items()]
+        chosen += [ChosenMember(own[place].member, tuple(why)) for place, why in reasons.items()]
     return chosen
 
 
-def _find_governing(points: Sequence[Point]) -> Iterator[tuple[int, str]]:
-    """Places of the motions that govern, and why."""
+def _find_governing(points: Sequence[MotionDemandsAtScale]) -> Iterator[tuple[int, str]]:
+    """Yield the index of each motion that governs, with the reason."""
     for quantity, reason in GOVERNING.items():
         values = [_largest_demand(point, quantity) for point in points]
         if max(values, default=-math.inf) > -math.inf:
@@ -101,16 +103,16 @@ def _find_governing(points: Sequence[Point]) -> Iterator[tuple[int, str]]:
     moved = np.array([_largest_demand(point, "displacement") for point in points])
     known = moved[moved > -math.inf]
     if len(known):
-        yield int(np.argmin(np.abs(moved - np.median(known)))), MEDIAN
+        yield int(np.argmin(np.abs(moved - np.median(known)))), MEDIAN_REASON
 
 
-def governing_motions(ensemble: EnsembleResult, structure: str) -> list[str]:
+def list_governing_motions(ensemble: EnsembleResult, structure: str) -> list[str]:
     """Return the motions of a structure that govern by the equations at the largest scale, each once."""
     found: dict[str, None] = {}
     for quantity in GOVERNING:
         values = [
             (number.value, motion)
-            for numbers in ensemble.values_by_body(structure, quantity, EXACT.key, ensemble.top).values()
+            for numbers in ensemble.values_by_body(structure, quantity, EXACT.key, ensemble.largest_scale).values()
             for motion, number in numbers.items()
             if number.value is not None
         ]
@@ -119,7 +121,7 @@ def governing_motions(ensemble: EnsembleResult, structure: str) -> list[str]:
     return list(found)
 
 
-def _largest_demand(point: Point, quantity: str) -> float:
-    """The demand of a motion, of a demand of bodies the largest; minus infinity without an answer."""
+def _largest_demand(point: MotionDemandsAtScale, quantity: str) -> float:
+    """Return the demand of a motion, the largest over the bodies if they have it; minus infinity without a value."""
     values = [number.value for (name, _), number in point.values.items() if name == quantity]
     return max((value for value in values if math.isfinite(value)), default=-math.inf)

@@ -1,11 +1,11 @@
-"""What a checker can compute by hand from the numbers of the report, beside what the report has."""
+"""Numbers that a checker can compute by hand from the report, compared with those in the report."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
-from comparison.analyses.ensemble.rows import floor_of, labels
+from comparison.analyses.ensemble.rows import label_structures, name_floor
 from comparison.analyses.ensemble.trust import in_percent
 from comparison.study.models import EXACT
 from comparison.wording import percent
@@ -14,7 +14,7 @@ from reference.problem import GRAVITY
 
 @dataclass(frozen=True)
 class HandCheck:
-    """A number by hand, or the range in which it must lie, beside that of the report; both in `unit`."""
+    """A number computed by hand, or its admissible range, compared with the number in the report, in `unit`."""
 
     what: str
     formula: str
@@ -25,13 +25,13 @@ class HandCheck:
 
     @property
     def by_hand(self) -> str:
-        """The number by hand, or its range."""
+        """Return the number computed by hand, or its range, in words."""
         ends = f"{self.low:.4g}", f"{self.high:.4g}"
         return f"{ends[0] if ends[0] == ends[1] else ' to '.join(ends)} {self.unit}"
 
     @property
     def verdict(self) -> str:
-        """How far the report is from the number by hand; of a range whether it is inside."""
+        """Return the deviation of the report from the number by hand, or whether it is inside the range."""
         if self.low == self.high:
             return f"{in_percent(self.found / self.low - 1.0)} %"
         if self.low <= self.found <= self.high:
@@ -39,7 +39,7 @@ class HandCheck:
         return f"outside by {percent(max(self.low - self.found, self.found - self.high) / self.found)}"
 
 
-def hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
+def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
     """Yield the checks that the numbers of a structure allow."""
     read = structure.building
     if read is None or not read.masses:
@@ -60,15 +60,15 @@ def hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[Hand
 
 
 def _check_base_shear(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
-    """Yield the base shear of the motion with the largest displacement: restoring force and friction."""
+    """Yield the check that base shear is restoring force plus friction in the motion of largest displacement."""
     read = structure.building
     assert read is not None
-    moved = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+    moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     known = {motion: each.value for motion, each in moved.items() if each.value is not None}
     if read.radius is None or len(read.friction) != 2 or not known:
         return
     motion = max(known, key=lambda name: known[name])
-    shear = ensemble.values_at_top(structure.name, "base_shear", None, EXACT.key)[motion].value
+    shear = ensemble.values_at_largest_scale(structure.name, "base_shear", None, EXACT.key)[motion].value
     angle = math.asin(known[motion] / read.radius)
     formula = (
         f"W tan φ to W (tan φ + {read.friction[1]:.3g}), sin φ = {1e3 * known[motion]:.4g} / {1e3 * read.radius:.4g}"
@@ -79,21 +79,21 @@ def _check_base_shear(ensemble: EnsembleResult, structure: Structure) -> Iterato
 
 
 def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
-    """Yield the drift of the top story: its shear over its stiffness, of which dampers carry a part."""
+    """Yield the check that the drift of the top story is its shear over its stiffness; dampers carry a part."""
     read, top = structure.building, structure.bodies
     assert read is not None
-    drift, shear = (ensemble.stripe(structure.name, name, top) for name in ("drift", "story_shear"))
+    drift, shear = (ensemble.find_demand(structure.name, name, top) for name in ("drift", "story_shear"))
     if drift is None or shear is None or not read.stiffness:
         return
-    drifts, force = (each.fractiles[1].value for each in (drift, shear))  # medians
-    (along_x, along_y), what = read.stiffness[-1], f"median drift below {floor_of(structure, top)}"
+    drifts, force = (each.fractiles[1].value for each in (drift, shear))  # medians over the motions
+    (along_x, along_y), what = read.stiffness[-1], f"median drift below {name_floor(structure, top)}"
     if along_x != along_y or not drifts or not force:
         return
     formula = f"median shear {force / 1e3:.4g} kN over {along_x / 1e6:.4g} MN/m; dampers carry the rest"
     yield HandCheck(what, formula, 1e3 * force / along_x, 1e3 * force / along_x, 1e3 * drifts, "mm")
 
 
-def check_rows(ensemble: EnsembleResult) -> list[tuple[str, HandCheck]]:
-    """Return every check with its bound."""
-    named = labels(ensemble)
-    return [(named[each.name], check) for each in ensemble.structures for check in hand_checks(ensemble, each)]
+def list_hand_check_rows(ensemble: EnsembleResult) -> list[tuple[str, HandCheck]]:
+    """Return every hand check with the bound of its structure."""
+    named = label_structures(ensemble)
+    return [(named[each.name], check) for each in ensemble.structures for check in list_hand_checks(ensemble, each)]

@@ -1,5 +1,5 @@
 """
-Limits on the demands of an ensemble, and its demands against those of a stored ensemble.
+Limits on the demands of an ensemble, and comparison of its demands with those of a stored ensemble.
 
 A limit is met where the demand is not beyond it by more than its numerical error. A demand is that of the stored
 ensemble where it differs by no more than a tolerance and both numerical errors. A demand that the engine alone has is
@@ -11,11 +11,11 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from comparison.analyses.ensemble.governing import governing_motions
-from comparison.analyses.ensemble.quantities import READ, title_of, unit_of_demand
-from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
-from comparison.analyses.ensemble.rows import labels, place_of
-from comparison.analyses.ensemble.sentences import motions_in_words
+from comparison.analyses.ensemble.governing import list_governing_motions
+from comparison.analyses.ensemble.quantities import DISPLAY_UNITS, demand_title, unit_of_demand
+from comparison.analyses.ensemble.result import DemandAtScale, EnsembleResult, LimitVerdict, Statistic, Structure
+from comparison.analyses.ensemble.rows import label_structures, locate_demand
+from comparison.analyses.ensemble.sentences import word_motion_count
 from comparison.study.models import EXACT
 from comparison.verdicts import (
     MET,
@@ -32,12 +32,12 @@ from reference.problem.acceptance import DemandLimits
 from reference.support.arguments import Range
 from reference.support.scene_error import printable
 
-KEY = "acceptance.demands."
-MEAN, LARGEST = "mean", "largest"
-SHARE = "base_shear"  # a limit on its share of the weight
-NAMED = 3  # motions that a reason names
-COUNTED = "stops"  # a number of events, of which a tolerance says nothing
-WITHIN = Range(0.0, 10.0)  # tolerance of a comparison with a stored ensemble
+LIMIT_KEY_PREFIX = "acceptance.demands."
+MEAN_STATISTIC, LARGEST_STATISTIC = "mean", "largest"
+WEIGHT_SHARE_KEY = "base_shear"  # demand whose limit is a share of the weight
+MAX_NAMED_MOTIONS = 3  # largest number of motions that a reason names
+EVENT_COUNT_KEY = "stops"  # demand that counts events, to which a relative tolerance does not apply
+STORED_TOLERANCE_RANGE = Range(0.0, 10.0)  # admissible relative tolerances of a comparison with a stored ensemble
 WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)
 NOT_COMPUTED = (
     "no model that was computed has it; the spatial engine has it without --engine 0, and needs supports, heights and "
@@ -71,7 +71,7 @@ class DemandCheck:
 
     @property
     def verdict(self) -> Verdict:
-        """Met, not met or not compared."""
+        """Return "met", "not met" or "not compared"."""
         if self.is_least and not self.reason:
             return NOT_MET
         return NOT_COMPARED if self.reason else judge_error(self.excess, self.allowed)
@@ -79,7 +79,7 @@ class DemandCheck:
 
 def word_check(check: DemandCheck) -> str:
     """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
-    unit, factor = READ["N"] if check.unit == "N" else (check.unit, 1.0)
+    unit, factor = DISPLAY_UNITS["N"] if check.unit == "N" else (check.unit, 1.0)
     found, stated = (
         "none" if value is None else f"{factor * value:.4g} {unit}".rstrip() for value in (check.found, check.stated)
     )
@@ -88,41 +88,41 @@ def word_check(check: DemandCheck) -> str:
     verdict += f" ({check.reason})" if check.reason else ""
     least = "at least " if check.is_least else ""
     verdict = verdict.replace("(by ", "(by more than ") if check.is_least else verdict
-    return f"{check.bound}: {check.what}: {least}{found}{under}, {_stated_in_words(check)} {stated}: {verdict}"
+    return f"{check.bound}: {check.what}: {least}{found}{under}, {_word_stated(check)} {stated}: {verdict}"
 
 
-def _stated_in_words(check: DemandCheck) -> str:
-    return "allowed" if check.key.startswith(KEY) else "stored"
+def _word_stated(check: DemandCheck) -> str:
+    return "allowed" if check.key.startswith(LIMIT_KEY_PREFIX) else "stored"
 
 
 def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
     """Return how many demands are met, then a line for every one that is not, the worst last."""
-    lines = [word_check(check) for check in sorted(checks, key=_order_of_check, reverse=True) if check.verdict != MET]
+    lines = [word_check(check) for check in sorted(checks, key=_rank_of_check, reverse=True) if check.verdict != MET]
     return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
 
 
-def verdicts_of(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
-    """Return the verdicts as file and page have them, in the order of the checks."""
+def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
+    """Return the verdicts as file and page show them, in the order of the checks."""
     return [LimitVerdict(check.key, check.bound, check.verdict, word_check(check)) for check in checks]
 
 
-def _order_of_check(check: DemandCheck) -> tuple[int, float, float]:
-    """Return the order of checks, the worst first: by the share of the stated number by which a demand is off."""
+def _rank_of_check(check: DemandCheck) -> tuple[int, float, float]:
+    """Return the rank of a check, worst first: by the excess as a share of the stated number."""
     share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
     return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
 
 
 def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -> list[DemandCheck]:
-    """Return the verdict on every limit of every structure, at the largest scale. limits: by name of the structure."""
+    """Return the verdict on every limit of every structure at the largest scale. limits: by name of the structure."""
     return [
-        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order_of_check)
+        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_rank_of_check)
         for structure in ensemble.structures
         if (stated := limits.get(structure.name)) is not None
         for key, limit in stated.limits_by_key().items()
     ]
 
 
-def limits_of(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
+def read_demand_limits(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
     """Return the limits that scenes state, by name of the structure."""
     stated = {name: scene.acceptance.demands for name, scene in scenes.items()}
     return {name: limits for name, limits in stated.items() if limits is not None}
@@ -131,7 +131,7 @@ def limits_of(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
 def _check_bodies(
     ensemble: EnsembleResult, structure: Structure, key: str, limit: float, statistic: str
 ) -> list[DemandCheck]:
-    """Return the check of a limit; of drift ratios that of every story."""
+    """Return the checks of a limit: one, or one for every story if it is on the drift ratio."""
     asked = structure.name, key
     bodies = list(dict.fromkeys(c.body for c in ensemble.curves if (c.structure, c.quantity) == asked))
     return [_check_body(ensemble, structure, key, body, limit, statistic) for body in bodies or [None]]
@@ -141,145 +141,155 @@ def _check_body(
     ensemble: EnsembleResult, structure: Structure, key: str, body: int | None, limit: float, statistic: str
 ) -> DemandCheck:
     """Return the check of a limit on one demand, over all motions that have it."""
-    values, model = _values_at_top(ensemble, structure.name, key, body)
+    values, model = _values_at_largest_scale(ensemble, structure.name, key, body)
     known = [
         (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
     ]
-    per = structure.weight if key == SHARE else 1.0
+    per = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
     of_engine = model not in ("", EXACT.key)
     governing = of_engine and len(values) < ensemble.motions
-    lacking = _lacking_governing(ensemble, structure, {motion for *_, motion in known}) if governing else ""
-    least, least_motion = _least_by_travel(ensemble, structure, key, statistic, values)
+    lacking = _explain_missing_governing(ensemble, structure, {motion for *_, motion in known}) if governing else ""
+    least, least_motion = _bound_displacement_by_travel(ensemble, structure, key, statistic, values)
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
     alone = model if of_engine else ""
-    on = _statistic_in_words(ensemble, statistic, count, alone, part=governing, governing=not lacking)
+    on = _word_statistic(ensemble, statistic, count, alone, part=governing, governing=not lacking)
     by = " by statics" if key == "support_force_max" and not of_engine else ""
     what = f"{_word_demand(structure, key, body)}{by}, {on}"
-    what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
-    about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
-    unit, ended = "" if key == SHARE else unit_of_demand(key), len(values) - len(known)
+    what += f" at scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 else ""
+    about: tuple[str, str, str] = f"{LIMIT_KEY_PREFIX}{key}", label_structures(ensemble)[structure.name], what
+    unit, ended = "" if key == WEIGHT_SHARE_KEY else unit_of_demand(key), len(values) - len(known)
     reason = f"{ended} {'motion has' if ended == 1 else 'motions have'} no value" if ended else lacking
     if is_least:
         return DemandCheck(*about, least, limit, least - limit, 0.0, unit, least_motion, is_least=True)
-    reason += f"; with the travel there at least {least:.4g} m" if statistic == MEAN and least > -math.inf else ""
+    reason += (
+        f"; with the travel there at least {least:.4g} m" if statistic == MEAN_STATISTIC and least > -math.inf else ""
+    )
     if not known:
         reason = reason if values else "heights of the bodies are needed" if key == "drift_ratio" else NOT_COMPUTED
         return DemandCheck(*about, None, limit, unit=unit, reason=reason)
-    value, error, motion = _mean_of(known) if statistic == MEAN and not governing else max(known)
+    value, error, motion = _compute_mean(known) if statistic == MEAN_STATISTIC and not governing else max(known)
     found, error = value / per, error / per
     excess = max(found - limit, 0.0)
-    if excess > error and statistic == LARGEST:  # whatever the others have
+    if excess > error and statistic == LARGEST_STATISTIC:  # The other motions can only make the largest value larger.
         reason = ""
-    elif excess > error and governing and not reason:  # the others can make the mean smaller
+    elif excess > error and governing and not reason:  # The motions that are missing could make the mean smaller.
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
     return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
 
 
 def _word_demand(structure: Structure, key: str, body: int | None) -> str:
-    """Return the demand that a limit is on, and its place."""
-    what = "base shear over the weight" if key == SHARE else title_of(key)
-    place = place_of(structure, key, body)
+    """Return the limited demand in words, with the body or story that has it."""
+    what = "base shear over the weight" if key == WEIGHT_SHARE_KEY else demand_title(key)
+    place = locate_demand(structure, key, body)
     return ", ".join(filter(None, [what, place])) if key == "acceleration" else f"{what} {place}".rstrip()
 
 
-def _mean_of(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
-    """Return mean value and mean error of values with their errors and motions, of no single motion."""
+def _compute_mean(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
+    """Return the mean of values and of their errors, without a motion that has it."""
     values, errors, _ = zip(*known)
     return sum(values) / len(known), sum(errors) / len(known), ""
 
 
-def _statistic_in_words(
+def _word_statistic(
     ensemble: EnsembleResult, statistic: str, known: int, model: str, part: bool, governing: bool
 ) -> str:
     """
-    Return the statistic and the motions that a limit is on.
+    Return in words the limited statistic and the motions that it is taken over.
 
     model: of the engine, where it alone has the demand. part: whether it computed a part of the motions; governing:
     those that govern among them.
     """
-    whole = motions_in_words(ensemble.motions)
+    whole = word_motion_count(ensemble.motions)
     if part:
         which = " (those that govern among them)" if governing else ""
-        on = ", for the mean" if statistic == MEAN else ""
+        on = ", for the mean" if statistic == MEAN_STATISTIC else ""
         return f"largest in the {known} of {whole} that the {model} engine computed{which}{on}"
     count = f"{known} of " if known < ensemble.motions else ""
     return f"{statistic} of {count}{whole}" + (f" by the {model} engine" if model else "")
 
 
-def _lacking_governing(ensemble: EnsembleResult, structure: Structure, computed: set[str]) -> str:
-    """Return why motions that the engine computed say nothing of the others; "" where those that govern are there."""
-    moved = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, computed: set[str]) -> str:
+    """Return why the engine's motions say nothing about the others; "" if all governing ones are computed."""
+    moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     if ended := [motion for motion, number in moved.items() if number.value is None]:
         return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
-    if lacking := [motion for motion in governing_motions(ensemble, structure.name) if motion not in computed]:
+    if lacking := [motion for motion in list_governing_motions(ensemble, structure.name) if motion not in computed]:
         return f"{_name_motions(lacking)} govern{'s' * (len(lacking) == 1)} by the equations: --engine all"
     return ""
 
 
 def _name_motions(motions: Sequence[str]) -> str:
-    return ", ".join(motions) if len(motions) <= NAMED else f"{len(motions)} motions"
+    return ", ".join(motions) if len(motions) <= MAX_NAMED_MOTIONS else f"{len(motions)} motions"
 
 
-def _least_by_travel(
+def _bound_displacement_by_travel(
     ensemble: EnsembleResult, structure: Structure, key: str, statistic: str, values: Mapping[str, Statistic]
 ) -> tuple[float, str]:
-    """Return the least that a displacement is as motions reached the travel, -inf if none did, and their names."""
+    """Return a lower bound on a displacement from the motions that reach the travel, or -inf, and their names."""
     travel = structure.building.travel if structure.building else None
-    stripe = ensemble.stripe(structure.name, "displacement")
+    stripe = ensemble.find_demand(structure.name, "displacement")
     ended = [motion for motion, number in values.items() if number.value is None]
     if key != "displacement" or travel is None or stripe is None or Outcome.TRAVEL_REACHED not in stripe.reasons:
         return -math.inf, ""
     alone = len(stripe.reasons) == 1
-    if statistic == LARGEST:
+    if statistic == LARGEST_STATISTIC:
         return travel, _name_motions(ended) if alone else ""
     if not alone:
         return -math.inf, ""
     return sum(travel if each.value is None else each.value for each in values.values()) / len(values), ""
 
 
-def _values_at_top(
+def _values_at_largest_scale(
     ensemble: EnsembleResult, structure: str, quantity: str, body: int | None
 ) -> tuple[dict[str, Statistic], str]:
-    """Return a demand at the largest scale by motion, and the model: the equations, or else what alone has it."""
+    """Return a demand by motion at the largest scale, and its model: the equations, or the only one that has it."""
     for model in (EXACT.key, ensemble.engine.model):
-        if values := ensemble.values_at_top(structure, quantity, body, model):
+        if values := ensemble.values_at_largest_scale(structure, quantity, body, model):
             return values, model
     return {}, ""
 
 
 def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within: float) -> list[DemandCheck]:
     """Return the verdict on mean and largest value of every demand by the equations against a stored ensemble."""
-    new, old = _stripes(ensemble), _stripes(stored)
-    named = {each.name: printable(each.name) for each in stored.structures} | labels(ensemble)
+    new, old = _demands_by_key(ensemble), _demands_by_key(stored)
+    named = {each.name: printable(each.name) for each in stored.structures} | label_structures(ensemble)
     return [
         check
         for place in dict.fromkeys([*old, *new])
-        for check in _compare_stripes(named, place, new.get(place), old.get(place), within)
+        for check in _compare_demands(named, place, new.get(place), old.get(place), within)
     ]
 
 
-Place = tuple[str, str, int | None, float]
+DemandKey = tuple[str, str, int | None, float]
 
 
-def _stripes(ensemble: EnsembleResult) -> dict[Place, Stripe]:
-    """Return the stripes of the equations by structure, demand, body and scale."""
+def _demands_by_key(ensemble: EnsembleResult) -> dict[DemandKey, DemandAtScale]:
+    """Return the demands by the equations, by structure, demand, body and scale."""
     return {
         (each.structure, each.quantity, each.body, each.scale): each
         for each in ensemble.stripes
-        if each.model == EXACT.key and each.quantity != COUNTED
+        if each.model == EXACT.key and each.quantity != EVENT_COUNT_KEY
     }
 
 
-def _compare_stripes(
-    named: Mapping[str, str], place: Place, new: Stripe | None, old: Stripe | None, within: float
+def _compare_demands(
+    named: Mapping[str, str], place: DemandKey, new: DemandAtScale | None, old: DemandAtScale | None, within: float
 ) -> Iterator[DemandCheck]:
-    """Return the checks of mean and largest value; none where both ensembles lack it."""
+    """Yield the checks of the mean and the largest value of a demand; none where both ensembles lack it."""
     structure, quantity, body, scale = place
-    for statistic in (MEAN, LARGEST):
-        sides = [None if each is None else each.mean if statistic == MEAN else each.largest for each in (new, old)]
+    for statistic in (MEAN_STATISTIC, LARGEST_STATISTIC):
+        sides = [
+            None if each is None else each.mean if statistic == MEAN_STATISTIC else each.largest for each in (new, old)
+        ]
         found, stated = (None if each is None else each.value for each in sides)
-        about = quantity, named[structure], f"{title_of(quantity, body)}, {statistic}, scale {scale:g}", found, stated
-        motion = new.largest_motion if new is not None and statistic == LARGEST else ""
+        about = (
+            quantity,
+            named[structure],
+            f"{demand_title(quantity, body)}, {statistic}, scale {scale:g}",
+            found,
+            stated,
+        )
+        motion = new.largest_motion if new is not None and statistic == LARGEST_STATISTIC else ""
         unit = unit_of_demand(quantity)
         if found is not None and stated is not None:
             errors = sum(each.error or 0.0 for each in sides if each is not None)

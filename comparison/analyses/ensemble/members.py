@@ -12,27 +12,27 @@ from reference.problem.families import BOUNDS
 from reference.problem.keys import range_of
 from reference.problem.tables import Record
 
-SCALE = "excitation.scale"
-RECORD = "excitation.record"
+SCALE_KEY = "excitation.scale"
+RECORD_KEY = "excitation.record"
 
 Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
-class Member:
-    """A scene of the ensemble and its place in it."""
+class EnsembleMember:
+    """One scene of the ensemble: a structure under a motion at a scale."""
 
-    structure: str  # file, and the values that run in it beside motion and scale
+    structure: str  # file name, with the values of varied keys other than motion and scale
     motion: str
-    scale: float  # scale of the ensemble; a factor of the motion itself comes on top
+    scale: float  # scale of the ensemble, which multiplies the motion's own factor
     scene: Scene
-    factor: float = 1.0  # factor of the motion, to a target spectrum
+    factor: float = 1.0  # factor that fits the motion to a target spectrum
 
 
 def with_suite(
     data: dict[str, Any], suite: str | Path, components: int | None = None, normalized: bool = False
 ) -> dict[str, Any]:
-    """Return the tables of a scene file with every motion of a suite as its loading, each as long as it is."""
+    """Return the scene file's tables with every motion of a suite as its loading, each over its full duration."""
     name = str(suite) if ":" in str(suite) else str(Path(suite).absolute())
     record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if normalized else {})
     record |= {} if components is None else {"components": components}
@@ -51,42 +51,42 @@ def _is_wrong_duration(value: Any) -> bool:
     return not (isinstance(value, dict) or (number and value in range_of(Scene, "duration")))
 
 
-def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
-    """The members of families. Raises SceneError unless every scene has a record and every file a name of its own."""
+def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
+    """Return the members of families. Raises SceneError unless each scene has a record and file names are unique."""
     names = [family.name for family in families]
     for name in names:
         if names.count(name) > 1:
             raise SceneError(name, "scene", name, "two files have this name, and the structures are named by it")
     members = []
     for family in families:
-        inner = [key for key in family.columns if key != SCALE and not key.startswith(RECORD)]
-        outer = [key for key in family.columns if key.startswith(RECORD)]
+        inner = [key for key in family.columns if key != SCALE_KEY and not key.startswith(RECORD_KEY)]
+        outer = [key for key in family.columns if key.startswith(RECORD_KEY)]
         for n, scene in enumerate(family.scenes):
             if not isinstance(scene.excitation, Record):
                 rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
-                raise SceneError(family.name, RECORD, None, rule)
-            values = ", ".join(_entry(family, key, n) for key in inner)
+                raise SceneError(family.name, RECORD_KEY, None, rule)
+            values = ", ".join(_word_varied_value(family, key, n) for key in inner)
             motion = ", ".join(family.labels[key][n] for key in outer) or scene.excitation.files
             structure = f"{family.name}[{values}]" if values else family.name
-            members.append(Member(structure, motion, float(scene.excitation.scale or 1.0), scene))
+            members.append(EnsembleMember(structure, motion, float(scene.excitation.scale or 1.0), scene))
     return tuple(members)
 
 
-def _entry(family: Family, key: str, n: int) -> str:
-    """What tells a structure apart by one key that runs."""
+def _word_varied_value(family: Family, key: str, n: int) -> str:
+    """Return the name and value of one varied key, which distinguishes a structure from others."""
     return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
-def refuse_unfit(members: Sequence[Member], model: Model) -> None:
-    """Raise SceneError if a scene does not state what the engine's model needs."""
+def refuse_scenes_without_model_data(members: Sequence[EnsembleMember], model: Model) -> None:
+    """Raise SceneError if a scene lacks data that the engine's model needs."""
     for scene in (member.scene for member in members):
         if model.is_spatial and not has_spatial_data(scene):
             rule = why_not_spatial(scene) or "has no supports, heights and sizes of bodies: --model translational"
             raise SceneError(scene.name, "--model", "spatial", rule)
 
 
-def group_by(rows: Iterable[Row], name: str) -> dict[Any, list[Row]]:
-    """The rows by one of their attributes, in the order in which its values come."""
+def group_rows_by(rows: Iterable[Row], name: str) -> dict[Any, list[Row]]:
+    """Return the rows grouped by one of their attributes, in the order in which its values occur."""
     groups: dict[Hashable, list[Row]] = {}
     for row in rows:
         groups.setdefault(attrgetter(name)(row), []).append(row)

@@ -1,4 +1,4 @@
-"""The page of an ensemble: building, motions, demands, supports, engine; it prints to A4 by the style of all pages."""
+"""Page of an ensemble: building, motions, demands, supports, engine; the style of all pages prints it on A4."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -7,19 +7,25 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from comparison.analyses.ensemble import panels, sentences
-from comparison.analyses.ensemble.hand_checks import check_rows
-from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of, unit_for_reading
+from comparison.analyses.ensemble.hand_checks import list_hand_check_rows
+from comparison.analyses.ensemble.quantities import FRACTILES, demand_title, display_unit, word_value
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import (
-    HEIGHTS,
-    demand_rows,
-    floor_of,
-    labels,
-    motion_heads,
-    motion_rows,
-    profile_rows,
+    PROFILE_QUANTITIES,
+    label_structures,
+    make_demand_rows,
+    make_motion_heads,
+    make_motion_rows,
+    make_profile_rows,
+    name_floor,
 )
-from comparison.analyses.ensemble.trust import COLUMNS, STATISTICS, extended_rows, trust_rows, trust_sentence
+from comparison.analyses.ensemble.trust import (
+    EXTRAPOLATED_STATISTICS,
+    MODEL_TITLES,
+    extrapolate_ratios,
+    make_trust_rows,
+    trust_sentence,
+)
 from comparison.report.page import lost_line, render_page, render_template
 from comparison.report.page_data import compress_to_text
 from comparison.report.panels import Panel
@@ -30,17 +36,17 @@ from comparison.verdicts import count_verdicts, word_counts
 from reference.problem import GRAVITY
 
 Context = Mapping[str, Any]
-Read = Callable[[EnsembleResult, LostParts], Context]
+ContextReader = Callable[[EnsembleResult, LostParts], Context]
 
 
 def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
-        "labels": labels(ensemble),
-        "floor_of": floor_of,
+        "labels": label_structures(ensemble),
+        "name_floor": name_floor,
         "isolator_sentence": sentences.isolator_sentence,
         "below_contact_sentence": sentences.below_contact_sentence,
         "plate_sentence": sentences.plate_sentence(ensemble.structures[0]),
-        "plans_of": sentences.plans_of,
+        "word_plan_sizes": sentences.word_plan_sizes,
         "not_modeled": sentences.NOT_MODELED,
     }
 
@@ -51,21 +57,21 @@ def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
         "target_sentence": sentences.target_sentence,
         "has_magnitudes": any(each.magnitude is not None for each in ensemble.suite),
         "gravity": GRAVITY,
-        "panels": draw_panels(panels.ground_panels(ensemble), lost),
+        "panels": draw_panels(panels.make_ground_panels(ensemble), lost),
     }
 
 
 def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
-        **heads_of_fractiles(),
-        "rows": demand_rows(ensemble, ensemble.top),
+        **fractile_heads_context(),
+        "rows": make_demand_rows(ensemble, ensemble.largest_scale),
         "definitions": sentences.DEFINITIONS,
         "outcomes_sentence": sentences.outcomes_sentence(ensemble),
         "missing": [
             *sentences.all_missing_sentences(ensemble),
             *filter(None, [sentences.travel_sentence(ensemble)]),
         ],
-        "panels": draw_panels(panels.isolator_panels(ensemble), lost),
+        "panels": draw_panels(panels.make_isolator_panels(ensemble), lost),
     }
 
 
@@ -76,13 +82,18 @@ def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     weight = ensemble.structures[0].weight
     tables = [
-        (f"{title_of(name)}, {unit_for_reading(name, weight)[0]}", profile_rows(ensemble, name, ensemble.top))
-        for name in HEIGHTS
+        (
+            f"{demand_title(name)}, {display_unit(name, weight)[0]}",
+            make_profile_rows(ensemble, name, ensemble.largest_scale),
+        )
+        for name in PROFILE_QUANTITIES
     ]
     return {
-        **heads_of_fractiles(),
+        **fractile_heads_context(),
         "tables": [(title, rows) for title, rows in tables if rows],
-        "panels": draw_panels([*panels.height_panels(ensemble), *panels.floor_spectra_panels(ensemble)], lost),
+        "panels": draw_panels(
+            [*panels.make_height_panels(ensemble), *panels.make_floor_spectra_panels(ensemble)], lost
+        ),
     }
 
 
@@ -92,8 +103,8 @@ def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
     loads = {each.name: each.building.support_loads for each in ensemble.structures if each.building}
     return {
-        "labels": labels(ensemble),
-        "text_of": text_of,
+        "labels": label_structures(ensemble),
+        "word_value": word_value,
         "rows": [
             (name, number, own[number - 1] if (own := loads.get(name)) else None, models)
             for (name, number), models in by_place.items()
@@ -101,31 +112,34 @@ def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
         "engine": ensemble.engine.model,
         "exact": EXACT.key,
         "support_sentences": sentences.support_sentences(ensemble),
-        "motions_of": partial(sentences.motions_of, ensemble),
+        "word_support_motions": partial(sentences.word_support_motions, ensemble),
     }
 
 
 def _motions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    return {"heads": motion_heads(ensemble), "rows": motion_rows(ensemble)}
+    return {"heads": make_motion_heads(ensemble), "rows": make_motion_rows(ensemble)}
 
 
 def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
-        "labels": labels(ensemble),
+        "labels": label_structures(ensemble),
         "engine_sentences": sentences.engine_sentences(ensemble),
         "trust_sentence": trust_sentence(ensemble),
-        "columns": {key: title for key, title in COLUMNS.items() if key != EXACT.key},
-        "rows": trust_rows(ensemble),
+        "columns": {key: title for key, title in MODEL_TITLES.items() if key != EXACT.key},
+        "rows": make_trust_rows(ensemble),
     }
 
 
-def _extended_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    return {"rows": list(extended_rows(ensemble)), "statistics": [name for name, _ in STATISTICS]}
+def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    return {"rows": list(extrapolate_ratios(ensemble)), "statistics": [name for name, _ in EXTRAPOLATED_STATISTICS]}
 
 
 def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    others = sorted((scale for scale in ensemble.scales if scale != ensemble.top), reverse=True)
-    return {**heads_of_fractiles(), "tables": [(f"scale {scale:g}", demand_rows(ensemble, scale)) for scale in others]}
+    others = sorted((scale for scale in ensemble.scales if scale != ensemble.largest_scale), reverse=True)
+    return {
+        **fractile_heads_context(),
+        "tables": [(f"scale {scale:g}", make_demand_rows(ensemble, scale)) for scale in others],
+    }
 
 
 def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
@@ -133,11 +147,11 @@ def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 class PagePart(NamedTuple):
-    """A section of the page: its name, title, what its template reads, and whether an ensemble has it."""
+    """Section of the page: its name, title, the function that fills its template, and whether an ensemble has it."""
 
     name: str
     title: str
-    read: Read
+    read: ContextReader
     is_shown: Callable[[EnsembleResult], bool] = lambda ensemble: True
 
 
@@ -149,7 +163,7 @@ PARTS = (
     PagePart("height", "Over the height", _height_context),
     PagePart("supports", "Support forces", _supports_context, lambda ensemble: bool(ensemble.supports)),
     PagePart("motions", "Demands of every motion", _motions_context),
-    PagePart("hand_checks", "Checks by hand", lambda ensemble, lost: {"rows": check_rows(ensemble)}),
+    PagePart("hand_checks", "Checks by hand", lambda ensemble, lost: {"rows": list_hand_check_rows(ensemble)}),
     PagePart(
         "trust",
         "How far the simple models can be trusted",
@@ -159,7 +173,7 @@ PARTS = (
     PagePart(
         "extended",
         "The engine’s ratios, extended to the suite",
-        _extended_context,
+        _extrapolated_ratios_context,
         lambda ensemble: 0 < len(ensemble.engine.motions) < ensemble.motions * len(ensemble.structures),
     ),
     PagePart("scales", "Demands at the other scales", _scales_context, lambda ensemble: len(ensemble.scales) > 1),
@@ -167,19 +181,19 @@ PARTS = (
 )
 
 
-def heads_of_fractiles() -> Context:
-    """Heads of the columns of fractiles."""
+def fractile_heads_context() -> Context:
+    """Return the heads of the fractile columns, as templates read them."""
     return {"shares": [f"{100.0 * share:.0f} %" for share in FRACTILES]}
 
 
 def draw_panels(makers: Sequence[Callable[[], Panel]], lost: LostParts) -> list[Panel]:
-    """The plots that can be drawn; each other one is a line."""
+    """Return the plots that can be drawn; each of the others becomes a line in `lost`."""
     found = (lost.attempt(f"plot {number}", make) for number, make in enumerate(makers, start=1))
     return [each for each in found if each is not None]
 
 
-def page_of(ensemble: EnsembleResult) -> str:
-    """Return index.html; a section or plot that raises is one line at its top and in its place."""
+def render_ensemble_page(ensemble: EnsembleResult) -> str:
+    """Return index.html; a section or plot that raises becomes a line at the top of the page and in its place."""
     lost = LostParts()
     parts = []
     for part in PARTS:
@@ -189,8 +203,8 @@ def page_of(ensemble: EnsembleResult) -> str:
         body = lost.attempt(what, partial(_render_part, part, ensemble, lost))
         section = Section(part.title, folded=False, name=part.name)
         parts.append((section, lost_line(lost.last) if body is None else body, ""))
-    heading = lost.attempt("heading", partial(sentences.heading, ensemble)) or "Demands under many motions"
-    began = str(ensemble.run.get("began", ""))  # in UTC
+    heading = lost.attempt("heading", partial(sentences.word_heading, ensemble)) or "Demands under many motions"
+    began = str(ensemble.run.get("began", ""))  # date and time in UTC
     context = {
         "heading": heading,
         "running": "; ".join(filter(None, [heading, began[:16].replace("T", " ") + " UTC" if began else ""])),

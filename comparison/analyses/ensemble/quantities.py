@@ -1,4 +1,4 @@
-"""The demands of an ensemble: which there are, in which words and units they are read, and their values by motion."""
+"""Demands of an ensemble: their names in words, their units, and their values by motion."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from reference.measures.peak_demands import QUANTITIES, list_demands
 from reference.measures.story_forces import heights_above_contact
 from reference.problem import GRAVITY, Scene
 
-Quantity = tuple[str, int]  # name, and body from 1 or 0 for the isolator
+Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the isolator
 
 SUPREMUM = "acceleration_supremum"
 DEMANDS: dict[str, tuple[str, str]] = {
@@ -18,7 +18,7 @@ DEMANDS: dict[str, tuple[str, str]] = {
     "story_shear": ("story shear", "N"),
     "overturning_moment": ("overturning moment", "N m"),
 }
-OF_BODY = {
+BODY_DEMAND_TITLES = {
     "acceleration": "acceleration of body {}, as integrated",
     SUPREMUM: "acceleration of body {}, literal supremum",
     "drift": "drift below body {}",
@@ -27,9 +27,9 @@ OF_BODY = {
     "overturning_moment": "overturning moment below body {}",
     "torsion": "rotation of body {}",
 }
-FRACTILES = (0.16, 0.5, 0.84)  # shares of the motions below a value
-SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
-READ = {
+FRACTILES = (0.16, 0.5, 0.84)  # share of the motions whose value lies below the fractile
+SMALLEST_IS_WORST = ("contact_force_min", "support_force_min")  # demands whose smallest value is the unfavorable one
+DISPLAY_UNITS = {
     "m": ("mm", 1e3),
     "N": ("kN", 1e-3),
     "N m": ("kN m", 1e-3),
@@ -37,48 +37,48 @@ READ = {
     "rad": ("mrad", 1e3),
     "m/s^2": ("g", 1.0 / GRAVITY),
 }
-UNSEEN = 5e-5  # share of a value: a smaller error is not seen in four digits
+HIDDEN_IN_FOUR_DIGITS = 5e-5  # An error below this share of its value does not show in four digits.
 
 
 def unit_of_demand(quantity: str) -> str:
-    """The SI unit of a demand; "" for a pure number."""
+    """Return the SI unit of a demand; "" for a pure number."""
     unit = DEMANDS[quantity][1]
     return "" if unit == "1" else unit
 
 
-def title_of(quantity: str, body: int | None = None) -> str:
-    """A demand in words."""
-    return OF_BODY[quantity].format(body) if body else DEMANDS[quantity][0]
+def demand_title(quantity: str, body: int | None = None) -> str:
+    """Return the name of a demand in words."""
+    return BODY_DEMAND_TITLES[quantity].format(body) if body else DEMANDS[quantity][0]
 
 
-def unit_for_reading(quantity: str, weight: float) -> tuple[str, float]:
-    """The unit in which a demand is read, and its factor; weight: of the structure, N."""
+def display_unit(quantity: str, weight: float) -> tuple[str, float]:
+    """Return the unit in which a demand is displayed, and its factor; weight: of the structure, N."""
     if quantity == "base_shear":
         return "% of the weight", 100.0 / weight
     if quantity.endswith("_share") or quantity == "drift_ratio":
         return "%", 100.0
     unit = unit_of_demand(quantity)
-    return READ.get(unit, (unit, 1.0))
+    return DISPLAY_UNITS.get(unit, (unit, 1.0))
 
 
-def text_of(value: float | None, error: float | None, factor: float) -> str:
-    """A value to four digits without power of ten, with its error where these digits show it."""
+def word_value(value: float | None, error: float | None, factor: float) -> str:
+    """Return a value with four digits and no power of ten, with its error where these digits show it."""
     if value is None:
         return "none"
     read = factor * value
     digits = f"{read:.4g}" if abs(read) < 1e4 else f"{float(f'{read:.4g}'):.0f}"
     if abs(read) < 1e-4:
         digits = "0" if read == 0.0 else f"{read:.1e}"
-    if error is None or factor * error <= UNSEEN * abs(read):
+    if error is None or factor * error <= HIDDEN_IN_FOUR_DIGITS * abs(read):
         return digits
     return f"{digits} ± {float(f'{factor * error:.1g}'):g}"
 
 
-def values_of_motion(
+def collect_demand_values(
     scene: Scene, demands: Demands, forces: StoryForces, resolved: Sequence[Estimate] = ()
 ) -> dict[Quantity, Estimate]:
     """
-    The demands of one motion by name and body.
+    Return the demands of one motion by name and body.
 
     Support forces of a model without single supports are those of statics (`story_forces`). resolved: accelerations as
     integrated of a motion whose `demands` have the literal suprema; none of a motion without suprema.

@@ -12,8 +12,8 @@ from comparison.study.models import EXACT
 from comparison.verdicts import Verdict
 from reference.problem.scene import MAX_BODIES
 
-FRACTILES = 3  # 16, 50 and 84 %
-FILE = "summary.json"
+FRACTILE_COUNT = 3  # number of fractiles: 16, 50 and 84 %
+RESULT_FILE = "summary.json"
 SCHEMA: Literal["phase-resonance/ensemble/4"] = "phase-resonance/ensemble/4"
 
 
@@ -74,7 +74,7 @@ class BuildingRead:
 
 @result
 class Structure:
-    """What the statistics are of: a file, or one of the values that run in it beside motion and scale."""
+    """One structure of the ensemble: a file, or a file with values of varied keys other than motion and scale."""
 
     name: Annotated[str, "name"]
     title: Annotated[str, "title of its scenes"]
@@ -91,7 +91,7 @@ class Structure:
 
 
 @result
-class Spectrum:
+class FloorSpectrumStatistics:
     """Floor spectrum of a body over all motions at the largest scale, by the equations; the larger of x and y."""
 
     structure: Annotated[str, "name"]
@@ -104,14 +104,14 @@ class Spectrum:
     largest: Annotated[Sequence[Statistic], "at every period, m/s^2"]
 
     def __post_init__(self) -> None:
-        require_size("fractiles", self.fractiles, FRACTILES)
+        require_size("fractiles", self.fractiles, FRACTILE_COUNT)
         for values in (self.mean, *self.fractiles, self.largest):
             require_size("mean, every fractile and largest", values, len(self.period))
 
 
 @result
-class Demand:
-    """What every number of an ensemble is of."""
+class DemandOfStructure:
+    """Key of a demand: structure, quantity and body."""
 
     structure: Annotated[str, "name"]
     quantity: Annotated[str, "demand"]
@@ -122,8 +122,8 @@ class Demand:
 
 
 @result
-class Stripe(Demand):
-    """A demand at one scale over all motions by one model."""
+class DemandAtScale(DemandOfStructure):
+    """Statistics over all motions of a demand at one scale by one model."""
 
     model: Annotated[str, "key of the model"]
     unit: Annotated[str, "SI; empty for a pure number"]
@@ -143,17 +143,17 @@ class Stripe(Demand):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_size("fractiles", self.fractiles, FRACTILES)
+        require_size("fractiles", self.fractiles, FRACTILE_COUNT)
 
     @property
     def statistics(self) -> tuple[Statistic, ...]:
-        """Mean, fractiles, largest and smallest."""
+        """Return the mean, the fractiles, the largest and the smallest value."""
         return self.mean, *self.fractiles, self.largest, self.smallest
 
 
 @result
-class DemandCurve(Demand):
-    """A demand of one motion over its scale factors."""
+class DemandCurve(DemandOfStructure):
+    """A demand of one motion at all of its scale factors."""
 
     model: Annotated[str, "key of the model"]
     motion: Annotated[str, "what runs beside the scale"]
@@ -186,7 +186,7 @@ class SupportExtremes:
 
 @result
 class EndedMotion:
-    """A motion by the equations with another outcome than ok."""
+    """A motion that the equations ended with an outcome other than ok."""
 
     structure: Annotated[str, "name"]
     motion: Annotated[str, "name"]
@@ -207,8 +207,8 @@ class ChosenMotion:
 
 
 @result
-class Engine:
-    """The engine and its motions; `curves` have their demands by every model."""
+class EngineMotions:
+    """Motions that the engine computed; `curves` have their demands by every model."""
 
     model: Annotated[str, "key of the model that gives the engine's demands"]
     motions: Annotated[Sequence[ChosenMotion], "by structure"]
@@ -237,8 +237,8 @@ class MatchedMotion:
 
 
 @result
-class Target:
-    """A target spectrum, 5 % damping."""
+class TargetSpectrum:
+    """A target spectrum at 5 % damping."""
 
     low: Annotated[float, "shortest period of the least squares, s"]
     high: Annotated[float, "longest period of the least squares, s"]
@@ -267,20 +267,20 @@ class LimitVerdict:
 
 @result
 class EnsembleResult:
-    """Content of the file."""
+    """Content of the file summary.json of an ensemble."""
 
     schema: Annotated[Literal["phase-resonance/ensemble/4"], "what the file is"]
     structures: Annotated[Sequence[Structure], "what the statistics are of"]
     scales: Annotated[Sequence[float], "scale factors"]
     motions: Annotated[int, "number of motions"]
     outcomes: Annotated[Mapping[str, int], "motions by the equations with every status"]
-    stripes: Sequence[Stripe]
+    stripes: Sequence[DemandAtScale]
     """by structure, demand and scale; by the equations, then by every model that computed every motion"""
     curves: Annotated[Sequence[DemandCurve], "by structure, demand, model and motion"]
-    spectra: Annotated[Sequence[Spectrum], "by structure and body"]
-    engine: Annotated[Engine, "the engine's motions"]
+    spectra: Annotated[Sequence[FloorSpectrumStatistics], "by structure and body"]
+    engine: Annotated[EngineMotions, "the engine's motions"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
-    target: Annotated[Target | None, "spectrum to which the motions are scaled; null without --target"] = None
+    target: Annotated[TargetSpectrum | None, "spectrum to which the motions are scaled; null without --target"] = None
     suite: Annotated[Sequence[GroundMotion], "the motions in their order"] = ()
     supports: Annotated[Sequence[SupportExtremes], "by model, structure and support"] = ()
     limits: Annotated[Sequence[LimitVerdict], "by structure; empty without [acceptance.demands] and --against"] = ()
@@ -292,7 +292,7 @@ class EnsembleResult:
         require(self.motions >= 1, f"motions must be at least 1, not {self.motions}")
         bodies = {each.name: each.bodies for each in self.structures}
         require(len(bodies) == len(self.structures), "structures must have different names")
-        named: list[Demand | Spectrum] = [*self.stripes, *self.curves, *self.spectra]
+        named: list[DemandOfStructure | FloorSpectrumStatistics] = [*self.stripes, *self.curves, *self.spectra]
         for each in named:
             name = each.structure[:40]
             require(each.structure in bodies, f"structure {name!r} is none of the structures")
@@ -302,33 +302,37 @@ class EnsembleResult:
             require(stripe.scale in self.scales, f"scale {stripe.scale:g} of a stripe is none of the scales")
 
     @property
-    def top(self) -> float:
-        """The largest scale, at which the demands are shown."""
+    def largest_scale(self) -> float:
+        """Return the largest scale, at which tables show the demands."""
         return max(self.scales)
 
-    def stripe(self, structure: str, quantity: str, body: int | None = None, model: str = EXACT.key) -> Stripe | None:
-        """Return one demand at the largest scale; None where it was not computed."""
-        asked = structure, quantity, body, model, self.top
+    def find_demand(
+        self, structure: str, quantity: str, body: int | None = None, model: str = EXACT.key
+    ) -> DemandAtScale | None:
+        """Return a demand at the largest scale; None where it was not computed."""
+        asked = structure, quantity, body, model, self.largest_scale
         return next((s for s in self.stripes if (s.structure, s.quantity, s.body, s.model, s.scale) == asked), None)
 
-    def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
-        """Return the stripes of one demand of the isolator over the scales, by the equations, or else by the engine."""
+    def list_demands_over_scales(self, structure: str, quantity: str) -> list[DemandAtScale]:
+        """Return a demand of the isolator at every scale by the equations, or else by the engine."""
         own = [each for each in self.stripes if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key] or own
 
-    def profile(self, structure: str, quantity: str, scale: float | None = None) -> list[Stripe]:
-        """Return one demand of every body by the equations, at the largest scale or at another."""
-        asked = structure, quantity, EXACT.key, self.top if scale is None else scale
+    def list_demands_of_bodies(self, structure: str, quantity: str, scale: float | None = None) -> list[DemandAtScale]:
+        """Return a demand of every body by the equations, at the largest scale or another."""
+        asked = structure, quantity, EXACT.key, self.largest_scale if scale is None else scale
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
-    def curves_of(self, structure: str, quantity: str, model: str = EXACT.key) -> list[DemandCurve]:
+    def list_demand_curves(self, structure: str, quantity: str, model: str = EXACT.key) -> list[DemandCurve]:
         """Return the curves of one demand of the isolator by one model."""
         asked = structure, quantity, model
         return [each for each in self.curves if (each.structure, each.quantity, each.model) == asked]
 
-    def values_at_top(self, structure: str, quantity: str, body: int | None, model: str) -> dict[str, Statistic]:
-        """Return one demand at the largest scale by motion, by one model."""
-        return self.values_by_body(structure, quantity, model, self.top).get(body, {})
+    def values_at_largest_scale(
+        self, structure: str, quantity: str, body: int | None, model: str
+    ) -> dict[str, Statistic]:
+        """Return one demand by motion at the largest scale, by one model."""
+        return self.values_by_body(structure, quantity, model, self.largest_scale).get(body, {})
 
     def values_by_body(
         self, structure: str, quantity: str, model: str, scale: float
@@ -343,4 +347,4 @@ class EnsembleResult:
         return found
 
 
-STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")
+STORED = StoredFile(RESULT_FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")

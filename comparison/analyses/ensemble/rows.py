@@ -1,4 +1,4 @@
-"""The tables of demands, as page and terminal show them: every bound, then the envelope of all."""
+"""Rows of the tables of demands for page and terminal: every bound, then the envelope of all bounds."""
 
 import math
 import re
@@ -6,8 +6,15 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, SUPREMUM, text_of, unit_for_reading
-from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
+from comparison.analyses.ensemble.quantities import (
+    DISPLAY_UNITS,
+    FRACTILES,
+    SMALLEST_IS_WORST,
+    SUPREMUM,
+    display_unit,
+    word_value,
+)
+from comparison.analyses.ensemble.result import DemandAtScale, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL
@@ -15,93 +22,89 @@ from reference.measures import Estimate
 from reference.problem import GRAVITY, Outcome
 
 ENVELOPE = "envelope"
-NOT_EVERYWHERE = "not at every place"  # why a motion has no largest value over the bodies
-NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
-HEIGHTS = (
-    "acceleration",
-    SUPREMUM,
-    "drift",
-    "drift_ratio",
-    "story_shear",
-    "overturning_moment",
-)  # shown over the height
-PLATFORM = 1
-SHORT = 8  # letters of a bound that stand below every cell of an envelope
-WORST = 4  # column of the worst value, behind mean and fractiles
+# Reason why a motion has no largest value over the bodies: one of them has no value
+MISSING_AT_A_BODY = "not at every place"
+NOT_OF_ALL_MOTIONS = "–"  # text for a statistic over all motions where some motions lack the demand
+# Demands that are plotted over the height
+PROFILE_QUANTITIES = "acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment"
+PLATFORM_BODY = 1
+MAX_BOUND_LETTERS = 8  # Names of bounds of up to so many letters appear below every cell of an envelope.
+WORST_COLUMN = 4  # index of the column of the worst value, after mean and fractiles
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A demand of the table. bodies: of every motion the largest over these; none for a demand of the isolator."""
+class DemandColumn:
+    """A demand in the table. bodies: of which the largest value of every motion counts; "" for the isolator."""
 
     name: str
     quantity: str
-    bodies: str = ""  # "", "platform", "floors"
-    unit: str = ""  # in place of that in which the demand is read
+    bodies: str = ""  # "" for the isolator, "platform", or "floors"
+    unit: str = ""  # display unit, "" for the usual one of the quantity
 
 
-MAIN = (
-    Shown("isolator displacement", "displacement"),
-    Shown("support displacement, with torsion", "support_displacement"),
-    Shown("displacement over travel", "travel_share"),
-    Shown("base shear", "base_shear", unit="kN"),
-    Shown("base shear over weight", "base_shear", unit="%"),
-    Shown("platform acceleration, as integrated", "acceleration", "platform"),
-    Shown("platform acceleration, literal supremum", SUPREMUM, "platform"),
-    Shown("floor acceleration, as integrated", "acceleration", "floors"),
-    Shown("floor acceleration, literal supremum", SUPREMUM, "floors"),
-    Shown("largest drift", "drift", "floors"),
-    Shown("largest drift ratio", "drift_ratio", "floors"),
-    Shown("overturning moment at the isolator", "overturning_moment", "platform"),
-    Shown("largest support force", "support_force_max"),
-    Shown("smallest support force", "support_force_min"),
-    Shown("uplift of a support", "uplift"),
-    Shown("residual displacement", "residual"),
+MAIN_TABLE_COLUMNS = (
+    DemandColumn("isolator displacement", "displacement"),
+    DemandColumn("support displacement, with torsion", "support_displacement"),
+    DemandColumn("displacement over travel", "travel_share"),
+    DemandColumn("base shear", "base_shear", unit="kN"),
+    DemandColumn("base shear over weight", "base_shear", unit="%"),
+    DemandColumn("platform acceleration, as integrated", "acceleration", "platform"),
+    DemandColumn("platform acceleration, literal supremum", SUPREMUM, "platform"),
+    DemandColumn("floor acceleration, as integrated", "acceleration", "floors"),
+    DemandColumn("floor acceleration, literal supremum", SUPREMUM, "floors"),
+    DemandColumn("largest drift", "drift", "floors"),
+    DemandColumn("largest drift ratio", "drift_ratio", "floors"),
+    DemandColumn("overturning moment at the isolator", "overturning_moment", "platform"),
+    DemandColumn("largest support force", "support_force_max"),
+    DemandColumn("smallest support force", "support_force_min"),
+    DemandColumn("uplift of a support", "uplift"),
+    DemandColumn("residual displacement", "residual"),
 )
 
 
-OF_MOTION = ("displacement", "base_shear", "acceleration", "drift_ratio", "support_force_max", "support_force_min",
-             "residual")  # fmt: skip
+MOTION_TABLE_QUANTITIES = (
+    "displacement", "base_shear", "acceleration", "drift_ratio", "support_force_max", "support_force_min", "residual"
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class DemandRow:
-    """One line of a table: a demand of one bound, or the envelope."""
+    """One row of a table: a demand of one bound, or the envelope of all bounds."""
 
     name: str
     unit: str
     bound: str
-    where: str  # of the worst value
-    cells: tuple[str, ...]  # mean, fractiles, the worst value
-    motion: str  # of the worst value
-    motions: str  # how many have the demand, of how many
-    is_first: bool = True  # begins a demand
-    bounds: tuple[str, ...] = ()  # of the cells of an envelope, where their names are short
+    where: str  # body that has the worst value
+    cells: tuple[str, ...]  # texts of mean, fractiles and worst value
+    motion: str  # motion that has the worst value
+    motions: str  # number of motions that have the demand, and of all motions
+    is_first: bool = True  # whether this is the first row of its demand
+    bounds: tuple[str, ...] = ()  # bounds that govern the cells of an envelope, if their names are short
 
     @property
     def every_bound(self) -> str:
-        """The bound of all cells of an envelope; "" where they are of several."""
+        """Return the bound that governs all cells of an envelope; "" where several do."""
         return self.bounds[0] if len({*self.bounds}) == 1 else ""
 
 
 @dataclass(frozen=True)
-class Told:
+class DemandSummary:
     """
-    What can be told of a demand of a structure: mean, fractiles and worst value over the motions.
+    Mean, fractiles and worst value of a demand of a structure over the motions, with marks for bounds.
 
     marks: of each, "" of what is known, "≥ " or "≤ " before what is a bound of it, " (of 3)" behind a mean of the
     motions that have the demand. motion: of the worst value.
     """
 
     structure: Structure
-    stripe: Stripe
+    stripe: DemandAtScale
     numbers: tuple[Statistic, ...]
     marks: tuple[str, ...]
     motion: str
 
 
-def labels(ensemble: EnsembleResult) -> dict[str, str]:
-    """Return what tells the structures apart, by their names: of those of one file the values in which they differ."""
+def label_structures(ensemble: EnsembleResult) -> dict[str, str]:
+    """Return the label of each structure by name; for structures of one file it states the values that differ."""
     names = [each.name for each in ensemble.structures]
     files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
     parts = [re.split(r", |\+(?!\d)", text) for text in values]
@@ -110,23 +113,23 @@ def labels(ensemble: EnsembleResult) -> dict[str, str]:
     return dict(zip(names, (", ".join(row) for row in zip(*columns)) if alike else names))
 
 
-def floor_of(structure: Structure, body: int) -> str:
-    """Name of a body as the scene gives it, or its number."""
+def name_floor(structure: Structure, body: int) -> str:
+    """Return the name of a body as the scene gives it, or its number."""
     names = structure.building.floors if structure.building else ()
     given = names[body - 1] if body <= len(names) else ""
-    return given or ("platform" if body == PLATFORM else f"body {body}")
+    return given or ("platform" if body == PLATFORM_BODY else f"body {body}")
 
 
-def place_of(structure: Structure, quantity: str, body: int | None) -> str:
-    """Where a demand of a body is: at its floor, or in the story below it."""
+def locate_demand(structure: Structure, quantity: str, body: int | None) -> str:
+    """Return where a demand of a body acts: at its floor, or in the story below it."""
     if body is None:
         return ""
     if quantity in ("acceleration", SUPREMUM):
-        return floor_of(structure, body)
-    return "isolator" if body == PLATFORM else f"below {floor_of(structure, body)}"
+        return name_floor(structure, body)
+    return "isolator" if body == PLATFORM_BODY else f"below {name_floor(structure, body)}"
 
 
-def find_largest_of_motions(
+def find_largest_over_bodies_by_motion(
     ensemble: EnsembleResult,
     structure: str,
     quantity: str,
@@ -135,7 +138,7 @@ def find_largest_of_motions(
     bodies: Collection[int | None] | None = None,
 ) -> dict[str, tuple[Estimate, int | None]]:
     """
-    The largest value of a demand over the bodies, of every motion by one model, and the body that has it.
+    Return for every motion by one model the largest value of a demand over bodies, and the body that has it.
 
     NaN where a body has none. bodies: over these; over all without it.
     """
@@ -144,11 +147,11 @@ def find_largest_of_motions(
         for motion, each in numbers.items() if bodies is None or body in bodies else ():
             value, error = (math.nan if part is None else part for part in (each.value, each.error))
             found.setdefault(motion, []).append((Estimate(value, error), body))
-    return {motion: _find_largest_place(places) for motion, places in found.items()}
+    return {motion: _find_largest_over_bodies(places) for motion, places in found.items()}
 
 
-def _find_largest_place(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
-    """The largest of numbers with its place; its error is its largest change within all errors."""
+def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
+    """Return the largest number with its body; its error is its largest change within all errors."""
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)
@@ -156,143 +159,156 @@ def _find_largest_place(places: Sequence[tuple[Estimate, int | None]]) -> tuple[
     return Estimate(number.value, max(high - number.value, number.value - low)), body
 
 
-def summarize_over_bodies(ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float) -> Stripe | None:
-    """Statistics of the largest value of every motion over the bodies; the body is that of the largest of all."""
-    own = ensemble.profile(structure.name, quantity, scale)
-    largest = find_largest_of_motions(ensemble, structure.name, quantity, EXACT.key, scale)
+def summarize_over_bodies(
+    ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float
+) -> DemandAtScale | None:
+    """Return the statistics of each motion's largest value over the bodies, with the body of the largest of all."""
+    own = ensemble.list_demands_of_bodies(structure.name, quantity, scale)
+    largest = find_largest_over_bodies_by_motion(ensemble, structure.name, quantity, EXACT.key, scale)
     if not own or not largest:
         return None
     reasons = dict(min(own, key=lambda stripe: stripe.answered).reasons)
     lost = sum(not math.isfinite(number.value) for number, _ in largest.values())
     if (more := lost - sum(reasons.values())) > 0:
-        reasons[NOT_EVERYWHERE] = more
+        reasons[MISSING_AT_A_BODY] = more
     about = structure.name, quantity, None, EXACT.key, own[0].unit, scale
     found = summarize_motions(about, {motion: number for motion, (number, _) in largest.items()}, reasons)
     motion = found.largest_motion or found.known_motion
     return replace(found, body=largest[motion][1]) if motion else found
 
 
-def demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
-    """The main table at a scale: every demand of every bound, then its envelope."""
+def make_demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
+    """Return the main table at a scale: every demand of every bound, then its envelope."""
     rows: list[DemandRow] = []
-    for shown in MAIN:
-        rows += _rows_of(ensemble, shown, partial(stripe_of, ensemble, shown, scale), scale)
+    for shown in MAIN_TABLE_COLUMNS:
+        rows += _make_rows(ensemble, shown, partial(statistics_of_column, ensemble, shown, scale), scale)
     return rows
 
 
-def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[DemandRow]:
-    """A demand of every body from the top down."""
+def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[DemandRow]:
+    """Return the rows of a demand by body, from the top body down to the platform."""
     rows: list[DemandRow] = []
     for body in range(max(each.bodies for each in ensemble.structures), 0, -1):
 
-        def read_body(structure: Structure, body: int = body) -> Stripe | None:
-            own = ensemble.profile(structure.name, quantity, scale)
+        def read_body(structure: Structure, body: int = body) -> DemandAtScale | None:
+            own = ensemble.list_demands_of_bodies(structure.name, quantity, scale)
             return next((each for each in own if each.body == body), None)
 
         found = next((each for each in ensemble.structures if each.bodies >= body), None)
-        name = "" if found is None else place_of(found, quantity, body)
-        rows += _rows_of(ensemble, Shown(name, quantity), read_body, scale)
+        name = "" if found is None else locate_demand(found, quantity, body)
+        rows += _make_rows(ensemble, DemandColumn(name, quantity), read_body, scale)
     return rows
 
 
-def _select_of_motion(ensemble: EnsembleResult) -> list[Shown]:
-    """The demands of single motions that any structure has; base shears in kN, largest of the floors or stories."""
+def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
+    """Return the demand columns of the table of motions: base shear in kN, demands of bodies as their largest."""
     known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
-    return [next(each for each in reversed(MAIN) if _is_of_motion(each, name)) for name in OF_MOTION if name in known]
+    return [
+        next(each for each in reversed(MAIN_TABLE_COLUMNS) if _is_motion_column(each, name))
+        for name in MOTION_TABLE_QUANTITIES
+        if name in known
+    ]
 
 
-def _is_of_motion(shown: Shown, quantity: str) -> bool:
+def _is_motion_column(shown: DemandColumn, quantity: str) -> bool:
     return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
 
 
-def motion_heads(ensemble: EnsembleResult) -> list[str]:
-    """Heads of the demands in `motion_rows`, with their units."""
+def make_motion_heads(ensemble: EnsembleResult) -> list[str]:
+    """Return the heads of the demand columns of `make_motion_rows`, with their units."""
     first = ensemble.structures[0]
-    return [f"{each.name}, {unit_of_row(each, first)[0]}" for each in _select_of_motion(ensemble)]
+    return [f"{each.name}, {unit_of_column(each, first)[0]}" for each in _select_motion_columns(ensemble)]
 
 
-def motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
-    """Motion, bound, demands by the equations at the largest scale and outcome, of every motion of every bound."""
-    named, rows = labels(ensemble), []
+def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
+    """Return motion, bound, demands by the equations at the largest scale, and outcome, by bound and motion."""
+    named, rows = label_structures(ensemble), []
     ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
     for structure in ensemble.structures:
         columns = []
-        for shown in _select_of_motion(ensemble):
-            numbers, factor = read_values(ensemble, structure, shown, EXACT.key), unit_of_row(shown, structure)[1]
+        for shown in _select_motion_columns(ensemble):
+            numbers, factor = (
+                read_column_values(ensemble, structure, shown, EXACT.key),
+                unit_of_column(shown, structure)[1],
+            )
             columns.append({
-                motion: text_of(finite_or_none(number.value), None, factor)
+                motion: word_value(finite_or_none(number.value), None, factor)
                 for motion, (number, _) in numbers.items()
             })  # fmt: skip
         for motion in dict.fromkeys(motion for column in columns for motion in column):
-            outcome = ended.get((structure.name, motion, ensemble.top), Outcome.OK.value)
+            outcome = ended.get((structure.name, motion, ensemble.largest_scale), Outcome.OK.value)
             cells = [column.get(motion, "none") for column in columns]
             rows.append((motion, named[structure.name], cells, outcome))
     return rows
 
 
-def _rows_of(
-    ensemble: EnsembleResult, shown: Shown, read: Callable[[Structure], Stripe | None], scale: float
+def _make_rows(
+    ensemble: EnsembleResult, shown: DemandColumn, read: Callable[[Structure], DemandAtScale | None], scale: float
 ) -> Iterator[DemandRow]:
-    """The lines of one demand."""
-    named, found = labels(ensemble), []
+    """Yield the rows of one demand."""
+    named, found = label_structures(ensemble), []
     for structure in ensemble.structures:
         stripe = read(structure)
         if stripe is not None:
-            found.append(tell(structure, stripe))
+            found.append(summarize_demand(structure, stripe))
             yield _demand_row(shown, named[structure.name], found[-1], is_first=len(found) == 1)
-    if not found and scale == ensemble.top:
-        yield from _engine_rows(ensemble, shown)
+    if not found and scale == ensemble.largest_scale:
+        yield from _make_engine_rows(ensemble, shown)
     if len(found) > 1:
         yield _envelope_row(shown, found, named)
 
 
-def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
-    """The statistics of a demand of a structure; over several bodies those of the largest value of every motion."""
+def statistics_of_column(
+    ensemble: EnsembleResult, shown: DemandColumn, scale: float, structure: Structure
+) -> DemandAtScale | None:
+    """Return the statistics of a demand of a structure; over several bodies, of each motion's largest value."""
     if shown.bodies == "floors":
         return summarize_over_bodies(ensemble, structure, shown.quantity, scale)
-    own = ensemble.profile(structure.name, shown.quantity, scale)
+    own = ensemble.list_demands_of_bodies(structure.name, shown.quantity, scale)
     if shown.bodies:
-        return next((each for each in own if each.body == PLATFORM), None)
-    if not own and scale == ensemble.top:
-        return ensemble.stripe(structure.name, shown.quantity, None, SPATIAL.key)
+        return next((each for each in own if each.body == PLATFORM_BODY), None)
+    if not own and scale == ensemble.largest_scale:
+        return ensemble.find_demand(structure.name, shown.quantity, None, SPATIAL.key)
     return own[0] if own else None
 
 
-def read_values(
-    ensemble: EnsembleResult, structure: Structure, shown: Shown, model: str
+def read_column_values(
+    ensemble: EnsembleResult, structure: Structure, shown: DemandColumn, model: str
 ) -> dict[str, tuple[Estimate, int | None]]:
-    """A demand of the table at the largest scale by motion, by one model, and the body that has it."""
-    bodies = {"": (None,), "platform": (PLATFORM,)}.get(shown.bodies)
-    return find_largest_of_motions(ensemble, structure.name, shown.quantity, model, ensemble.top, bodies)
+    """Return a demand at the largest scale by motion and by one model, with the body that has it."""
+    bodies = {"": (None,), "platform": (PLATFORM_BODY,)}.get(shown.bodies)
+    return find_largest_over_bodies_by_motion(
+        ensemble, structure.name, shown.quantity, model, ensemble.largest_scale, bodies
+    )
 
 
-def unit_of_row(shown: Shown, structure: Structure) -> tuple[str, float]:
-    """The unit in which a row is read, and its factor."""
+def unit_of_column(shown: DemandColumn, structure: Structure) -> tuple[str, float]:
+    """Return the display unit of a demand and its factor."""
     if shown.unit == "kN":
-        return READ["N"]
+        return DISPLAY_UNITS["N"]
     if shown.unit == "%":
         return "%", 100.0 / structure.weight
-    return unit_for_reading(shown.quantity, structure.weight)
+    return display_unit(shown.quantity, structure.weight)
 
 
-def worst_of(stripe: Stripe) -> tuple[Statistic, str]:
-    """The largest value over the motions and its motion; of a smallest force the smallest."""
-    if stripe.quantity in SMALLEST:
+def find_worst_value_and_motion(stripe: DemandAtScale) -> tuple[Statistic, str]:
+    """Return the worst value over the motions, largest or (for smallest forces) smallest, and its motion."""
+    if stripe.quantity in SMALLEST_IS_WORST:
         return stripe.smallest, stripe.smallest_motion
     return stripe.largest, stripe.largest_motion
 
 
-def tell(structure: Structure, stripe: Stripe) -> Told:
+def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSummary:
     """
-    Return what can be told of a demand of which motions have no value.
+    Return the statistics of a demand; where motions have no value, as bounds.
 
     The worst value is at least that of the motions that have one. A displacement under a motion that reached the
     travel is at least the travel.
     """
-    worst, motion = worst_of(stripe)
+    worst, motion = find_worst_value_and_motion(stripe)
     numbers = [stripe.mean, *stripe.fractiles, worst]
     if not stripe.known:
-        return Told(structure, stripe, tuple(numbers), ("",) * len(numbers), motion)
+        return DemandSummary(structure, stripe, tuple(numbers), ("",) * len(numbers), motion)
     mean, worst = stripe.known
     limit = {"displacement": structure.building and structure.building.travel, "travel_share": 1.0}.get(stripe.quantity)
     if limit and {*stripe.reasons} == {Outcome.TRAVEL_REACHED.value}:
@@ -300,54 +316,62 @@ def tell(structure: Structure, stripe: Stripe) -> Told:
         least = ((mean.value or 0.0) * stripe.answered + limit * lost) / count
         reached = Statistic(limit, None)
         numbers = [Statistic(least, mean.error), *(reached if n.value is None else n for n in numbers[1:-1]), reached]
-        return Told(structure, stripe, tuple(numbers), _marks("≥ ", stripe), "")
-    bound = "≤ " if stripe.quantity in SMALLEST else "≥ "
+        return DemandSummary(structure, stripe, tuple(numbers), _bound_marks("≥ ", stripe), "")
+    bound = "≤ " if stripe.quantity in SMALLEST_IS_WORST else "≥ "
     numbers = [mean, *numbers[1:-1], worst]
-    return Told(structure, stripe, tuple(numbers), (f" (of {stripe.answered})", *("",) * 3, bound), stripe.known_motion)
+    return DemandSummary(
+        structure, stripe, tuple(numbers), (f" (of {stripe.answered})", *("",) * 3, bound), stripe.known_motion
+    )
 
 
-def _marks(mark: str, stripe: Stripe) -> tuple[str, ...]:
-    """Return a mark for mean and worst value, and for the fractiles that have no value of their own."""
+def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
+    """Return the mark for mean and worst value, and for each fractile without a value of its own."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 
-def with_mark(text: str, mark: str) -> str:
-    """Return the text of a number with its mark; that of no number alone."""
-    return text if text in ("none", NOT_ALL) else f"{text}{mark}" if mark.startswith(" ") else f"{mark}{text}"
+def add_mark(text: str, mark: str) -> str:
+    """Return the text of a number with its mark; a text without a number stays as it is."""
+    return (
+        text if text in ("none", NOT_OF_ALL_MOTIONS) else f"{text}{mark}" if mark.startswith(" ") else f"{mark}{text}"
+    )
 
 
-def _demand_row(shown: Shown, bound: str, told: Told, is_first: bool) -> DemandRow:
+def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: bool) -> DemandRow:
     structure, stripe = told.structure, told.stripe
-    unit, factor = unit_of_row(shown, structure)
+    unit, factor = unit_of_column(shown, structure)
     count = stripe.answered + sum(stripe.reasons.values())
     motions = str(count) if stripe.answered == count else f"{stripe.answered} of {count}"
     motions += "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
-    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
+    where = locate_demand(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
     cells = tuple(
-        with_mark(cell_of(each, factor, column, count, stripe.quantity), mark)
+        add_mark(word_cell(each, factor, column, count, stripe.quantity), mark)
         for column, (each, mark) in enumerate(zip(told.numbers, told.marks))
     )
     return DemandRow(shown.name, unit, bound, where, cells, told.motion, motions, is_first)
 
 
-def cell_of(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
+def word_cell(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
     """
-    The text of a cell: mean, fractiles, worst value, of so many motions; the fractiles without their errors.
+    Return the text of a cell (mean, fractile or worst value of so many motions); fractiles have no error.
 
     Of few motions a fractile lies beyond the outermost of them, and is left out: 16 % of three, but not of four.
     """
-    if column in (0, WORST):
-        text = text_of(number.value, number.error, factor)
-        return f"{text} (smallest)" if column == WORST and quantity in SMALLEST and number.value is not None else text
+    if column in (0, WORST_COLUMN):
+        text = word_value(number.value, number.error, factor)
+        return (
+            f"{text} (smallest)"
+            if column == WORST_COLUMN and quantity in SMALLEST_IS_WORST and number.value is not None
+            else text
+        )
     share = FRACTILES[column - 1]
     if not 0.5 / motions <= share <= 1.0 - 0.5 / motions:
-        return NOT_ALL
-    return text_of(number.value, None, factor)
+        return NOT_OF_ALL_MOTIONS
+    return word_value(number.value, None, factor)
 
 
-def _envelope_row(shown: Shown, found: Sequence[Told], named: dict[str, str]) -> DemandRow:
-    """The worst of all bounds in every statistic; a bound of it where that of a structure is not known."""
-    sign, bound = (-1.0, "≤ ") if shown.quantity in SMALLEST else (1.0, "≥ ")
+def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: dict[str, str]) -> DemandRow:
+    """Return the row of the worst bound in every statistic; it is a bound where one of a structure is unknown."""
+    sign, bound = (-1.0, "≤ ") if shown.quantity in SMALLEST_IS_WORST else (1.0, "≥ ")
     cells, bounds, at = [], [], found[0]
     for column in range(len(at.numbers)):
         known = [each for each in found if each.numbers[column].value is not None]
@@ -355,42 +379,49 @@ def _envelope_row(shown: Shown, found: Sequence[Told], named: dict[str, str]) ->
             cells.append("none")
             continue
 
-        def size(told: Told, column: int = column) -> float:
-            return sign * unit_of_row(shown, told.structure)[1] * (told.numbers[column].value or 0.0)
+        def size(told: DemandSummary, column: int = column) -> float:
+            return sign * unit_of_column(shown, told.structure)[1] * (told.numbers[column].value or 0.0)
 
         at = max(known, key=size)
         sure = len(known) == len(found) and not any(each.marks[column] for each in found)
-        number, factor = at.numbers[column], unit_of_row(shown, at.structure)[1]
+        number, factor = at.numbers[column], unit_of_column(shown, at.structure)[1]
         count = at.stripe.answered + sum(at.stripe.reasons.values())
-        cell = cell_of(number, factor, column, count, shown.quantity)
-        cells.append(with_mark(cell, "" if sure else at.marks[column] or bound))
-        bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_ALL else "")
+        cell = word_cell(number, factor, column, count, shown.quantity)
+        cells.append(add_mark(cell, "" if sure else at.marks[column] or bound))
+        bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_OF_ALL_MOTIONS else "")
     motion = at.motion if cells[-1] != "none" else ""
-    where = place_of(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and motion else ""
-    short = len(bounds) == len(cells) and max(map(len, bounds)) <= SHORT
+    where = locate_demand(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and motion else ""
+    short = len(bounds) == len(cells) and max(map(len, bounds)) <= MAX_BOUND_LETTERS
     said = motion if short or not motion else f"{motion}, {named[at.structure.name]}"
-    about = shown.name, unit_of_row(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
+    about = shown.name, unit_of_column(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
     return DemandRow(*about, is_first=False, bounds=tuple(bounds) if short else ())
 
 
-def _engine_rows(ensemble: EnsembleResult, shown: Shown) -> Iterator[DemandRow]:
-    """A demand that the engine alone has, of its motions: the worst of them, and no statistics."""
+def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator[DemandRow]:
+    """Yield the rows of a demand that only the engine has: the worst of its motions, without statistics."""
     first = True
     for structure in ensemble.structures:
-        values = ensemble.values_at_top(structure.name, shown.quantity, None, ensemble.engine.model)
+        values = ensemble.values_at_largest_scale(structure.name, shown.quantity, None, ensemble.engine.model)
         known = {motion: each for motion, each in values.items() if each.value is not None}
         if not known or shown.bodies:
             continue
         motion = max(known, key=lambda name: known[name].value or 0.0)
-        unit, factor = unit_of_row(shown, structure)
-        worst = text_of(known[motion].value, known[motion].error, factor)
-        cells = (*(NOT_ALL,) * 4, worst)
+        unit, factor = unit_of_column(shown, structure)
+        worst = word_value(known[motion].value, known[motion].error, factor)
+        cells = (*(NOT_OF_ALL_MOTIONS,) * 4, worst)
         motions = f"{len(known)} of {ensemble.motions} ({ensemble.engine.model} engine)"
-        about = shown.name, unit, labels(ensemble)[structure.name], "", cells, motion if known[motion].value else ""
+        about = (
+            shown.name,
+            unit,
+            label_structures(ensemble)[structure.name],
+            "",
+            cells,
+            motion if known[motion].value else "",
+        )
         yield DemandRow(*about, motions, is_first=first)
         first = False
 
 
 def peak_in_g(value: float) -> str:
-    """An acceleration in g."""
+    """Return an acceleration in g."""
     return f"{value / GRAVITY:.3g} g"

@@ -1,10 +1,17 @@
-"""What the page and the terminal of an ensemble say, each sentence worded from the result by one function."""
+"""Sentences for the page and the terminal of an ensemble, each worded by one function from the result."""
 
 from collections.abc import Iterator, Sequence
 
-from comparison.analyses.ensemble.quantities import text_of, unit_for_reading
-from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, Target
-from comparison.analyses.ensemble.rows import MAIN, floor_of, labels, peak_in_g, place_of, stripe_of
+from comparison.analyses.ensemble.quantities import display_unit, word_value
+from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, TargetSpectrum
+from comparison.analyses.ensemble.rows import (
+    MAIN_TABLE_COLUMNS,
+    label_structures,
+    locate_demand,
+    name_floor,
+    peak_in_g,
+    statistics_of_column,
+)
 from comparison.study.models import EXACT
 from comparison.wording import percent
 from reference.plausibility import implausible_drift
@@ -12,8 +19,8 @@ from reference.problem import Outcome
 from reference.support.arguments import name_some
 
 TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
-NAMED = 12  # motions that are named one by one
-FEW = 3  # and of a sentence that has other things to say
+MAX_LISTED_MOTIONS = 12  # largest number of motions that are listed by name
+MAX_LISTED_IN_SENTENCE = 3  # largest number of motions listed by name in a sentence that states other facts, too
 DEFINITIONS = (
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
@@ -48,7 +55,7 @@ DEFINITIONS = (
 )
 
 
-NOT_MODELED = (  # docs/guide/building.md says more of each, and begins with these words
+NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with the same words.
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
     "Bearings whose depression is below and whose slider is fixed to the building: there the displaced weight loads "
@@ -62,50 +69,51 @@ NOT_MODELED = (  # docs/guide/building.md says more of each, and begins with the
 )
 
 
-def heading(ensemble: EnsembleResult) -> str:
-    """Building and number of motions, and the scale where there are several."""
+def word_heading(ensemble: EnsembleResult) -> str:
+    """Return the building and the number of motions, with the scale where there are several."""
     titles = ", ".join(dict.fromkeys(each.title for each in ensemble.structures))
-    at = f", scale {ensemble.top:g}" if len(ensemble.scales) > 1 or ensemble.top != 1.0 else ""
-    return f"{titles}: {motions_in_words(ensemble.motions)}{at}"
+    at = f", scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 or ensemble.largest_scale != 1.0 else ""
+    return f"{titles}: {word_motion_count(ensemble.motions)}{at}"
 
 
-def motions_in_words(count: int) -> str:
+def word_motion_count(count: int) -> str:
     """Return the number of motions with its noun: "1 motion", "7 motions"."""
     return f"{count} motion{'' if count == 1 else 's'}"
 
 
 def answer_sentence(ensemble: EnsembleResult) -> str:
-    """Return mean and largest displacement and base shear of the bound in which each is larger."""
+    """Return the mean and largest displacement and base shear of the bound where each is largest."""
     said = []
     for quantity, words in (("displacement", "isolator displacement"), ("base_shear", "base shear")):
         found, unknown = [], []
         for structure in ensemble.structures:
-            stripe = ensemble.stripe(structure.name, quantity)
+            stripe = ensemble.find_demand(structure.name, quantity)
             if stripe is not None and stripe.largest.value is not None:
                 per = structure.weight if quantity == "base_shear" else 1.0
                 found.append((stripe.largest.value / per, structure, stripe))
             elif stripe is not None:
                 unknown.append(structure)
-        reached = _reached_sentence(ensemble) if quantity == "displacement" else ""
+        reached = _travel_reached_sentence(ensemble) if quantity == "displacement" else ""
         if not found:
             said += [f"{words}: {reached}"] if reached else []
             continue
         most, structure, stripe = max(found, key=lambda each: each[0])
-        unit, factor = unit_for_reading(quantity, structure.weight)
-        mean, largest = (text_of(each.value, None, factor) for each in (stripe.mean, stripe.largest))
-        bound = f"{labels(ensemble)[structure.name]}, " if len(ensemble.structures) > 1 else ""
+        unit, factor = display_unit(quantity, structure.weight)
+        mean, largest = (word_value(each.value, None, factor) for each in (stripe.mean, stripe.largest))
+        bound = f"{label_structures(ensemble)[structure.name]}, " if len(ensemble.structures) > 1 else ""
         travel = structure.building.travel if structure.building else None
         share = f" = {percent(most / travel)} of the travel" if quantity == "displacement" and travel else ""
         bound = bound.replace(", ", " alone, ") if unknown else bound
         where = f"{bound}{stripe.largest_motion}"
         reached = f"{reached}; " if reached else ""
         said.append(f"{words}: {reached}mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
-    lost = {each.name: missing_motions(ensemble, each) for each in ensemble.structures}
-    bounds = [
-        f"{', '.join(motions) if len(motions) <= FEW else motions_in_words(len(motions))} ({labels(ensemble)[name]})"
+    named = label_structures(ensemble)
+    lost = {each.name: list_motions_without_displacement(ensemble, each) for each in ensemble.structures}
+    texts = {
+        name: ", ".join(motions) if len(motions) <= MAX_LISTED_IN_SENTENCE else word_motion_count(len(motions))
         for name, motions in lost.items()
-        if motions
-    ]
+    }
+    bounds = [f"{text} ({named[name]})" for name, text in texts.items() if lost[name]]
     lacking = f"No value under {'; '.join(bounds)}. " if bounds else ""
     if not any("mean" in each for each in said):
         said.append("no demand is known of all motions")
@@ -113,12 +121,12 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
     return f"{lacking}{text[:1].upper()}{text[1:]}. {outcomes_sentence(ensemble)}"
 
 
-def _reached_sentence(ensemble: EnsembleResult) -> str:
+def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
     """Return at which bounds the displacement is at least the travel; "" where none reaches it."""
-    named = labels(ensemble)
+    named = label_structures(ensemble)
     found: dict[float, list[str]] = {}
     for structure in ensemble.structures:
-        stripe, building = ensemble.stripe(structure.name, "displacement"), structure.building
+        stripe, building = ensemble.find_demand(structure.name, "displacement"), structure.building
         if stripe is not None and building is not None and building.travel and TRAVEL_REACHED in stripe.reasons:
             found.setdefault(building.travel, []).append(named[structure.name])
 
@@ -126,55 +134,56 @@ def _reached_sentence(ensemble: EnsembleResult) -> str:
         return f" ({', '.join(bounds)})" if len(ensemble.structures) > 1 else ""
 
     return "; ".join(
-        f"at least the travel, {text_of(travel, None, 1e3)} mm{bounds_of(bounds)}" for travel, bounds in found.items()
+        f"at least the travel, {word_value(travel, None, 1e3)} mm{bounds_of(bounds)}"
+        for travel, bounds in found.items()
     )
 
 
-def plans_of(structure: Structure) -> str:
-    """Return the sizes of the bodies in plan from the platform up, m; once where all are alike."""
+def word_plan_sizes(structure: Structure) -> str:
+    """Return the plan sizes of the bodies from the platform up, m; one size where all are equal."""
     sizes = structure.building.sizes if structure.building else ()
     read = ["not stated" if size is None else f"{size[0]:.4g} × {size[1]:.4g}" for size in sizes]
     return f"{read[0]}, all" if len({*read}) == 1 < len(read) else "; ".join(read)
 
 
 def travel_sentence(ensemble: EnsembleResult) -> str:
-    """Return when which motions reach the travel at the largest scale, and how to learn what they need; or ""."""
+    """Return when which motions reach the travel at the largest scale, and how to compute their demands; or ""."""
     bounds = []
     for structure in ensemble.structures:
         ended = [
             f"{each.motion}{'' if each.instant is None else f' at {each.instant:.4g} s'}"
             for each in ensemble.ended
-            if (each.structure, each.scale, each.status) == (structure.name, ensemble.top, TRAVEL_REACHED)
+            if (each.structure, each.scale, each.status) == (structure.name, ensemble.largest_scale, TRAVEL_REACHED)
         ]
         if ended:
-            bound = f" ({labels(ensemble)[structure.name]})" if len(ensemble.structures) > 1 else ""
-            bounds.append(f"{name_some(ended, NAMED)}{bound}")
+            bound = f" ({label_structures(ensemble)[structure.name]})" if len(ensemble.structures) > 1 else ""
+            bounds.append(f"{name_some(ended, MAX_LISTED_MOTIONS)}{bound}")
     if not bounds:
         return ""
     rule = "No demand has a value there. A run without `travel` gives the displacement that is needed."
     return f"The travel is reached under {'; '.join(bounds)}. {rule}"
 
 
-def missing_motions(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """The motions of which a structure has no displacement at the largest scale."""
-    known = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+def list_motions_without_displacement(ensemble: EnsembleResult, structure: Structure) -> list[str]:
+    """Return the motions for which a structure has no displacement at the largest scale."""
+    known = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     return [motion for motion, each in known.items() if each.value is None]
 
 
 def outcomes_sentence(ensemble: EnsembleResult) -> str:
-    """How the motions ended by the equations."""
+    """Return how many motions the equations completed and how the others ended."""
     ended = ", ".join(f"{count} {name}" for name, count in ensemble.outcomes.items())
     return f"Outcomes by the equations: {ended}."
 
 
-def target_sentence(target: Target) -> str:
-    """Return what the motions are scaled to."""
+def target_sentence(target: TargetSpectrum) -> str:
+    """Return the target spectrum that the motions are scaled to."""
     between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
     return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
 
 
 def isolator_sentence(structure: Structure) -> str:
-    """The effective isolator of a structure; "" without one."""
+    """Return the effective isolator of a structure; "" without one."""
     if (at := structure.isolator) is None:
         return ""
     return (
@@ -185,28 +194,28 @@ def isolator_sentence(structure: Structure) -> str:
 
 
 def below_contact_sentence(structure: Structure) -> str:
-    """Return that the platform hangs below the sliding contact, as a height read wrongly makes it; or ""."""
+    """Return a warning that the platform hangs below the sliding contact, as a misread height causes; or ""."""
     building = structure.building
     if building is None or not building.heights or building.heights[0] >= 0.0:
         return ""
     return (
-        f"The center of mass of the {floor_of(structure, 1)} is {-building.heights[0]:.3g} m below the sliding "
+        f"The center of mass of the {name_floor(structure, 1)} is {-building.heights[0]:.3g} m below the sliding "
         "contact: `height` counts from the centers of the depressions, which lie R = radius + sphere_radius below it."
     )
 
 
 def engine_sentences(ensemble: EnsembleResult) -> list[str]:
     """Return which motions the engine computed, and why."""
-    engine, named, said = ensemble.engine, labels(ensemble), []
+    engine, named, said = ensemble.engine, label_structures(ensemble), []
     for structure in ensemble.structures:
         own = [each for each in engine.motions if each.structure == structure.name]
         if not own:
             continue
         each_motion = [
             f"{each.motion} ({', '.join(each.reasons)}{_word_status(each.statuses.get(engine.model, ''))})"
-            for each in own[:NAMED]
+            for each in own[:MAX_LISTED_MOTIONS]
         ]
-        more = f" and {len(own) - NAMED} more" if len(own) > NAMED else ""
+        more = f" and {len(own) - MAX_LISTED_MOTIONS} more" if len(own) > MAX_LISTED_MOTIONS else ""
         bound = f", {named[structure.name]}" if len(ensemble.structures) > 1 else ""
         said.append(f"The {engine.model} engine computed{bound}: {'; '.join(each_motion)}{more}.")
     if said:
@@ -219,15 +228,15 @@ def _word_status(status: str) -> str:
 
 
 def support_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return the largest and smallest force of a support, where, and under which motion, by every model."""
+    """Return the largest and smallest force of a support by every model, with support and motion."""
     said = []
     for model in dict.fromkeys(each.model for each in ensemble.supports):
         rows = [each for each in ensemble.supports if each.model == model]
         by = "By the equations and statics" if model == EXACT.key else f"By the {model} engine"
         parts = list(_support_parts(ensemble, rows))
         if not parts:
-            continue  # no motion has a value
-        counts = {labels(ensemble)[each.structure]: motions_of(ensemble, each) for each in rows}
+            continue  # No motion has a value of this force.
+        counts = {label_structures(ensemble)[each.structure]: word_support_motions(ensemble, each) for each in rows}
         of = ", ".join(f"{count} of the {bound}" for bound, count in counts.items())
         of = next(iter(counts.values())) if len({*counts.values()}) == 1 else of
         of += " of each bound" if len({*counts.values()}) == 1 < len(counts) else ""
@@ -237,14 +246,14 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
     return said
 
 
-def motions_of(ensemble: EnsembleResult, supports: SupportExtremes) -> str:
-    """How many motions the extremes of a support are of, and of how many."""
+def word_support_motions(ensemble: EnsembleResult, supports: SupportExtremes) -> str:
+    """Return how many of all motions the extremes of a support are taken over."""
     some = f"{supports.motions} of " if supports.motions < ensemble.motions else ""
-    return f"{some}{motions_in_words(ensemble.motions)}"
+    return f"{some}{word_motion_count(ensemble.motions)}"
 
 
 def plate_sentence(structure: Structure) -> str:
-    """Return which plate moves, and so what loads the supports; "" of a flat slider or without supports."""
+    """Return which plate moves and how that loads the supports; "" for a flat slider or without supports."""
     building = structure.building
     if building is None or building.radius is None or not building.supports:
         return ""
@@ -255,7 +264,7 @@ def plate_sentence(structure: Structure) -> str:
 
 
 def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
-    named = labels(ensemble)
+    named = label_structures(ensemble)
     for name, sign in (("largest", 1.0), ("smallest", -1.0), ("uplift", 1.0)):
         known = [row for row in rows if getattr(row, name).value is not None]
         if not known:
@@ -263,47 +272,57 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
         row = max(known, key=lambda row: sign * getattr(row, name).value)
         value = getattr(row, name).value
         if name == "uplift":
-            yield f"largest uplift {text_of(value, None, 1e3)} mm" + (f" at support {row.support}" if value else "")
+            yield f"largest uplift {word_value(value, None, 1e3)} mm" + (f" at support {row.support}" if value else "")
             continue
         bound = f", {named[row.structure]}" if len(ensemble.structures) > 1 else ""
         place = f"support {row.support} at [{row.x:.3g}, {row.y:.3g}] m"
-        yield f"{name} force {text_of(value, None, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
+        yield f"{name} force {word_value(value, None, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
 
 
 def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
-    """Return that a drift is hardly meant, with its story and motion; "" for any other."""
-    stripes = [row for row in ensemble.profile(structure.name, "drift_ratio") if row.largest.value is not None]
+    """Return a warning of an implausible drift with its story and motion; "" for any other drift."""
+    stripes = [
+        row for row in ensemble.list_demands_of_bodies(structure.name, "drift_ratio") if row.largest.value is not None
+    ]
     if not stripes:
         return ""
     worst = max(stripes, key=lambda row: row.largest.value or 0.0)
-    place = f"{place_of(structure, worst.quantity, worst.body)} under {worst.largest_motion}"
+    place = f"{locate_demand(structure, worst.quantity, worst.body)} under {worst.largest_motion}"
     line = implausible_drift(worst.largest.value or 0.0, place)
     return f"Warning: {line}" if line else ""
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """Return which motions of a structure lack which demands at the largest scale, and why; of the travel nothing."""
-    stripes = [found for shown in MAIN if (found := stripe_of(ensemble, shown, ensemble.top, structure)) is not None]
-    ended = missing_motions(ensemble, structure)
+    """Return which motions lack which demands at the largest scale, and why; without those that reach the travel."""
+    stripes = [
+        found
+        for shown in MAIN_TABLE_COLUMNS
+        if (found := statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)) is not None
+    ]
+    ended = list_motions_without_displacement(ensemble, structure)
     lacking: dict[tuple[str, int], list[str]] = {}
-    for shown in MAIN:
-        found = stripe_of(ensemble, shown, ensemble.top, structure)
+    for shown in MAIN_TABLE_COLUMNS:
+        found = statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)
         for reason in found.reasons.items() if found else ():
             lacking.setdefault(reason, []).append(shown.name)
     lines = []
     for (why, count), names in lacking.items():
         every = len(names) == len(stripes)
         if every and why == TRAVEL_REACHED:
-            continue  # `travel_sentence` says it
-        which = f" ({', '.join(ended[:NAMED])}{' and more' * (len(ended) > NAMED)})" if every else ""
+            continue  # `travel_sentence` states these motions.
+        which = (
+            f" ({', '.join(ended[:MAX_LISTED_MOTIONS])}{' and more' * (len(ended) > MAX_LISTED_MOTIONS)})"
+            if every
+            else ""
+        )
         what = "every demand" if every else ", ".join(names)
-        lines.append(f"Without a value for {motions_in_words(count)}{which}: {what} ({why}).")
+        lines.append(f"Without a value for {word_motion_count(count)}{which}: {what} ({why}).")
     return lines
 
 
 def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return which motions of every bound lack which demands, each after the name of its bound."""
-    named = labels(ensemble) if len(ensemble.structures) > 1 else {}
+    """Return which motions of every bound lack which demands, each sentence after the name of its bound."""
+    named = label_structures(ensemble) if len(ensemble.structures) > 1 else {}
     lines = ((named.get(each.name, ""), missing_sentences(ensemble, each)) for each in ensemble.structures)
     return [f"{bound}: {line}" if bound else line for bound, of_bound in lines for line in of_bound]
 
@@ -315,11 +334,11 @@ def ground_sentence(ensemble: EnsembleResult) -> str:
         return ""
     return (
         f"Peaks from {peak_in_g(min(peaks))} to {peak_in_g(max(peaks))}, resultant of x and y, with the factors; "
-        f"{_word_span('duration', min(lengths), max(lengths))}."
+        f"{_word_range('duration', min(lengths), max(lengths))}."
     )
 
 
-def _word_span(what: str, low: float, high: float) -> str:
-    """A range in seconds, or one value where both ends read alike."""
+def _word_range(what: str, low: float, high: float) -> str:
+    """Return a range in seconds, or one value where both ends round to the same text."""
     ends = f"{low:.3g}", f"{high:.3g}"
     return f"{what} {ends[0]} s" if ends[0] == ends[1] else f"{what}s from {ends[0]} to {ends[1]} s"

@@ -1,26 +1,28 @@
-"""ensemble.csv: a row for every motion, bound, scale and model, with units in its head."""
+"""Table ensemble.csv: a row for every motion, bound, scale and model, with units in the column heads."""
 
 import csv
 import io
 
-from comparison.analyses.ensemble.analysis import Points
+from comparison.analyses.ensemble.analysis import EnsemblePoints
 from comparison.analyses.ensemble.quantities import unit_of_demand
 from comparison.analyses.ensemble.result import EnsembleResult
-from comparison.analyses.ensemble.rows import labels
-from comparison.analyses.ensemble.statistics import quantities
+from comparison.analyses.ensemble.rows import label_structures
+from comparison.analyses.ensemble.statistics import list_quantities
 from comparison.json_file import finite_or_none
 from reference.building import horizontal_peak
 
-FORMULA = ("=", "+", "-", "@")  # begin formulas in a spreadsheet, behind white space, too
-CONTROLS = ("\t", "\r", "\n")  # begin no plain cell
+# Spreadsheets take a cell that begins with one of these, even after white space, for a formula.
+FORMULA_STARTS = ("=", "+", "-", "@")
+CONTROL_STARTS = ("\t", "\r", "\n")  # A plain cell never begins with one of these control characters.
 
 
-def as_rows(points: Points, ensemble: EnsembleResult) -> list[dict[str, object]]:
-    """A row for every motion, bound, scale and model, with all demands and their errors; None without an answer."""
-    named = labels(ensemble)
-    listed = quantities(points.all_points)
+def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[dict[str, object]]:
+    """Return a row of all demands and errors for every motion, bound, scale and model; None without a value."""
+    named = label_structures(ensemble)
+    listed = list_quantities(points.all_points)
     units = {quantity: f" [{unit_of_demand(quantity[0]) or '-'}]" for quantity in listed}
-    names = {quantity: "_".join(map(str, filter(None, quantity))) for quantity in units}  # drift_2 of body 2
+    # For example drift_2 for the drift of body 2
+    names = {quantity: "_".join(map(str, filter(None, quantity))) for quantity in units}
     rows = []
     for point in points.all_points:
         member, numbers = point.member, {quantity: point.estimate(quantity) for quantity in names}
@@ -43,15 +45,16 @@ def as_rows(points: Points, ensemble: EnsembleResult) -> list[dict[str, object]]
     return rows
 
 
-def table_text(points: Points, ensemble: EnsembleResult) -> str:
-    """Return the content of the file; what begins like a formula stands behind an apostrophe."""
+def format_table(points: EnsemblePoints, ensemble: EnsembleResult) -> str:
+    """Return the content of the file; a text that a spreadsheet takes for a formula begins with an apostrophe."""
 
     def cell(value: object) -> object:
-        formula = isinstance(value, str) and (value[:1] in CONTROLS or value.lstrip().startswith(FORMULA))
+        formula = isinstance(value, str) and (value[:1] in CONTROL_STARTS or value.lstrip().startswith(FORMULA_STARTS))
         return f"'{value}" if formula else value
 
-    rows, lines = as_rows(points, ensemble), io.StringIO(newline="")
-    writer = csv.writer(lines, quoting=csv.QUOTE_MINIMAL, lineterminator="\r\n")  # it quotes what has one of these
+    rows, lines = make_table_rows(points, ensemble), io.StringIO(newline="")
+    # A text with a comma, quote or line break is quoted
+    writer = csv.writer(lines, quoting=csv.QUOTE_MINIMAL, lineterminator="\r\n")
     writer.writerow(rows[0])
     writer.writerows(map(cell, row.values()) for row in rows)
     return lines.getvalue().replace("\r\n", "\n")

@@ -1,4 +1,4 @@
-"""A target spectrum, and the factor that brings each motion of an ensemble closest to it."""
+"""Target spectrum, and the factor that brings the spectrum of each motion of an ensemble closest to it."""
 
 import csv
 from collections.abc import Sequence
@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from comparison.analyses.ensemble.members import SCALE, Member
-from comparison.analyses.ensemble.result import MatchedMotion, Target
+from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember
+from comparison.analyses.ensemble.result import MatchedMotion, TargetSpectrum
 from comparison.cli.arguments import read_number
 from comparison.result_types import Array
 from reference.measures import factor_for_spectrum, response_spectrum
@@ -15,34 +15,35 @@ from reference.problem import SceneError
 from reference.records.numerals import UNITS
 from reference.support.files import read_file
 
-COMPARED, DRAWN = 40, 60  # periods, evenly spaced in their logarithm, of the least squares and of the picture
-LARGEST = 2**20  # bytes of a file
-HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
-RULE = "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods"
+# Number of periods, evenly spaced in their logarithm: in the least squares, in the plot
+FITTED_PERIODS, DRAWN_PERIODS = 40, 60
+MAX_FILE_BYTES = 2**20  # largest size of a file in bytes
+ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
+FILE_RULE = "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods"
 
 
 def read_target(file: str) -> tuple[Array, Array]:
-    """Periods, s, and pseudo-accelerations, m/s^2, of a file. A period of zero is left out. Raises SceneError."""
+    """Return the periods, s, and pseudo-accelerations, m/s^2, of a file, without period zero. Raises SceneError."""
     try:
-        rows = [row for row in csv.reader(read_file(file, LARGEST).decode("utf-8-sig").splitlines()) if row]
+        rows = [row for row in csv.reader(read_file(file, MAX_FILE_BYTES).decode("utf-8-sig").splitlines()) if row]
         first, second = ("".join(cell.split()).lower() for cell in rows[0])
         values = np.array(rows[1:], dtype=float)
         period, acceleration = values[values[:, 0] != 0.0].T
-        factor = HEADS[second]
+        factor = ACCELERATION_HEADS[second]
     except OSError as error:
         raise SceneError("command line", "--target", file, str(error.strerror or error)) from None
     except (ValueError, LookupError, csv.Error):
-        raise SceneError("command line", "--target", file, RULE) from None
+        raise SceneError("command line", "--target", file, FILE_RULE) from None
     rising = len(period) > 1 and period[0] > 0.0 and (np.diff(period) > 0.0).all()
     if first != "period[s]" or not (rising and acceleration.min() > 0.0 and np.isfinite(values).all()):
-        raise SceneError("command line", "--target", file, RULE)
+        raise SceneError("command line", "--target", file, FILE_RULE)
     return period, factor * acceleration
 
 
 def match_spectrum(
-    members: Sequence[Member], file: str, ends: Sequence[str] | None
-) -> tuple[tuple[Member, ...], Target]:
-    """The members with the factors of their motions, and the spectrum. ends: of the periods, s. Raises SceneError."""
+    members: Sequence[EnsembleMember], file: str, ends: Sequence[str] | None
+) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum]:
+    """Return the members with fitted factors, and the spectrum; ends: period range, s. Raises SceneError."""
     period, wanted = read_target(file)
     unit = "s: a period of the target spectrum"
     low, high = (read_number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])
@@ -52,11 +53,11 @@ def match_spectrum(
     def target(at: Array) -> Array:
         return np.exp(np.interp(np.log(at), np.log(period), np.log(wanted)))
 
-    compared, drawn = np.geomspace(low, high, COMPARED), np.geomspace(period[0], period[-1], DRAWN)
+    compared, drawn = np.geomspace(low, high, FITTED_PERIODS), np.geomspace(period[0], period[-1], DRAWN_PERIODS)
     found: dict[tuple[str, bytes], MatchedMotion] = {}
     scaled = []
     for member in members:
-        record = member.scene.with_values({SCALE: 1.0}).record
+        record = member.scene.with_values({SCALE_KEY: 1.0}).record
         time, ground = record[:, 0], record[:, 1:3][:, record[:, 1:3].any(axis=0)]
         key = member.motion, record.tobytes()
         if key not in found:
@@ -66,6 +67,6 @@ def match_spectrum(
             spectrum = factor * response_spectrum(time, ground, drawn)
             found[key] = MatchedMotion(member.motion, factor, spectrum.tolist())
         factor = found[key].factor
-        scene = member.scene.with_values({SCALE: member.scale * factor, "name": member.scene.name})
+        scene = member.scene.with_values({SCALE_KEY: member.scale * factor, "name": member.scene.name})
         scaled.append(replace(member, scene=scene, factor=factor))
-    return tuple(scaled), Target(low, high, drawn.tolist(), target(drawn).tolist(), list(found.values()))
+    return tuple(scaled), TargetSpectrum(low, high, drawn.tolist(), target(drawn).tolist(), list(found.values()))

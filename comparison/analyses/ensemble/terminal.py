@@ -1,35 +1,35 @@
-"""An ensemble on the terminal: the equations first, then what the engine adds."""
+"""Printing of an ensemble on the terminal: first the equations, then what the engine adds."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
 
 from rich.console import Console
 
-from comparison.analyses.ensemble.members import group_by
+from comparison.analyses.ensemble.members import group_rows_by
 from comparison.analyses.ensemble.quantities import FRACTILES
 from comparison.analyses.ensemble.result import EnsembleResult
-from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, demand_rows, labels
+from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, label_structures, make_demand_rows
 from comparison.analyses.ensemble.sentences import (
     answer_sentence,
     below_contact_sentence,
     drift_warning,
     engine_sentences,
-    heading,
     isolator_sentence,
     missing_sentences,
-    motions_in_words,
     support_sentences,
     target_sentence,
     travel_sentence,
+    word_heading,
+    word_motion_count,
 )
-from comparison.analyses.ensemble.trust import COLUMNS, trust_rows, trust_sentence
+from comparison.analyses.ensemble.trust import MODEL_TITLES, make_trust_rows, trust_sentence
 from comparison.cli.terminal import new_table
 from comparison.runner.attempts import attempt
 from comparison.study.models import EXACT
 
 
 def print_equations(console: Console, ensemble: EnsembleResult) -> None:
-    """The demands of every bound by the equations, and how the motions ended; a part that fails is one line."""
+    """Print the demands of every bound by the equations and the outcomes; a part that fails becomes one line."""
     parts: dict[str, Callable[[], None]] = {
         "factors of the motions": partial(_print_factors, console, ensemble),
         "demands": partial(_print_demands, console, ensemble),
@@ -40,18 +40,18 @@ def print_equations(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def print_engine(console: Console, ensemble: EnsembleResult) -> None:
-    """What the engine adds to the tables of the equations; a part that fails is one line."""
+    """Print what the engine adds to the tables of the equations; a part that fails becomes one line."""
     parts: dict[str, Callable[[], None]] = {
-        "motions of the engine": lambda: say(console, engine_sentences(ensemble)),
+        "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
         "table of models": partial(_print_trust, console, ensemble),
-        "support forces": lambda: say(console, support_sentences(ensemble)),
+        "support forces": lambda: print_lines(console, support_sentences(ensemble)),
     }
     for what, act in parts.items() if ensemble.engine.motions else ():
         attempt(what, act)
 
 
-def say(console: Console, lines: Sequence[str]) -> None:
-    """Print lines as they are."""
+def print_lines(console: Console, lines: Sequence[str]) -> None:
+    """Print the lines without markup or wrapping."""
     for line in lines:
         console.print(line, soft_wrap=True, markup=False)
 
@@ -59,7 +59,7 @@ def say(console: Console, lines: Sequence[str]) -> None:
 def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
     if ensemble.target is None:
         return
-    say(console, [target_sentence(ensemble.target)])
+    print_lines(console, [target_sentence(ensemble.target)])
     table = new_table("motion", "factor")
     for one in ensemble.target.motions:
         table.add_row(one.motion, f"{one.factor:.4g}")
@@ -67,10 +67,10 @@ def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
-    say(console, [f"{heading(ensemble)}."])
+    print_lines(console, [f"{word_heading(ensemble)}."])
     shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
-    for bound, rows in group_by(demand_rows(ensemble, ensemble.top), "bound").items():
-        say(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
+    for bound, rows in group_rows_by(make_demand_rows(ensemble, ensemble.largest_scale), "bound").items():
+        print_lines(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
         table = new_table("quantity", "unit", "mean", *shares, "largest", "motion")
         for row in rows:
             table.add_row(*_cells_of_row(row))
@@ -84,7 +84,7 @@ def _cells_of_row(row: DemandRow) -> list[str]:
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
-    named = labels(ensemble)
+    named = label_structures(ensemble)
     for structure in ensemble.structures:
         lines = [
             *missing_sentences(ensemble, structure),
@@ -93,18 +93,19 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
             drift_warning(ensemble, structure),
         ]
         bound = f"{named[structure.name]}: " if len(ensemble.structures) > 1 else ""
-        say(console, [f"{bound}{line}" for line in lines if line])
-    say(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
+        print_lines(console, [f"{bound}{line}" for line in lines if line])
+    print_lines(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
 
 
 def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
-    models = {key: title for key, title in COLUMNS.items() if key != EXACT.key}
-    for bound, rows in group_by(trust_rows(ensemble), "bound").items():
-        say(
-            console, [f"{bound}, mean difference from the exact equations on {motions_in_words(len(rows[0].motions))}:"]
+    models = {key: title for key, title in MODEL_TITLES.items() if key != EXACT.key}
+    for bound, rows in group_rows_by(make_trust_rows(ensemble), "bound").items():
+        print_lines(
+            console,
+            [f"{bound}, mean difference from the exact equations on {word_motion_count(len(rows[0].motions))}:"],
         )
         table = new_table("quantity", "exact", *(title.partition(" ")[0] for title in models.values()))
         for row in rows:
             table.add_row(row.name, row.text, *(row.ratios[key].brief if key in row.ratios else "" for key in models))
         console.print(table)
-    say(console, [trust_sentence(ensemble)])
+    print_lines(console, [trust_sentence(ensemble)])

@@ -1,35 +1,46 @@
-"""How far the simple models can be trusted: every model beside the exact equations, on the motions that all have."""
+"""Accuracy of the simple models: each compared with the exact equations on the motions that all models computed."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from comparison.analyses.ensemble.quantities import SMALLEST, text_of
+from comparison.analyses.ensemble.quantities import SMALLEST_IS_WORST, word_value
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
-from comparison.analyses.ensemble.rows import MAIN, Shown, labels, read_values, stripe_of, tell, unit_of_row, with_mark
+from comparison.analyses.ensemble.rows import (
+    MAIN_TABLE_COLUMNS,
+    DemandColumn,
+    add_mark,
+    label_structures,
+    read_column_values,
+    statistics_of_column,
+    summarize_demand,
+    unit_of_column,
+)
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 
-COLUMNS = {
+MODEL_TITLES = {
     SMALL.key: "small equations",
     EXACT.key: "exact equations",
     TRANSLATIONAL.key: "translational engine",
     SPATIAL.key: "spatial engine",
 }
-# rows of the main table with the ratio of another, without a base of one, or with a reading that no engine has
-LEFT_OUT = (
+# demands of the main table left out: ratio of another row, zero in most motions, or a reading that no engine has
+OMITTED_DEMANDS = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support", "platform acceleration, literal supremum", "floor acceleration, literal supremum",
 )  # fmt: skip
-UNSEEN = 1e-4  # difference that the two decimals of a table do not show
-STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))  # and their columns
-OF_SMALLEST = (("mean", 0), ("16 %", 1), ("smallest", 4))  # in their place: the harmful end of a smallest force
-COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
+HIDDEN_BY_ROUNDING = 1e-4  # A relative difference below this does not show in the two decimals of the table.
+# Statistics that are extrapolated, and their columns
+EXTRAPOLATED_STATISTICS = ("mean", 0), ("84 %", 3), ("largest", 4)
+# Statistics of a smallest support force, whose low values are the unfavorable ones
+SMALLEST_FORCE_STATISTICS = (("mean", 0), ("16 %", 1), ("smallest", 4))
+THING_COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
 
 @dataclass(frozen=True)
-class Ratio:
-    """A model over the exact equations on common motions: mean, smallest and largest."""
+class ModelRatio:
+    """Ratio of a demand by one model to that by another over common motions: mean, smallest and largest."""
 
     mean: float
     smallest: float
@@ -40,79 +51,82 @@ class Ratio:
 
     @property
     def worst(self) -> tuple[float, str]:
-        """The largest difference of a single motion, and the motion."""
+        """Return the largest difference from 1 of a single motion, and the motion."""
         ends = (self.smallest - 1.0, self.smallest_motion), (self.largest - 1.0, self.largest_motion)
         return max(ends, key=lambda end: abs(end[0]))
 
     @property
     def text(self) -> str:
-        """Mean difference, and its range over the motions."""
+        """Return the mean difference from 1 and its range over the motions."""
         ends = in_percent(self.smallest - 1.0), in_percent(self.largest - 1.0)
         return self.brief + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
 
     @property
     def brief(self) -> str:
-        """Mean difference alone."""
+        """Return the mean difference from 1 without its range."""
         return f"{in_percent(self.mean - 1.0)} %"
 
 
 def in_percent(share: float) -> str:
-    """A share in percent to two decimals, without the sign of percent."""
+    """Return a share in percent to two decimals, without the percent sign."""
     return f"{100.0 * share:+.2f}".replace("-", "−").replace("+0.00", "0.00").replace("−0.00", "0.00")
 
 
 @dataclass(frozen=True)
 class TrustRow:
-    """A demand of one bound. ratios: by model, of those that have it at all the common motions."""
+    """Ratios of a demand of one bound, by model, over the motions that all models with the demand computed."""
 
     bound: str
     structure: Structure
-    shown: Shown
+    shown: DemandColumn
     motions: tuple[str, ...]
-    value: float  # mean over these motions by the exact equations, SI
-    ratios: Mapping[str, Ratio] = field(default_factory=dict)
-    by_law: Ratio | None = None  # the translational engine over the equations with its friction law
-    law: Ratio | None = None  # the equations with that law over the exact ones
-    turning: Ratio | None = None  # the spatial over the translational engine; of supports over statics
+    value: float  # mean over these motions by the exact equations, in SI units
+    ratios: Mapping[str, ModelRatio] = field(default_factory=dict)
+    by_law: ModelRatio | None = (
+        None  # ratio of the translational engine to the equations with the engine's friction law
+    )
+    law: ModelRatio | None = None  # ratio of the equations with the engine's friction law to the exact equations
+    # Ratio of the spatial to the translational engine; for support forces, to the static load
+    turning: ModelRatio | None = None
 
     @property
     def name(self) -> str:
-        """The demand in words."""
+        """Return the name of the demand in words."""
         return self.shown.name
 
     @property
     def read(self) -> tuple[str, float]:
-        """The unit in which the demand is read, and its factor."""
-        return unit_of_row(self.shown, self.structure)
+        """Return the display unit of the demand and its factor."""
+        return unit_of_column(self.shown, self.structure)
 
     @property
     def text(self) -> str:
-        """The mean by the exact equations, in the unit in which it is read."""
+        """Return the mean by the exact equations in the display unit."""
         unit, factor = self.read
-        return f"{text_of(self.value, None, factor)} {unit}".strip()
+        return f"{word_value(self.value, None, factor)} {unit}".strip()
 
 
-def trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
-    """The demands of the main table, as they are there, where at least one other model has them."""
-    named, rows = labels(ensemble), []
+def make_trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
+    """Return a row for each demand of the main table that another model than the exact equations has."""
+    named, rows = label_structures(ensemble), []
     for structure in ensemble.structures:
-        for shown in MAIN:
-            stripe = stripe_of(ensemble, shown, ensemble.top, structure)
-            if stripe is not None and shown.name not in LEFT_OUT:
+        for shown in MAIN_TABLE_COLUMNS:
+            stripe = statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)
+            if stripe is not None and shown.name not in OMITTED_DEMANDS:
                 row = _trust_row(ensemble, structure, named[structure.name], shown)
                 rows += [] if row is None else [row]
     return rows
 
 
-def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: Shown) -> TrustRow | None:
+def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: DemandColumn) -> TrustRow | None:
     quantity = shown.quantity
 
     def values(model: str) -> dict[str, float]:
-        found = read_values(ensemble, structure, shown, model)
+        found = read_column_values(ensemble, structure, shown, model)
         return {motion: each.value for motion, (each, _) in found.items() if math.isfinite(each.value)}
 
-    by_model = {key: values(key) for key in (*COLUMNS, REGULARIZED.key)}
-    # statics, not the model itself, gives the supports of all models but the spatial one
+    by_model = {key: values(key) for key in (*MODEL_TITLES, REGULARIZED.key)}
+    # Statics gives the support forces of every model but the spatial one.
     beside = [SPATIAL.key] if quantity.startswith("support_force") else [key for key in by_model if key != EXACT.key]
     others = {key: by_model[key] for key in beside if by_model[key]}
     exact = by_model[EXACT.key]
@@ -121,18 +135,18 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
     if not others or not common:
         return None
 
-    def ratio(upper: str, lower: str) -> Ratio | None:
+    def ratio(upper: str, lower: str) -> ModelRatio | None:
         if upper not in others or not (lower == EXACT.key or lower in others):
             return None
         pairs = [(by_model[upper][m] / by_model[lower][m], m) for m in common if by_model[lower][m]]
         if not pairs:
             return None
         (smallest, at_smallest), (largest, at_largest) = min(pairs), max(pairs)
-        return Ratio(
+        return ModelRatio(
             math.fsum(each for each, _ in pairs) / len(pairs), smallest, largest, len(pairs), at_smallest, at_largest
         )
 
-    ratios = {key: found for key in COLUMNS if key != EXACT.key and (found := ratio(key, EXACT.key))}
+    ratios = {key: found for key in MODEL_TITLES if key != EXACT.key and (found := ratio(key, EXACT.key))}
     law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
     supports = quantity.startswith("support_force")
     return TrustRow(
@@ -143,8 +157,10 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
     )  # fmt: skip
 
 
-def _largest_ratio(ensemble: EnsembleResult, rows: Sequence[TrustRow], pick: str) -> tuple[float, str, str] | None:
-    """The largest difference of a single motion over the demands of the rows, the demand, and its bound and motion."""
+def _find_largest_deviation(
+    ensemble: EnsembleResult, rows: Sequence[TrustRow], pick: str
+) -> tuple[float, str, str] | None:
+    """Return the largest difference of a single motion over all rows, with its demand, bound and motion."""
     found = []
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
@@ -155,9 +171,9 @@ def _largest_ratio(ensemble: EnsembleResult, rows: Sequence[TrustRow], pick: str
     return max(found, default=None)
 
 
-def _at_most(size: float) -> str:
-    """The largest size of a difference in words."""
-    return f"up to {percent(size)}" if size >= UNSEEN else f"less than {percent(UNSEEN)}"
+def _word_largest_size(size: float) -> str:
+    """Return an upper bound of the size of a difference in words."""
+    return f"up to {percent(size)}" if size >= HIDDEN_BY_ROUNDING else f"less than {percent(HIDDEN_BY_ROUNDING)}"
 
 
 def trust_sentence(ensemble: EnsembleResult) -> str:
@@ -167,8 +183,8 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     Each is the largest of single motions over every demand of the table. The smallest support force has a clause of
     its own: close to zero, a small force is a large share of it.
     """
-    every = trust_rows(ensemble)
-    rows = [row for row in every if row.shown.quantity not in SMALLEST]
+    every = make_trust_rows(ensemble)
+    rows = [row for row in every if row.shown.quantity not in SMALLEST_IS_WORST]
     parts = {
         SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth {} ({})",
         "by_law": "given the same equations and friction law, the two codes differ by {} ({})",
@@ -177,46 +193,48 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     }
     said = []
     for pick, words in parts.items():
-        if (found := _largest_ratio(ensemble, rows, pick)) is not None:
-            said.append(words.format(_at_most(found[0]), ", ".join(found[1:])))
+        if (found := _find_largest_deviation(ensemble, rows, pick)) is not None:
+            said.append(words.format(_word_largest_size(found[0]), ", ".join(found[1:])))
     if not said:
         return ""
-    things = COUNTS[len(said)]
-    smallest = [row for row in every if row.shown.quantity in SMALLEST]
-    if (found := _largest_ratio(ensemble, smallest, "turning")) is not None:
-        said[-1] += f", and the smallest support force, against statics, by {_at_most(found[0])} ({found[2]})"
+    things = THING_COUNTS[len(said)]
+    smallest = [row for row in every if row.shown.quantity in SMALLEST_IS_WORST]
+    if (found := _find_largest_deviation(ensemble, smallest, "turning")) is not None:
+        said[-1] += f", and the smallest support force, against statics, by {_word_largest_size(found[0])} ({found[2]})"
     motions = {(row.bound, motion) for row in every for motion in row.motions}
     count = f"On the {f'{len(motions)} motions' if len(motions) > 1 else 'one motion'} that all models computed"
     return f"{count}, {things} apart: {'; '.join(said)}."
 
 
-def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, list[str]]]:
+def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, ModelRatio, list[str]]]:
     """
     Yield the demands of the suite by the equations, times the ratio of the engine over them.
 
     Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes; of a
     smallest force 16 % and the smallest.
     """
-    for row in trust_rows(ensemble):
+    for row in make_trust_rows(ensemble):
         ratio = row.ratios.get(ensemble.engine.model)
-        stripe = stripe_of(ensemble, row.shown, ensemble.top, row.structure)
+        stripe = statistics_of_column(ensemble, row.shown, ensemble.largest_scale, row.structure)
         if ratio is None or stripe is None:
             continue
         unit, factor = row.read
-        told = tell(row.structure, stripe)
+        told = summarize_demand(row.structure, stripe)
         cells = []
-        shown = OF_SMALLEST if row.shown.quantity in SMALLEST else STATISTICS
-        for (name, place), (head, _) in zip(shown, STATISTICS):
+        shown = SMALLEST_FORCE_STATISTICS if row.shown.quantity in SMALLEST_IS_WORST else EXTRAPOLATED_STATISTICS
+        for (name, place), (head, _) in zip(shown, EXTRAPOLATED_STATISTICS):
             value = told.numbers[place].value
             of = f"{name}: " if name != head else ""
-            extended = value is not None and value > 0.0 and ratio.motions > 1  # one motion tells no spread
-            extended = extended and told.numbers[place].error is not None  # the travel is no number of the equations
-            text = _with_range(ratio, value, factor) if extended and value is not None else "none"
-            cells.append(of + with_mark(text, told.marks[place]))
+            # The ratio of a single motion has no spread
+            extended = value is not None and value > 0.0 and ratio.motions > 1
+            # The travel is a limit, not a computed displacement
+            extended = extended and told.numbers[place].error is not None
+            text = _word_extrapolated(ratio, value, factor) if extended and value is not None else "none"
+            cells.append(of + add_mark(text, told.marks[place]))
         yield row, ratio, [unit, *cells]
 
 
-def _with_range(ratio: Ratio, value: float, factor: float) -> str:
-    """A value times the mean ratio, and the range that the spread of the ratio makes."""
-    mean, low, high = (text_of(each * value, None, factor) for each in (ratio.mean, ratio.smallest, ratio.largest))
+def _word_extrapolated(ratio: ModelRatio, value: float, factor: float) -> str:
+    """Return a value times the mean ratio, and the range that the spread of the ratio makes."""
+    mean, low, high = (word_value(each * value, None, factor) for each in (ratio.mean, ratio.smallest, ratio.largest))
     return f"{mean} ({low} to {high})"

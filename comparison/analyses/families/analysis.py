@@ -19,14 +19,14 @@ from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.measures.peak_demands import list_demands
 from reference.problem import Family, Scene
 
-if TYPE_CHECKING:  # types of what other features found, where the study has them
+if TYPE_CHECKING:  # types of the results of other features, which a study need not have
     from comparison.analyses.demands.analysis import DemandStatistics
     from comparison.analyses.motions.analysis import StoredMotion
 
 
 @result
 class FamilyCurve:
-    """mu of one model and body over the value that runs; null where it has no value."""
+    """mu of one model and body over the key that varies in a family; null where there is no value."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -39,7 +39,7 @@ class FamilyCurve:
 
 @result
 class FamilyStep:
-    """A bar of the waterfalls of one body over the value that runs; relative to mu of the first model."""
+    """One bar of the waterfalls of a body over the key that varies, relative to mu of the first model."""
 
     model: Annotated[str, "key of the model that the step leads to, or total"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -48,8 +48,8 @@ class FamilyStep:
     resolved: Annotated[tuple[bool, ...], "whether it exceeds the sampling error, and five times the numerical one"]
 
 
-def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
-    """One per model and body. A record has one value, which is mean, lowest and highest."""
+def compute_family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
+    """Return one curve per model and body; under a record, mean, lowest and highest are the one value."""
     keys = {model.key: model for scene in family.scenes for model in models_of(scene, study.hierarchy)}
     curves = []
     for model in keys.values():
@@ -59,8 +59,8 @@ def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[Fa
     return curves
 
 
-def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
-    """One per bar and body, then the total of the body."""
+def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
+    """Return one entry per waterfall bar and body, then the total of the body."""
     steps = []
     for body in range(1, family.bodies + 1):
         bars = [_bars_by_effect(waterfalls[scene.name][body - 1]) for scene in family.scenes]
@@ -74,7 +74,7 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
 
 @result
 class FamilyDemand:
-    """One demand of the motions of a model over the value that runs, with its band."""
+    """One demand of the motions of a model over the key that varies: median, smallest and largest value."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
@@ -85,8 +85,8 @@ class FamilyDemand:
     motions: Annotated[tuple[int, ...], "how many motions have the demand"]
 
 
-def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
-    """One per model, quantity and body of which a motion is stored, in the order of `Demands`."""
+def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
+    """Return one entry per model, quantity and body with a stored motion, in the order of `Demands`."""
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
@@ -95,30 +95,30 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
                     column = numbers.setdefault((motion.model, quantity, body), {})
                     column.setdefault(motion.place.scene, []).append(estimate.value)
     return [
-        _family_demand(
+        _make_family_demand(
             family, key, {name: (float(np.median(row)), min(row), max(row), len(row)) for name, row in rows.items()}
         )
         for key, rows in numbers.items()
     ]
 
 
-def family_demands_over_phases(
+def list_family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
-    """One per model, quantity and body, from all phases instead of stored motions."""
+    """Return one entry per model, quantity and body, computed from all phases."""
     found: dict[tuple[str, str, int], dict[str, tuple[float, float, float, int]]] = {}
     for scene in family.scenes:
         for row in statistics.get(scene.name, ()):
             known = round(row.points * (1.0 - row.unknown))
             numbers = row.fractile(0.5), row.lowest.value, row.highest.value, known
             found.setdefault((row.model, row.quantity, row.body), {})[scene.name] = numbers
-    return [_family_demand(family, key, rows) for key, rows in found.items()]
+    return [_make_family_demand(family, key, rows) for key, rows in found.items()]
 
 
-def _family_demand(
+def _make_family_demand(
     family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
 ) -> FamilyDemand:
-    """rows: median, lowest, highest and number of motions, by scene."""
+    """Return the demand with its rows in place: median, lowest, highest and number of motions, by scene."""
     numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
     return FamilyDemand(*key, *map(tuple, zip(*numbers)))
 

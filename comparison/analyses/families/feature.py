@@ -1,4 +1,4 @@
-"""Families of scenes: in the report and in summary.json."""
+"""Report section and summary.json entry of the families of scenes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,10 +7,10 @@ from comparison.analyses.families.analysis import (
     FamilyCurve,
     FamilyDemand,
     FamilyStep,
-    family_curves,
-    family_demands,
-    family_demands_over_phases,
-    family_steps,
+    compute_family_curves,
+    list_family_demands,
+    list_family_demands_over_phases,
+    list_family_steps,
 )
 from comparison.report.feature import Feature, Findings, ResultField
 from comparison.report.panels import DEMANDS, Panel, json_numbers, make_panel
@@ -22,12 +22,12 @@ from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
-MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
-DECADES = 30.0  # ratio of the largest to the smallest value that a key takes: beyond it the axis is logarithmic
+MOTION_KEY = "excitation.record.motion"  # key whose values name motions, so that no axis can have them as numbers
+LOG_AXIS_RATIO = 30.0  # Largest over smallest value of the varied key: beyond this ratio the axis is logarithmic.
 
 
 class FamilyResult(Part):
-    """Scenes of one file in which one value runs."""
+    """Results of the scenes of one file that differ in the value of one key."""
 
     name: Text
     """name of the file"""
@@ -56,11 +56,13 @@ def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[Fa
         result = FamilyResult(
             name=family.name,
             key=family.key,
-            values=list(family.labels[family.key] if family.key == MOTION else family.values),
+            values=list(family.labels[family.key] if family.key == MOTION_KEY else family.values),
             scenes=[scene.name for scene in family.scenes],
-            curves=family_curves(findings.study, findings.surfaces, family),
-            steps=family_steps(family, {scene.name: scene.waterfalls for scene in scenes}),
-            demands=family_demands_over_phases(family, statistics) if over else family_demands(family, motions),
+            curves=compute_family_curves(findings.study, findings.surfaces, family),
+            steps=list_family_steps(family, {scene.name: scene.waterfalls for scene in scenes}),
+            demands=list_family_demands_over_phases(family, statistics)
+            if over
+            else list_family_demands(family, motions),
             demands_over_phases=over,
         )
         found.append(result)
@@ -76,7 +78,7 @@ FOUND = ResultField(
 
 
 def family_panels(results: Results) -> list[dict[str, Any]]:
-    """For each family: mu of every body by every model over the value that runs, and what each effect adds."""
+    """Return per family the plots of mu by body and model over the varied key, and of what each effect adds."""
     scenes = {scene.name: scene for scene in results.scenes}
     listed = []
     for family in FOUND.get(results) or ():
@@ -89,14 +91,14 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
 
 
 def _value_axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
-    """Places of the values on the axis, and the axis: by name where they are no numbers."""
+    """Return the positions of the values on the axis, and the axis: names where the values are no numbers."""
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
         every = -(-len(names) // MAX_NAMES)
         return places, {"title": family.key, "ticks": names[::every], "range": [-0.3, len(places) - 0.7]}
     values = [float(value) for value in family.values]
-    if min(values) > 0.0 and max(values) >= DECADES * min(values):
+    if min(values) > 0.0 and max(values) >= LOG_AXIS_RATIO * min(values):
         return values, {"title": family.key, "log": True}
     return values, {"title": family.key}
 
@@ -138,7 +140,7 @@ def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
 def _family_demand_panel(
     results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
 ) -> Panel | None:
-    """One demand of every model over the value that runs: median of the motions, from smallest to largest."""
+    """Return a plot of one demand by model over the varied key: median, smallest and largest of the motions."""
     looks = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     lines = []
     for demand in family.demands:

@@ -1,5 +1,5 @@
 """
-Measured peaks of the scenes, compared with what every model computes at the phases of the test, with both errors.
+Peaks that experiments measured, compared with every model at the phases of the test, with both errors.
 
 A measured peak is met where |D| <= u + e: D is the computed less the measured value, u the uncertainty of the
 measurement, e the error of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
@@ -34,16 +34,17 @@ from reference.measures.peak_demands import unit_of
 from reference.problem import Outcome, Scene
 from reference.problem.measured import OF_BODIES, Measured
 
-LACKING = Estimate(math.nan, math.nan, "the model has no such value")
+NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")
 
-Asked = tuple[str, int]  # quantity and body, 0 for the isolator
-Arguments = tuple[Scene, Model, float, tuple[float, float], list[Asked]]
-Peak = tuple[float, float, str]  # value and error, NaN without an answer; why there is none, or how the motion ended
+MeasuredQuantityKey = tuple[str, int]  # quantity and number of the body; 0 for the isolator
+Arguments = tuple[Scene, Model, float, tuple[float, float], list[MeasuredQuantityKey]]
+# Value and error, NaN without an answer; and the reason for that, or the outcome of the motion
+PeakAnswer = tuple[float, float, str]
 
 
 @result
 class ComputedPeak:
-    """A measured peak by one model."""
+    """One model's value for a peak that an experiment measured."""
 
     model: Annotated[str, "key of the model"]
     value: Annotated[Number, "in the unit of the quantity; null without an answer"]
@@ -55,7 +56,7 @@ class ComputedPeak:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def verdict(self) -> Verdict:
-        """Met: the difference is within both together; not met; not compared."""
+        """Return "met" where the difference is within both errors together, else "not met" or "not compared"."""
         return NOT_COMPARED if self.exceeds is None else NOT_MET if self.exceeds else MET
 
 
@@ -94,26 +95,26 @@ def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
     return word_counts_and_largest(count_verdicts(each.verdict for _, each in pairs), off)
 
 
-def phases_of(peak: Measured) -> tuple[float, float]:
-    """Phases at which a model is asked, rad; a record has none, and any do."""
+def phases_of_peak(peak: Measured) -> tuple[float, float]:
+    """Return the phases, rad, at which a model is asked for a peak; a record has none, and any will do."""
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
 
 
-def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
-    """Return what the test measured; of a model that reads the same motion otherwise mu alone."""
+def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[MeasuredQuantityKey]:
+    """Return the measured quantities that a model can answer: only mu if it shares its motion with another model."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()
-        if phases_of(peak) == phases and (peak.quantity == "mu" or "cutoff" not in model.settings)
+        if phases_of_peak(peak) == phases and (peak.quantity == "mu" or "cutoff" not in model.settings)
     ]
 
 
-def peaks_at(task: Arguments) -> list[Peak]:
-    """The peaks of one model at one phase pair. Runs inside a worker process."""
+def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
+    """Return the peaks of one model at one phase pair. Runs inside a worker process."""
     scene, model, tolerance, phases, asked = task
     settings: dict[str, Any] = dict(model.settings)
     status = Outcome.OK.value
-    known: dict[str, Any] = {}  # estimates by quantity: of the isolator, of every body, or None
+    known: dict[str, Any] = {}  # estimates by quantity; a value may be for the isolator, for every body, or None
     if any(quantity == "mu" for quantity, _ in asked):
         answer = import_function(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
         known["mu"] = tuple(map(Estimate, answer.mu[0].tolist(), answer.error[0].tolist()))
@@ -122,7 +123,7 @@ def peaks_at(task: Arguments) -> list[Peak]:
         motion = import_function(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
         known, status = vars(demands(motion)) | known, str(motion.status)
     listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
-    numbers = [(each[place] if isinstance(each, tuple) else each) or LACKING for each, place in listed]
+    numbers = [(each[place] if isinstance(each, tuple) else each) or NO_SUCH_VALUE for each, place in listed]
     return [(number.value, number.error, number.reason or status) for number in numbers]
 
 
@@ -136,33 +137,35 @@ def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
 
 
 class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
-    """Every measured peak of every scene by every model that has its quantity."""
+    """Analysis that compares every measured peak with every model that has its quantity."""
 
     key, stage, level = "measured", "measured", 2
     seconds = 1.0
-    function = staticmethod(peaks_at)
+    function = staticmethod(compute_peaks_at_phases)
     without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
-        """One for each scene, phase pair of a test, and model."""
+        """Yield the arguments of a task for each scene, phase pair of a test, and model."""
         for scene in study.scenes:
-            for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
+            for phases in dict.fromkeys(map(phases_of_peak, scene.measured or ())):
                 for model in models_of(scene, study.hierarchy):
                     if model.side == "user":
                         continue
                     yield scene, model, model.tolerance(study.tolerance), phases, _list_questions(scene, phases, model)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
-        """In the order of the scene files; None where no scene has measured peaks."""
-        known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
+        """Return the measured peaks in the order of the scene files; None where no scene has any."""
+        known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[MeasuredQuantityKey, PeakAnswer]]]] = {}
         values = self.values(study, surfaces, results)
         for (scene, model, _, phases, asked), peaks in zip(self.task_arguments(study), values, strict=True):
             known.setdefault((scene.name, phases), []).append((model.key, dict(zip(asked, peaks, strict=True))))
         scenes = [(scene, peak) for scene in study.scenes for peak in scene.measured or ()]
-        return [_compare_peak(scene, peak, known[scene.name, phases_of(peak)]) for scene, peak in scenes] or None
+        return [_compare_peak(scene, peak, known[scene.name, phases_of_peak(peak)]) for scene, peak in scenes] or None
 
 
-def _compare_peak(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[Asked, Peak]]]) -> MeasuredPeak:
+def _compare_peak(
+    scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[MeasuredQuantityKey, PeakAnswer]]]
+) -> MeasuredPeak:
     computed, asked = [], (peak.quantity, peak.body or 0)
     for model, known in models:
         if asked in known:
@@ -171,5 +174,5 @@ def _compare_peak(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapp
             verdict = judge_error(difference, peak.uncertainty + error)
             exceeds = None if verdict == NOT_COMPARED else verdict == NOT_MET
             computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
-    phases = (math.nan, math.nan) if peak.phases is None else phases_of(peak)
+    phases = (math.nan, math.nan) if peak.phases is None else phases_of_peak(peak)
     return MeasuredPeak(scene.name, *asked, phases, peak.value, peak.uncertainty, peak.source or "", computed)

@@ -1,4 +1,4 @@
-"""Measured peaks: in the report."""
+"""Report section of the peaks that experiments measured."""
 
 from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks, verdict_line, word_measured
 from comparison.report.feature import Feature, ResultField

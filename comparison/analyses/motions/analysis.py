@@ -1,4 +1,4 @@
-"""Motions kept for the report: a few phase pairs of every scene, by the models of its two differences, decimated."""
+"""Motions stored for the report: a few phase pairs of every scene by the models that the report compares, decimated."""
 
 from dataclasses import dataclass, field, replace
 
@@ -19,13 +19,15 @@ from reference.measures.demand_reader import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
-SHARE = 0.003  # share of the swing of a component: what a decimated motion may be off by
-MIN_SWING = 0.01  # share of its largest value: a component that changes less is as good as constant
-SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
+MAX_DECIMATION_ERROR = 0.003  # Largest interpolation error of a decimated motion, as a share of a component's range.
+MIN_SWING = 0.01  # A component whose range is below this share of its largest value counts as constant.
+EVENLY_SPREAD_PAIRS = (
+    5  # Number of phase pairs (k, 2k) 2 pi/5: they cover the square evenly, and no two are mirror images.
+)
 
 
 def half_swing(values: Array) -> Array:
-    """Half of what each component of `values` (T, C) goes through, (C,), in whose shares thinning is measured."""
+    """Return half of the range of each component of `values` (T, C), (C,): decimation errors are shares of it."""
     largest = np.abs(values).max(axis=0, initial=0.0)
     half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
     scale: Array = np.maximum(half, MIN_SWING * largest)
@@ -34,20 +36,22 @@ def half_swing(values: Array) -> Array:
 
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
-    Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
+    Return the indices to keep of `values` (T, C) at `time` (T,): ends, `peaks`, and all that straight lines need.
     lines between them to miss no value by more than SHARE of its component's `half_swing`.
     """
     if len(time) < 3:
         return np.arange(len(time))
     kept = np.zeros(len(time), bool)
     kept[[0, len(time) - 1]] = kept[peaks] = True
-    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / half_swing(values)), SHARE, kept)
+    _keep_corners(
+        np.ascontiguousarray(time), np.ascontiguousarray(values / half_swing(values)), MAX_DECIMATION_ERROR, kept
+    )
     return np.flatnonzero(kept)
 
 
 @cache_on_disk(__file__, error_model="numpy", nogil=True)
 def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.bool_]) -> None:
-    """Add to `kept` (T,), wherever a straight line misses one of `values` (T, C) by too much, the row missed most."""
+    """Add to `kept` (T,) the row with the largest error wherever a straight line misses `values` (T, C)."""
     start = 0
     while start < len(time) - 1:
         end = start + 1
@@ -68,7 +72,7 @@ def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.boo
 
 
 @dataclass(frozen=True)
-class Place:
+class MotionPlace:
     """A phase pair of the grid, by its indices, and why it was chosen, "" for one of an even spread."""
 
     scene: str
@@ -84,7 +88,7 @@ def _empty_series() -> Array:
 @dataclass(frozen=True)
 class StoredMotion:
     """
-    One motion at a place, decimated.
+    One decimated motion at a phase pair of the grid.
 
     model: key of the model. time: (T,), s. position, acceleration: (T, N, 2), displacement relative to the plate, and
     absolute acceleration. stick: s, intervals of rest, or of creep below v_reg. status: how the motion ended.
@@ -95,7 +99,7 @@ class StoredMotion:
     not computed. spectra: floor spectra of the motion, or None.
     """
 
-    place: Place
+    place: MotionPlace
     model: str
     time: Array
     position: Array
@@ -115,53 +119,56 @@ class StoredMotion:
         shape = (len(self.time), *bodies, 2)
         if self.time.ndim != 1 or self.position.shape != shape or self.acceleration.shape != shape:
             raise ValueError(f"{self.time.shape} instants of {self.position.shape} and {self.acceleration.shape}")
-        for name, values in self.blocks().items():
+        for name, values in self.series_by_name().items():
             if len(values) != len(self.time):
                 raise ValueError(f"{self.time.shape} instants of {name} {values.shape}")
 
-    def blocks(self) -> dict[str, Array]:
-        """Return what the motion has, (T, C) each, by name; "time" comes first."""
+    def series_by_name(self) -> dict[str, Array]:
+        """Return the series of the motion, (T, C) each, by name; "time" comes first."""
         names = ("time", "position", "acceleration", "contact_force", "isolator_force", "support_force", "yaw")
         arrays = {name: np.asarray(getattr(self, name)) for name in names}
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
-Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
+Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]
 
 
-def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
+def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:
     """
-    Return where the difference of each body is largest, and an even spread; with the engine's models that move there.
+    Return phase pairs of largest differences and an even spread of others, with the engine models to compute there.
     """
     engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:
-        return {Place(scene.name, 0, 0, ""): engines}
+        return {MotionPlace(scene.name, 0, 0, ""): engines}
     places: dict[tuple[int, int], tuple[str, set[str]]] = {}
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):
         for body in range(1, len(scene.bodies) + 1):
             if pair.key in largest and (place := difference_of(surfaces, scene.name, pair, body).place):
                 places.setdefault(place, (largest[pair.key].format(body), set()))[1].add(pair.second.key)
-    for k in range(SPREAD):
-        row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))
+    for k in range(EVENLY_SPREAD_PAIRS):
+        row, column = (
+            round(study.grid * (factor * k % EVENLY_SPREAD_PAIRS) / EVENLY_SPREAD_PAIRS) % study.grid
+            for factor in (1, 2)
+        )
         places.setdefault((row, column), ("", set()))[1].update(engines)
-    return {Place(scene.name, *place, why): moving for place, (why, moving) in places.items()}
+    return {MotionPlace(scene.name, *place, why): moving for place, (why, moving) in places.items()}
 
 
 def models_to_show(study: Study, scene: Scene) -> list[Model]:
-    """The models whose surfaces the page shows, each once; those that have motions."""
+    """Return the models whose surfaces the page shows and that have motions, each once."""
     shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
     return [model for model in shown.values() if model.trajectory]
 
 
-def compute_motion(task: Arguments) -> StoredMotion:
-    """The motion of one task, decimated; what goes wrong is said in `error_message`."""
+def compute_stored_motion(task: Arguments) -> StoredMotion:
+    """Return the decimated motion of one task; `error_message` holds what goes wrong."""
     scene, model, tolerance, place, phase = task
     try:
         motion: Trajectory = import_function(model.trajectory)(
             scene, phase, tolerance=tolerance, **model.motion_settings
         )
-        if len(motion.time) == 0:  # refused before its first step
+        if len(motion.time) == 0:  # The model refused the scene before its first step.
             return replace(
                 _motion_without_values(place, model.key, Outcome(motion.status), ""), demands=demands(motion)
             )
@@ -170,8 +177,8 @@ def compute_motion(task: Arguments) -> StoredMotion:
         return _motion_without_values(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
 
 
-def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
-    """The motion with its demands and spectra, decimated. Raises ValueError for numbers that are not finite."""
+def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> StoredMotion:
+    """Return the decimated motion with its demands and spectra. Raises ValueError for numbers that are not finite."""
     whole = StoredMotion(
         place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
         tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),
@@ -179,18 +186,18 @@ def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotio
         support_force=motion.support_force, yaw=motion.extra.get("yaw", _empty_series()),
         demands=demands(motion), spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
     )  # fmt: skip
-    values = np.hstack([block for name, block in whole.blocks().items() if name != "time"])
+    values = np.hstack([block for name, block in whole.series_by_name().items() if name != "time"])
     size = np.linalg.norm(motion.absolute_acceleration, axis=2)
     if not (np.isfinite(size).all() and np.isfinite(values).all()):
         raise ValueError("the motion holds numbers that are not finite")
     extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
     extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
     kept = decimate(whole.time, values, np.unique(np.concatenate(extremes)))
-    arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
+    arrays = {name: getattr(whole, name)[kept] for name in whole.series_by_name()}
     return replace(whole, **arrays)
 
 
-def _motion_without_values(place: Place, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
+def _motion_without_values(place: MotionPlace, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
     empty = np.zeros((0, 0, 2))
     return StoredMotion(
         place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message
@@ -202,14 +209,18 @@ def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
 
 
 class Motions(MappedAnalysis[list[StoredMotion]]):
-    """Motions kept for the report, at phases that the surfaces choose."""
+    """Analysis that stores motions for the report, at phases that depend on the surfaces."""
 
     key, stage, needs_surfaces = "motions", "motions", True
     seconds = 4.0
-    function, without_value, collect = staticmethod(compute_motion), staticmethod(_without_value), MappedAnalysis.values
+    function, without_value, collect = (
+        staticmethod(compute_stored_motion),
+        staticmethod(_without_value),
+        MappedAnalysis.values,
+    )
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
-        """Every place with every model that moves there, in the order scene, place, model."""
+        """Return every phase pair with every model to compute there, in the order scene, phase pair, model."""
         assert surfaces is not None, "the places are chosen by the surfaces"
         axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
         return [

@@ -1,4 +1,4 @@
-"""Motions at chosen phase pairs: in the report."""
+"""Report section of the motions at chosen phase pairs."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import Field, create_model
 
 from comparison.analyses.motions.analysis import Motions, StoredMotion
-from comparison.analyses.motions.page_data import encode_motions, motion_data, significant_digits
+from comparison.analyses.motions.page_data import collect_motion_data, encode_motions, round_to_significant_digits
 from comparison.report.feature import Feature, Findings, SceneField
 from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
 from reference.measures import Demands, FloorSpectra
@@ -36,8 +36,8 @@ class MotionSpectra(Part):
     """estimated absolute error"""
 
 
-class _MotionOfScene(Part):
-    """Demands of one stored motion on isolator and structure; no value where the motion ended early."""
+class _DemandsOfStoredMotion(Part):
+    """Demands of one stored motion; null where the motion ended early."""
 
     model: str
     """key of the model"""
@@ -70,7 +70,9 @@ _DEMANDS: dict[str, Any] = {
     if each.name in QUANTITIES
 }
 _DEMANDS["spectra"] = MotionSpectra | None, Field(description="null where the motion ended early")
-MotionDemands: Any = create_model("MotionDemands", __base__=_MotionOfScene, __doc__=_MotionOfScene.__doc__, **_DEMANDS)
+MotionDemands: Any = create_model(
+    "MotionDemands", __base__=_DemandsOfStoredMotion, __doc__=_DemandsOfStoredMotion.__doc__, **_DEMANDS
+)
 
 
 def _demands_of_motions(findings: Findings, scene: Scene) -> list[MotionDemands]:
@@ -93,14 +95,14 @@ def _demands_of_motions(findings: Findings, scene: Scene) -> list[MotionDemands]
 
 
 def _round_spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
-    """Six digits of the values, two of their errors."""
+    """Return the spectra rounded to six digits, their errors to two."""
     if spectra is None:
         return None
     return MotionSpectra(
-        period=significant_digits(spectra.period, 6),
+        period=round_to_significant_digits(spectra.period, 6),
         damping=spectra.damping,
-        acceleration=significant_digits(spectra.acceleration, 6),
-        error=significant_digits(spectra.error, 2),
+        acceleration=round_to_significant_digits(spectra.acceleration, 6),
+        error=round_to_significant_digits(spectra.error, 2),
     )
 
 
@@ -114,7 +116,7 @@ FEATURE = Feature(
     Motions.key,
     scene_fields=(DEMANDS,),
     analysis=Motions(),
-    needs="surfaces",  # the motions are shown below them
-    page_data=motion_data,
+    needs="surfaces",  # The report shows the motions below the surfaces.
+    page_data=collect_motion_data,
     packed_data=encode_motions,
 )

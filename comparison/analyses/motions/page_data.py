@@ -1,5 +1,5 @@
 """
-The motions that the page's script draws: their numbers packed, and where each stands among them.
+Packed numbers of the motions that the page's script draws, and the position of each motion among them.
 
 Packed numbers: 32-bit integers, little-endian, gzip, base64. One motion after the other, each column by column: T
 numbers of one component. A motion in `places` has
@@ -41,35 +41,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analyses.motions.analysis import Place, StoredMotion, half_swing
+from comparison.analyses.motions.analysis import MotionPlace, StoredMotion, half_swing
 from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
 
-Starts = dict[tuple[Place, str], int]
+MotionOffsets = dict[tuple[MotionPlace, str], int]
 
-ROUNDING = 7e-4  # share of the swing of a column
-DIGITS = 4  # digits of a spectrum: a line on a screen shows no more
-TIME_ROUNDING = 1e-6  # share of the duration
+MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed column, as a share of half its range
+SPECTRUM_DIGITS = 4  # significant digits of a spectrum: more are invisible in a drawn line
+MAX_TIME_ROUNDING = 1e-6  # largest rounding error of the time, as a share of the duration
 
 
 def encode_motions(report: Report) -> bytes:
-    """Return the numbers of every motion, one after the other."""
+    """Return the packed numbers of all motions, one motion after the other."""
     return b"".join(_encode_motion(motion) for motion in report.found.get("motions") or [])
 
 
-def motion_data(report: Report, scene: Scene) -> dict[str, Any]:
-    """Return what the page's script reads of the motions of a scene."""
+def collect_motion_data(report: Report, scene: Scene) -> dict[str, Any]:
+    """Return the data that the page's script reads of the motions of a scene."""
     return {
         "contact": contact_geometry(scene),
-        "places": list(places_with_motions(report, scene)),
+        "places": list(list_pairs_with_motions(report, scene)),
         "spectra": spectrum_axis(report, scene),
     }
 
 
-def places_with_motions(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
-    """The phase pairs of a scene that have motions, each with its motions by every model."""
-    starts = starts_of(report.found.get("motions") or [])
+def list_pairs_with_motions(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
+    """Yield every phase pair of a scene that has motions, each with its motions by every model."""
+    starts = find_motion_offsets(report.found.get("motions") or [])
     of_scene = [motion for motion in report.found.get("motions") or [] if motion.place.scene == scene.name]
     alpha1, alpha2 = (np.asarray(report.surfaces[name]) for name in ("alpha1", "alpha2"))
     for place, motions in groupby(of_scene, key=lambda motion: motion.place):
@@ -86,12 +86,12 @@ def places_with_motions(report: Report, scene: Scene) -> Iterator[dict[str, Any]
                     "stick": [[round(start, 4), round(end, 4)] for start, end in motion.stick],
                     "start": starts[place, motion.model],
                     "count": len(motion.time),
-                    "blocks": _columns_of_blocks(motion),
+                    "blocks": _list_column_ranges(motion),
                     "exponents": _rounding_exponents(motion).tolist(),
                     "demands": None if motion.demands is None else _list_demands(motion.demands),
                     "spectra": None
                     if motion.spectra is None
-                    else significant_digits(motion.spectra.acceleration, DIGITS),
+                    else round_to_significant_digits(motion.spectra.acceleration, SPECTRUM_DIGITS),
                 }
                 for motion in motions
             ],
@@ -99,16 +99,19 @@ def places_with_motions(report: Report, scene: Scene) -> Iterator[dict[str, Any]
 
 
 def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
-    """Periods, s, and damping ratio of the scene's floor response spectra."""
+    """Return the periods, s, and the damping ratio of the scene's floor response spectra."""
     for motion in report.found.get("motions") or []:
         if motion.place.scene == scene.name and motion.spectra is not None:
-            return {"period": significant_digits(motion.spectra.period, DIGITS), "damping": motion.spectra.damping}
+            return {
+                "period": round_to_significant_digits(motion.spectra.period, SPECTRUM_DIGITS),
+                "damping": motion.spectra.damping,
+            }
     return {"period": [], "damping": 0.0}
 
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Return where the contact points are.
+    Return the positions of the contact points.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.
@@ -121,45 +124,45 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
 
 
 def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
-    """Return the exponents of the units that columns are rounded to."""
+    """Return the exponents of two that the columns of a motion are rounded to."""
     values = _motion_columns(motion)
-    steps = ROUNDING * half_swing(values)
-    steps[:1] = TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
+    steps = MAX_COLUMN_ROUNDING * half_swing(values)
+    steps[:1] = MAX_TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
     return np.floor(np.log2(steps)).astype(int)
 
 
 def _motion_columns(motion: StoredMotion) -> NDArray[np.float64]:
-    blocks = list(motion.blocks().values())
+    blocks = list(motion.series_by_name().values())
     return np.hstack(blocks) if blocks else np.zeros((0, 0))
 
 
 def _encode_motion(motion: StoredMotion) -> bytes:
-    """The columns of a motion in their units: the first value, then the changes."""
+    """Return the columns of a motion as integers of their units: the first value, then the changes."""
     values = np.round(_motion_columns(motion) / 2.0 ** _rounding_exponents(motion))
     return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
 
 
-def starts_of(motions: Sequence[StoredMotion]) -> Starts:
-    """Return where the first number of every motion stands among all of them."""
-    sizes = [sum(block.size for block in motion.blocks().values()) for motion in motions]
+def find_motion_offsets(motions: Sequence[StoredMotion]) -> MotionOffsets:
+    """Return the offset of the first number of every motion among all packed numbers."""
+    sizes = [sum(block.size for block in motion.series_by_name().values()) for motion in motions]
     return {(motion.place, motion.model): last for motion, last in zip(motions, accumulate(sizes, initial=0))}
 
 
-def _columns_of_blocks(motion: StoredMotion) -> dict[str, list[int]]:
-    """By name, the first column and the number of columns of what the motion has."""
-    widths = {name: block.shape[1] for name, block in motion.blocks().items()}
+def _list_column_ranges(motion: StoredMotion) -> dict[str, list[int]]:
+    """Return for every series of the motion its first column and its number of columns."""
+    widths = {name: block.shape[1] for name, block in motion.series_by_name().items()}
     return {name: [last - width, width] for (name, width), last in zip(widths.items(), accumulate(widths.values()))}
 
 
-def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
-    """Return nested lists of numbers with that number of significant digits."""
+def round_to_significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
+    """Return nested lists of numbers rounded to that number of significant digits."""
     if values.ndim > 1:
-        return [significant_digits(part, digits) for part in values]
+        return [round_to_significant_digits(part, digits) for part in values]
     return [float(f"{value:.{digits}g}") for value in values]
 
 
 def _list_demands(demands: Demands) -> dict[str, Any]:
-    """The demands as JSON, without the status, which the motion has, too."""
+    """Return the demands as JSON without their status, which the motion states."""
 
     def pair(estimate: Any) -> list[Any] | None:
         if estimate is None:

@@ -1,4 +1,4 @@
-"""Recorded motions as they were read: in the report and in summary.json."""
+"""Report section and summary entry for each ground motion record, as read from its file."""
 
 from collections.abc import Sequence
 from typing import Annotated
@@ -14,7 +14,7 @@ from reference.records.description import RecordDescription
 
 @result
 class RecordedDirection:
-    """One direction of a recorded motion as read, without scale and detrend."""
+    """One direction of a ground motion record as read, before any scale factor or baseline correction."""
 
     axis: Annotated[str, "x, y or z"]
     peak: Annotated[Number, "largest size of the acceleration, m/s^2"]
@@ -25,7 +25,7 @@ class RecordedDirection:
 
 @result
 class RecordedMotion:
-    """A recorded motion as it was read."""
+    """One ground motion record as read from its file."""
 
     title: Annotated[Text, "its files, or suite and number"]
     origin: Annotated[tuple[Text, ...], "a line for every file with its format, and for what was ignored in it"]
@@ -39,7 +39,7 @@ class RecordedMotion:
 
 
 def list_recorded_motions(findings: Findings, scenes: Sequence[SceneResult]) -> list[RecordedMotion] | None:
-    """Return every recorded motion of a study; None where it has none."""
+    """Return every ground motion record of a study; None where it has none."""
     return [_recorded_motion(record) for record in describe_records(findings.study.scenes)] or None
 
 
@@ -52,7 +52,7 @@ def _recorded_motion(record: RecordDescription) -> RecordedMotion:
 
 
 def word_warnings(records: Sequence[RecordedMotion]) -> str:
-    """Return how many recorded motions were read, and how many of them are hardly meant so."""
+    """Return the number of records read and the number of them with implausible values."""
     count, warned = len(records), sum(bool(record.warnings) for record in records)
     read = f"{count} motion{'' if count == 1 else 's'} read"
     return f"{read}, {warned} with a warning" if warned else f"{read}, no warning"

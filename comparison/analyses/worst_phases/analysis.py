@@ -1,5 +1,5 @@
 """
-The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
+Search for the phases where mu_i and the displacement are largest in every scene, and the engine's values there.
 
 The search of `reference.worst_phases` is made for the small equations in both readings of (5.1), and for the equations
 that the engine answers for. Beside these the engine is searched in a square around the worst phases, so that its own
@@ -31,17 +31,19 @@ from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, predict_best, square_nodes
 from reference.problem import Scene
 
-TOLERANCE = 1e-5  # relative error of mu by the equations
-ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
-NOWHERE = (math.nan, math.nan)
+SEARCH_TOLERANCE = 1e-5  # relative error of mu at which the equations are solved in a search
+ENGINE_HALF_WIDTH = (
+    0.02  # rad, half width of the square around the equations' worst phases in which the engine is searched
+)
+NO_PHASES = (math.nan, math.nan)
 
 
 Quantity = Literal["amplification", "displacement"]
 
 
 @result
-class Worst:
-    """The largest value of one model over all phases."""
+class LargestOverPhases:
+    """Largest value of one model over all phases."""
 
     scene: Annotated[str, "name of the scene"]
     model: Annotated[str, "key of the model"]
@@ -49,11 +51,11 @@ class Worst:
     body: Annotated[int, "number of the body; 1 is the platform"]
     value: Annotated[Number, "largest value; null without an answer"] = math.nan
     error: Annotated[Number, "estimated absolute error of it"] = math.nan
-    phases: Annotated[Phases, "(alpha1, alpha2), rad"] = NOWHERE
+    phases: Annotated[Phases, "(alpha1, alpha2), rad"] = NO_PHASES
     kind: Literal["smooth", "kink", "jump", "nearby", "grid", ""] = ""
     """what the surface has there; "nearby": the largest of an engine near the worst phases of the equations; "grid":
     of its grid"""
-    side: Annotated[Phases, "direction from a jump to the large values next to it; null otherwise"] = NOWHERE
+    side: Annotated[Phases, "direction from a jump to the large values next to it; null otherwise"] = NO_PHASES
     runner_up: Annotated[Number, "the highest other value at which a local search ended"] = math.nan
     climbs: Annotated[int, "local maxima from which a search started"] = 0
     reached: Annotated[int, "searches that ended at the maximum"] = 0
@@ -63,13 +65,14 @@ class Worst:
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
-OnGrid = tuple[Model, GridMaximum]  # an engine model that is not searched, and its largest value on its grid
-# scene, model, its engine, engine that is not searched, quantity, body, tolerance of the engines, starts (K, 2)
-Arguments = tuple[Scene, Model, Model | None, OnGrid | None, Quantity, int, float, Array | None]
+# An engine model without a search of its own, and the largest value on its phase grid
+UnsearchedEngine = tuple[Model, GridMaximum]
+# arguments of a task: scene, model, its engine, unsearched engine, quantity, body, engine tolerance, starts (K, 2)
+SearchTaskArguments = tuple[Scene, Model, Model | None, UnsearchedEngine | None, Quantity, int, float, Array | None]
 
 
-def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
-    """The largest mu over all phases of a model, else of the next one that was searched, else of the one before."""
+def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
+    """Return the largest mu over all phases by a model, or by the nearest model of the hierarchy that was searched."""
     searched = {
         worst.model: worst
         for worst in found
@@ -81,7 +84,7 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
 
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Return model, engine of the same equations, quantity and body of every search."""
+    """Return model, engine with the same equations, quantity and body of every search."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -95,7 +98,7 @@ def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None
 def _starting_phases(
     study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
 ) -> Array | None:
-    """The local maxima of the surface, if it is as fine as the grid of the search."""
+    """Return the local maxima of the surface if its grid is as fine as that of the search."""
     if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
@@ -104,13 +107,13 @@ def _starting_phases(
     return starts if len(starts) else None
 
 
-def search_worst(task: Arguments) -> list[Worst]:
-    """Return the largest value of the equations, and of the engine models near it. Runs inside a worker process."""
+def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
+    """Return the largest value by the equations, and by the engine near it. Runs inside a worker process."""
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
-    maximum = reference.worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
+    maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
     stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}  # the model's
-    worst = Worst(scene.name, model.key, quantity, body, **stated)
+    worst = LargestOverPhases(scene.name, model.key, quantity, body, **stated)
     found = [worst]
     if engine is not None:
         found.append(_compute_engine_nearby(worst, scene, model, engine, tolerance))
@@ -119,21 +122,21 @@ def search_worst(task: Arguments) -> list[Worst]:
     return found
 
 
-def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
+def _without_value(task: SearchTaskArguments, failed: TaskResult) -> list[LargestOverPhases]:
     scene, model, engine, on_grid, quantity, body, *_ = task
     models = [model, *([engine] if engine else []), *([on_grid[0]] if on_grid else [])]
-    return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
+    return [LargestOverPhases(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
 
 
-class WorstPhases(MappedAnalysis[list[Worst]]):
-    """Searches of every scene and body; one more for the displacement."""
+class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):
+    """Analysis that searches the largest mu of every body and the largest displacement in every scene."""
 
     key, stage, needs_surfaces = "worst_phases", "worst phases", True
     seconds = 2.0
-    function, without_value = staticmethod(search_worst), staticmethod(_without_value)
+    function, without_value = staticmethod(search_worst_phases), staticmethod(_without_value)
 
-    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
-        """One for each search, of the engine with that of its counterpart."""
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[SearchTaskArguments]:
+        """Yield the arguments of each search, with the engine that solves the same equations."""
         for scene in study.phased:
             for model, engine, quantity, body in _list_searches(study, scene):
                 starts = _starting_phases(study, surfaces, scene, model, quantity, body)
@@ -141,23 +144,25 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
                 yield scene, model, engine, on_grid, quantity, body, study.tolerance, starts
 
 
-def _compute_engine_nearby(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
-    """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
+def _compute_engine_nearby(
+    worst: LargestOverPhases, scene: Scene, like: Model, model: Model, tolerance: float
+) -> LargestOverPhases:
+    """Return the engine's value at the worst phases of the equations, and its largest in a square around them."""
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))
     search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
     (corners, _), (square, _) = square_nodes(2), square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
-    equations = _surface_of_model(scene, like, TOLERANCE, worst.body).compute(
+    equations = _surface_of_model(scene, like, SEARCH_TOLERANCE, worst.body).compute(
         search.phases + ENGINE_HALF_WIDTH * square
     )
     highest, _ = predict_best(engine, search, _estimate_engine_by_ratio(start, computed, equations))
     search.move_to_best(computed)
     search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
-        return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
+        return LargestOverPhases(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (search.phases % (2.0 * np.pi)).tolist()
-    return Worst(
+    return LargestOverPhases(
         scene.name, model.key, worst.quantity, worst.body, search.value, search.error, (alpha1, alpha2), "nearby",
         climbs=1, reached=1, evaluations=engine.evaluations,
         at_start=float(start.numerator[0] / start.denominator[0]),
@@ -165,8 +170,8 @@ def _compute_engine_nearby(worst: Worst, scene: Scene, like: Model, model: Model
     )  # fmt: skip
 
 
-def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> OnGrid | None:
-    """The spatial engine model with its largest value on its grid; None without one."""
+def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> UnsearchedEngine | None:
+    """Return the spatial engine model with its largest value on its grid; None without one."""
     model = study.compared(scene)[-1]
     if surfaces is None or not model.is_spatial:
         return None
@@ -174,8 +179,10 @@ def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, bo
     return (model, largest) if math.isfinite(largest.mu) else None
 
 
-def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, tolerance: float) -> Worst:
-    """The larger of an engine's values at the worst phases of the equations and on its own grid."""
+def _larger_of_grid_and_worst(
+    worst: LargestOverPhases, scene: Scene, on_grid: UnsearchedEngine, tolerance: float
+) -> LargestOverPhases:
+    """Return the larger of an engine's values on its grid and at the worst phases of the equations."""
     model, largest = on_grid
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
@@ -183,8 +190,8 @@ def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, toler
     about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
     name = worst.scene, model.key, worst.quantity, worst.body
     if start > largest.mu:
-        return Worst(*name, start, start_error, worst.phases, "nearby", **about)  # type: ignore[arg-type]
-    return Worst(*name, largest.mu, largest.error, largest.phases, "grid", **about)  # type: ignore[arg-type]
+        return LargestOverPhases(*name, start, start_error, worst.phases, "nearby", **about)  # type: ignore[arg-type]
+    return LargestOverPhases(*name, largest.mu, largest.error, largest.phases, "grid", **about)  # type: ignore[arg-type]
 
 
 def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
@@ -194,7 +201,7 @@ def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -
 def _estimate_engine_by_ratio(
     center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
 ) -> ComputedPhases:
-    """Return the engine at the 3 x 3 places of a square by its ratio to the equations, known at five of these."""
+    """Return the engine at 3 x 3 phase pairs by its ratio to the equations, computed at five of these."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]

@@ -1,10 +1,10 @@
-"""The largest values over all phases: in the report."""
+"""Report section of the largest values over all phases."""
 
 import math
 from collections.abc import Mapping
 from typing import Any
 
-from comparison.analyses.worst_phases.analysis import Worst, WorstPhases, nearest_search
+from comparison.analyses.worst_phases.analysis import LargestOverPhases, WorstPhases, find_nearest_search
 from comparison.report.feature import Feature, ResultField
 from comparison.report.page_data import DIGITS
 from comparison.report.panels import distribution_panels, fractile_heads
@@ -15,7 +15,7 @@ from reference.problem import Scene
 from reference.problem.readings import BOTH_READINGS
 
 
-def _word_kind(worst: Worst) -> str:
+def _word_kind(worst: LargestOverPhases) -> str:
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
@@ -32,14 +32,14 @@ def _word_kind(worst: Worst) -> str:
 
 
 def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
-    """The distributions that answer the question: the small equations in both readings, and the last model."""
+    """Return the distributions to draw for a body: the small equations in both readings, and the last model."""
     (last,) = (line.second for line in scene.headlines if line.body == body)
     kept = (SMALL.key, SMALL_RESOLVED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 
-def _name_reading(report: Report, worst: Worst) -> str:
-    """The reading of (5.1) that a largest value has; "" of a displacement."""
+def _name_reading(report: Report, worst: LargestOverPhases) -> str:
+    """Return the reading of (5.1) that a largest value has; "" for a displacement."""
     if worst.quantity == "displacement":
         return ""
     (scene,) = (scene for scene in report.study.scenes if scene.name == worst.scene)
@@ -47,25 +47,25 @@ def _name_reading(report: Report, worst: Worst) -> str:
     return BOTH_READINGS.removeprefix("in ") if has_smooth_friction(scene) else model.reading
 
 
-FOUND = ResultField(WorstPhases.key, list[Worst], "the largest values over all phases; null if not computed")
+FOUND = ResultField(
+    WorstPhases.key, list[LargestOverPhases], "the largest values over all phases; null if not computed"
+)
 
 
-def _worst_of_models(report: Report, scene: Scene) -> Mapping[str, Any]:
+def _list_marks(report: Report, scene: Scene) -> Mapping[str, Any]:
     """
-    Return `worst`: by model and body, what the page marks on the surface.
+    Return under `worst` the largest value of every model and body, which the page marks on the surface.
 
     alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this one or one near it. None
     where none was.
     """
     keys = [each.key for each in models_of(scene, report.study.hierarchy)]
     searched, bodies = report.found.get(WorstPhases.key) or (), range(1, len(scene.bodies) + 1)
-    nearest = {key: [nearest_search(searched, keys, scene.name, key, body) for body in bodies] for key in keys}
-    return {
-        "worst": {key: [worst and _mark_of_worst(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}
-    }
+    nearest = {key: [find_nearest_search(searched, keys, scene.name, key, body) for body in bodies] for key in keys}
+    return {"worst": {key: [worst and _make_mark(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}}
 
 
-def _mark_of_worst(worst: Worst) -> list[float | str]:
+def _make_mark(worst: LargestOverPhases) -> list[float | str]:
     return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
 
 
@@ -96,7 +96,7 @@ FEATURE = Feature(
     WorstPhases.key,
     (FOUND,),
     analysis=WorstPhases(),
-    page_data=_worst_of_models,
+    page_data=_list_marks,
     section=Section(
         "Largest values over all phases",
         "phase-resonance run makes it, of scenes with phases",

@@ -18,10 +18,10 @@ from terminal_tables import rows_under
 import reference
 from comparison.analyses.ensemble import analysis, governing, quantities, statistics
 from comparison.analyses.ensemble.build import read_suite
-from comparison.analyses.ensemble.command import CHECKED, FILES, largest_choices, main
-from comparison.analyses.ensemble.governing import largest_count
-from comparison.analyses.ensemble.members import SCALE, Member, members_of, with_suite
-from comparison.analyses.ensemble.rows import labels
+from comparison.analyses.ensemble.command import CHECKS_FILE, WRITTEN_FILES, bound_engine_motion_count, main
+from comparison.analyses.ensemble.governing import bound_motion_count
+from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember, list_members, with_suite
+from comparison.analyses.ensemble.rows import label_structures
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
 from comparison.study.models import EXACT, SMALL, TRANSLATIONAL
@@ -65,11 +65,11 @@ def test_the_error_of_a_fractile_covers_every_change() -> None:
     random = np.random.default_rng(2)
     values, errors = random.uniform(1.0, 2.0, 22), random.uniform(0.0, 0.2, 22)
     gaps = [Estimate(value, 0.0) for value in (3.0, NAN, 1.0, 2.0, NAN)]
-    lacking = [statistics.uncertain_fractile(gaps, share).value for share in (0.5, 0.6)]
+    lacking = [statistics.compute_fractile_with_error(gaps, share).value for share in (0.5, 0.6)]
     assert lacking == pytest.approx([3.0, NAN], nan_ok=True), "without an answer it is larger than all others"
     numbers = [Estimate(*pair) for pair in zip(values, errors)]
     for share in (0.0, 0.16, 0.5, 0.84, 1.0):
-        stated = statistics.uncertain_fractile(numbers, share)
+        stated = statistics.compute_fractile_with_error(numbers, share)
         assert stated.value == pytest.approx(np.quantile(values, share, method="hazen"), abs=1e-12)
         corners = [values + sign * errors for sign in (-1.0, 1.0)]
         drawn = [values + errors * random.uniform(-1.0, 1.0, 22) for _ in range(200)]
@@ -79,14 +79,16 @@ def test_the_error_of_a_fractile_covers_every_change() -> None:
 
 def demanding(
     motion: str = "m", scale: float = 1.0, structure: str = "mine", **known: Estimate | Mapping[int, Estimate]
-) -> analysis.Point:
+) -> analysis.MotionDemandsAtScale:
     """A motion of which these demands are known, of bodies by their numbers; every other is lacking."""
     values = {
         (name, body): number
         for name, numbers in known.items()
         for body, number in ({0: numbers} if isinstance(numbers, Estimate) else numbers).items()
     }
-    return analysis.Point(Member(structure, motion, scale, load_scene("fig3-I")), "exact", "ok", values)
+    return analysis.MotionDemandsAtScale(
+        EnsembleMember(structure, motion, scale, load_scene("fig3-I")), "exact", "ok", values
+    )
 
 
 def sure(value: float) -> Estimate:
@@ -102,14 +104,14 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     points = [
         demanding(f"m{n}", displacement=a, contact_force_min=a, residual=b) for n, (a, b) in enumerate(zip(moved, left))
     ]
-    displacement, residual, force = statistics.stripes(analysis.Points(points))
+    displacement, residual, force = statistics.summarize_demands(analysis.EnsemblePoints(points))
     assert (displacement.smallest.value, displacement.largest.value) == (1.0, None)
     assert (force.smallest.value, force.largest.value) == (None, 6.0)
     assert (displacement.mean.value, displacement.answered, displacement.reasons) == (None, 3, {"ok": 1})
     assert (residual.answered, residual.reasons) == (3, {reason: 1})
     assert (displacement.smallest_motion, displacement.largest_motion) == ("m0", "")
     assert (force.smallest_motion, force.largest_motion) == ("", "m2")
-    known, _, _ = statistics.stripes(analysis.Points(points[:3]))
+    known, _, _ = statistics.summarize_demands(analysis.EnsemblePoints(points[:3]))
     assert known.largest_motion == "m2"
     assert (known.mean.value, known.mean.error) == pytest.approx((3.0, 0.3))
 
@@ -118,7 +120,9 @@ PLACES = [[3.0, 2.0], [-3.5, 2.0], [0.5, -2.5]]  # m
 FORCES = StoryForces((sure(1.0),), None, None, None, None)
 
 
-def carrying(motion: str, scale: float, smallest: Numbers, largest: Numbers, gaps: Numbers | None) -> analysis.Point:
+def carrying(
+    motion: str, scale: float, smallest: Numbers, largest: Numbers, gaps: Numbers | None
+) -> analysis.MotionDemandsAtScale:
     """A motion with the forces of its supports, N, of which the errors are a tenth, and their gaps, m."""
     scene = load_scene("fig3-I").with_values({"isolator.supports": PLACES, "isolator.ring": None})
     low, high, gap = (
@@ -126,7 +130,7 @@ def carrying(motion: str, scale: float, smallest: Numbers, largest: Numbers, gap
     )
     forces = replace(FORCES, support_min=low, support_max=high, uplift=gap)
     model = "exact" if gaps is None else "spatial"
-    return analysis.Point(Member("mine", motion, scale, scene), model, "ok", forces=forces)
+    return analysis.MotionDemandsAtScale(EnsembleMember("mine", motion, scale, scene), model, "ok", forces=forces)
 
 
 def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motions() -> None:
@@ -139,7 +143,9 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
         carrying("m1", 2.0, (9.0, 8.0, 7.0), (11.0, 12.0, 13.0), (0.0, 0.001, 0.0004)),
         carrying("m2", 2.0, (7.5, 5.5, 6.5), (25.0, 35.0, 45.0), (0.0, 0.002, 0.001)),
     ]
-    found = list(statistics.support_extremes(analysis.Points(equations, (), {"small": [], "spatial": spatial})))
+    found = list(
+        statistics.find_support_extremes(analysis.EnsemblePoints(equations, (), {"small": [], "spatial": spatial}))
+    )
     assert [(each.support, each.x, each.y) for each in found] == [(n, *PLACES[n - 1]) for n in (1, 2, 3)] * 2
     assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 2)] * 3
     smallest = [(each.smallest.value, each.smallest_motion) for each in found[:3]]
@@ -165,7 +171,7 @@ def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_wor
         FORCES, shear=(sure(9.0), sure(5.0), sure(2.0)), moment=(sure(70.0), sure(30.0), sure(4.0)),
         support_min=(sure(3.0), sure(2.0), sure(4.0)), support_max=(sure(6.0), sure(8.0), sure(7.0)),
     )  # fmt: skip
-    found = quantities.values_of_motion(scene, SimpleNamespace(drift=drifts), forces)  # type: ignore[arg-type]
+    found = quantities.collect_demand_values(scene, SimpleNamespace(drift=drifts), forces)  # type: ignore[arg-type]
     ratios = {body: (number.value, number.error) for (name, body), number in found.items() if name == "drift_ratio"}
     assert ratios[2] == pytest.approx((0.01, 0.001))
     assert ratios[3] == pytest.approx((0.02, 0.0005))
@@ -189,7 +195,9 @@ def test_beside_a_suite_a_scene_keeps_its_scale_and_zero_line_alone() -> None:
 def test_a_motion_has_its_peak_at_scale_1_with_the_factors_of_list_and_target() -> None:
     scene = load_scene("synthetic-pair")
     peak = float(np.hypot(*scene.record[:, 1:3].T).max())
-    members = [Member("mine", "m", scale, scene.with_values({SCALE: 1.7 * scale}), 1.7) for scale in (4.0, 0.5)]
+    members = [
+        EnsembleMember("mine", "m", scale, scene.with_values({SCALE_KEY: 1.7 * scale}), 1.7) for scale in (4.0, 0.5)
+    ]
     (read,) = read_suite(members, {"m": Motion("m", {}, 1.3, 6.9)})
     assert (read.peak, read.factor, read.magnitude) == pytest.approx((1.7 * peak, 1.7 * 1.3, 6.9))
     assert read.duration == scene.duration
@@ -200,7 +208,7 @@ def test_a_band_of_floor_spectra_has_the_larger_direction() -> None:
     values = np.array([[[[1.0], [2.0]], [[5.0], [3.0]]], [[[4.0], [1.5]], [[6.0], [9.0]]]])
     spectra = [FloorSpectra(np.array([0.5]), 0.05, each, 0.01 * each[:, ::-1]) for each in values]
     points = [replace(demanding(displacement=Estimate(0.0, 0.0)), spectra=each) for each in spectra]
-    first, second = statistics.spectrum_bands(points)
+    first, second = statistics.summarize_spectra(points)
     assert (first.body, first.damping, first.period) == (1, 0.05, [0.5])
     for band, pair in ((first, (2.0, 4.0)), (second, (5.0, 9.0))):
         assert (band.mean[0].value, band.mean[0].error) == pytest.approx((np.mean(pair), 0.01 * np.mean(pair)))
@@ -208,17 +216,17 @@ def test_a_band_of_floor_spectra_has_the_larger_direction() -> None:
 
 
 def test_accelerations_as_integrated_are_below_the_supremum_where_a_stop_adds_to_it() -> None:
-    scene, ground = load_scene("fig3-I"), float(ground_peak(load_scene("fig3-I"), [analysis.REST])[0])
+    scene, ground = load_scene("fig3-I"), float(ground_peak(load_scene("fig3-I"), [analysis.NO_PHASES])[0])
     for model, equations in ((EXACT, "exact"), (SMALL, "small")):
         read = analysis.read_as_integrated((scene, model, 1e-6))
         resolved, supremum = (
-            reference.amplification(scene, analysis.REST, equations=equations, cutoff=cutoff).mu * ground
+            reference.amplification(scene, analysis.NO_PHASES, equations=equations, cutoff=cutoff).mu * ground
             for cutoff in (1e-3, None)
         )
         assert [each.value for each in read] == pytest.approx(resolved, rel=1e-5)
         assert read[0].value < 0.99 * supremum[0], "a case in which the readings differ"
-    values = quantities.values_of_motion(
-        scene, reference.demands(reference.trajectory(scene, analysis.REST)), FORCES, read
+    values = quantities.collect_demand_values(
+        scene, reference.demands(reference.trajectory(scene, analysis.NO_PHASES)), FORCES, read
     )
     assert values["acceleration", 1] == read[0]
     assert values["acceleration_supremum", 1].value > values["acceleration", 1].value
@@ -233,7 +241,9 @@ def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path) ->
     assert (content()["motions"], content()["scales"]) == (1, [0.5])
 
 
-def chosen(points: list[analysis.Point], asked: governing.Asked = None) -> dict[str, tuple[str, ...]]:
+def chosen(
+    points: list[analysis.MotionDemandsAtScale], asked: governing.EngineRequest = None
+) -> dict[str, tuple[str, ...]]:
     return {each.member.motion: each.reasons for each in governing.choose_motions(points, asked)}
 
 
@@ -254,7 +264,7 @@ def test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median()
     assert list(chosen(points, 2)) == ["a", "b"]
     assert list(chosen(points, 4)) == ["a", "b", "c", "d"], "then the next largest displacement"
     assert list(chosen(points, ("b", "e"))) == ["b", "e"]
-    assert len(chosen(points, governing.MOST)) == 5
+    assert len(chosen(points, governing.MAX_ENGINE_MOTIONS)) == 5
     smaller = [replace(point, member=replace(point.member, scale=0.5)) for point in points]
     assert chosen([*smaller, *points]) == chosen(points), "at the largest scale"
     assert all(each.member.scale == 1.0 for each in governing.choose_motions([*smaller, *points], None))
@@ -264,19 +274,19 @@ def test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median()
 
 
 def test_each_motion_of_the_engine_is_computed_by_every_model(folder: Path) -> None:
-    (member,) = members_of([load_family("synthetic-pair")])
+    (member,) = list_members([load_family("synthetic-pair")])
     ensemble = analysis.Ensemble((member,))
-    tasks = ensemble.engine_tasks([governing.Choice(member, ())])
+    tasks = ensemble.make_engine_tasks([governing.ChosenMember(member, ())])
     asked = {task.argument[1].key: task.argument[2] for task in tasks}
     tolerances = {"small": 1e-6, "regularised": 1e-6, "translational": 1e-2, "spatial": 1e-2}
     assert asked == tolerances, "relative errors"
-    assert [task.argument[1].key for task in ensemble.equation_tasks()] == ["exact"]
-    assert len(replace(ensemble, spatial=False).engine_tasks([governing.Choice(member, ())])) == 3
+    assert [task.argument[1].key for task in ensemble.make_equation_tasks()] == ["exact"]
+    assert len(replace(ensemble, spatial=False).make_engine_tasks([governing.ChosenMember(member, ())])) == 3
 
 
 def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1") == 0
-    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"} - {CHECKED}
+    assert {file.name for file in Path("out").iterdir()} == {*WRITTEN_FILES, "manifest.json"} - {CHECKS_FILE}
     summary = content()
     assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
     with open("out/ensemble.csv", newline="", encoding="utf-8") as file:
@@ -446,7 +456,7 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, capsys: pytest.
 def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     (tmp_path / "code.csv").write_text("period [s], acceleration [g]\n0.1, 0.5\n2.0, 0.3\n")
     scene = load_scene("synthetic-pair")
-    members = [Member("a", "m", scale, scene.with_values({SCALE: scale})) for scale in (0.3, 1.3)]
+    members = [EnsembleMember("a", "m", scale, scene.with_values({SCALE_KEY: scale})) for scale in (0.3, 1.3)]
     scaled, target = match_spectrum(members, str(tmp_path / "code.csv"), None)
     assert len(target.motions) == 1
     assert np.ptp(np.diff(np.log(target.acceleration))) < 1e-12, "straight in the logarithms"
@@ -510,24 +520,24 @@ def test_the_plan_and_the_line_before_the_engine_count_the_same_seconds(folder, 
 
 def test_the_plan_says_how_many_motions_the_engine_computes_at_most() -> None:
     scene = load_scene("synthetic-pair")
-    assert largest_count(None, scene, 22) == 5
-    assert largest_count(None, scene.with_values({"isolator.supports": None}), 22) == 4
-    assert largest_count(None, scene, 3) == 3
-    assert [largest_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
-    members = [Member(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
-    assert largest_choices(members, None) == 10
+    assert bound_motion_count(None, scene, 22) == 5
+    assert bound_motion_count(None, scene.with_values({"isolator.supports": None}), 22) == 4
+    assert bound_motion_count(None, scene, 3) == 3
+    assert [bound_motion_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
+    members = [EnsembleMember(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
+    assert bound_engine_motion_count(members, None) == 10
 
 
 def test_structures_are_told_apart_by_the_values_that_differ() -> None:
     """A power of ten is one value, and not two."""
     names = [f"frame[friction=slow=0.03+rate={rate}, travel=0.2]" for rate in ("1e+05", "2e+05")]
-    found = labels(SimpleNamespace(structures=[SimpleNamespace(name=name) for name in names]))  # type: ignore[arg-type]
+    found = label_structures(SimpleNamespace(structures=[SimpleNamespace(name=name) for name in names]))  # type: ignore[arg-type]
     assert list(found.values()) == ["rate=1e+05", "rate=2e+05"]
 
 
 def test_an_engine_that_does_not_meet_its_tolerance_has_no_value() -> None:
     """Only the exact equations keep what they found before a motion ended early."""
-    member = Member("mine", "m", 1.0, load_scene("synthetic-pair"))
+    member = EnsembleMember("mine", "m", 1.0, load_scene("synthetic-pair"))
     motion = reference.trajectory(member.scene, (0.0, 0.0))
     for status, known in (("ok", True), ("tolerance not met", False)):
         answer = replace(reference.demands(motion), status=status), story_forces(motion), None, (), 1.5

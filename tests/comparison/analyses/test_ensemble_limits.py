@@ -15,18 +15,24 @@ import pytest
 from markupsafe import escape
 
 from comparison.analyses.ensemble.command import main
-from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, verdicts_of, word_check, word_checks
-from comparison.analyses.ensemble.page import page_of
+from comparison.analyses.ensemble.limits import (
+    check_limits,
+    compare_with_stored,
+    list_verdicts,
+    word_check,
+    word_checks,
+)
+from comparison.analyses.ensemble.page import render_ensemble_page
 from comparison.analyses.ensemble.result import (
     SCHEMA,
     STORED,
     BuildingRead,
+    DemandAtScale,
     DemandCurve,
     DemandFractile,
-    Engine,
+    EngineMotions,
     EnsembleResult,
     Statistic,
-    Stripe,
     Structure,
     SupportExtremes,
 )
@@ -52,18 +58,20 @@ def ensemble_of(
     ]
     stripes = [stripe_of(f"job[{bound}]", *about, row, error) for bound in bounds for about, row in values.items()]
     structures = [Structure(f"job[{bound}]", "Job", 6, WEIGHT) for bound in bounds]
-    known = {"stripes": stripes, "curves": curves, "spectra": [], "engine": Engine("spatial", [])}
+    known = {"stripes": stripes, "curves": curves, "spectra": [], "engine": EngineMotions("spatial", [])}
     return EnsembleResult(SCHEMA, structures, [1.0], len(MOTIONS), {"ok": 3}, **known, run={})
 
 
-def stripe_of(structure: str, quantity: str, body: int | None, row: tuple[float | None, ...], error: float) -> Stripe:
+def stripe_of(
+    structure: str, quantity: str, body: int | None, row: tuple[float | None, ...], error: float
+) -> DemandAtScale:
     """Mean and largest value of a demand; none where a motion has none."""
     whole = [value for value in row if value is not None]
     complete = len(whole) == len(row)
     mean, largest = (Statistic(value if complete else None, error) for value in (float(np.mean(whole)), max(whole)))
     fractiles = [DemandFractile(1.0, 0.0, share) for share in (0.16, 0.5, 0.84)]
     named = MOTIONS[row.index(max(whole))]
-    return Stripe(
+    return DemandAtScale(
         structure, quantity, body, "exact", "m", 1.0, len(whole), mean, fractiles, largest, largest, {}, named, named
     )
 
@@ -297,10 +305,10 @@ def test_a_demand_that_one_of_two_ensembles_lacks_is_not_compared() -> None:
 def test_the_report_has_the_verdict_on_every_limit() -> None:
     ensemble = ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)})
     checks = check_limits(ensemble, {"job[upper bound]": DemandLimits(displacement=0.4, base_shear=0.5)})
-    page = page_of(replace(ensemble, limits=verdicts_of(checks)))
+    page = render_ensemble_page(replace(ensemble, limits=list_verdicts(checks)))
     assert "2 demands: 1 met, 1 not met, 0 not compared." in page
     assert all(str(escape(word_check(check))) in page for check in checks)
-    assert "not compared." not in page_of(ensemble), "no section without limits"
+    assert "not compared." not in render_ensemble_page(ensemble), "no section without limits"
 
 
 SCENE = """title = "a block"
@@ -322,7 +330,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / "suite" / f"{name}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
     (tmp_path / "block.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("comparison.analyses.ensemble.command.page_of", lambda result: "")
+    monkeypatch.setattr("comparison.analyses.ensemble.command.render_ensemble_page", lambda result: "")
     return tmp_path
 
 

@@ -21,19 +21,19 @@ from runs import SMALL, quick_figures
 import reference
 from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, trust
 from comparison.analyses.ensemble.command import main
-from comparison.analyses.ensemble.quantities import text_of
+from comparison.analyses.ensemble.quantities import word_value
 from comparison.analyses.ensemble.result import (
     STORED,
     BuildingRead,
     ChosenMotion,
+    DemandAtScale,
     DemandCurve,
     DemandFractile,
     EndedMotion,
-    Engine,
+    EngineMotions,
     EnsembleResult,
     GroundMotion,
     Statistic,
-    Stripe,
     Structure,
     SupportExtremes,
 )  # fmt: skip
@@ -129,18 +129,20 @@ def test_every_number_of_the_printed_report_is_read_back(folder: Path, found: En
         assert len(own) == 4
         for head, factor in heads.items():
             values = [float(row[head]) for row in own]
-            shown = [text_of(value, None, factor) for value in np.quantile(values, [0.16, 0.5, 0.84], method="hazen")]
+            shown = [
+                word_value(value, None, factor) for value in np.quantile(values, [0.16, 0.5, 0.84], method="hazen")
+            ]
             assert letters("".join(shown)) in text, (bound, head)
             for value in (np.mean(values), min(values) if "min" in head else max(values)):
-                assert letters(text_of(float(value), None, factor)) in text, (bound, head)
+                assert letters(word_value(float(value), None, factor)) in text, (bound, head)
         shears = [100.0 * float(row["base_shear [N]"]) / weight for row in own]
-        assert letters(text_of(float(np.mean(shears)), None, 1.0)) in text
+        assert letters(word_value(float(np.mean(shears)), None, 1.0)) in text
     for each in found.supports:
         for number in (each.smallest, each.largest):
-            assert letters(text_of(number.value, number.error, 1e-3)) in text
+            assert letters(word_value(number.value, number.error, 1e-3)) in text
     for number, sheet in enumerate(printed.texts, start=1):
         assert letters(f"page {number} of {len(printed.texts)}") in sheet
-        assert sheet.count(letters(sentences.heading(found))) == 1 + (number == 1), "at the top of every page"
+        assert sheet.count(letters(sentences.word_heading(found))) == 1 + (number == 1), "at the top of every page"
     for size in printed.sizes:
         assert size == pytest.approx((210.0, 297.0), abs=0.5)
     assert min(printed.filled[:-1]) > 1.0 / 3.0, printed.filled
@@ -176,7 +178,7 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
     assert upper is not None
     assert (list(lower.friction), list(upper.friction)) == (pytest.approx([0.024, 0.048]), pytest.approx([0.045, 0.09]))
     for structure in found.structures:
-        isolator, moved = structure.isolator, found.stripe(structure.name, "displacement")
+        isolator, moved = structure.isolator, found.find_demand(structure.name, "displacement")
         assert isolator is not None
         assert moved is not None
         effective = reference.effective_isolator(
@@ -202,15 +204,18 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
 def test_forces_over_the_height_agree_with_those_of_the_supports(found: EnsembleResult) -> None:
     """By hand: moments at the isolator carried by two rows of supports bound the change of a support's force."""
     for structure in found.structures:
-        moment, force = (found.stripe(structure.name, name, body) for name, body in
+        moment, force = (found.find_demand(structure.name, name, body) for name, body in
                          (("overturning_moment", 1), ("support_force_max", None)))  # fmt: skip
-        shear, base = found.stripe(structure.name, "story_shear", 1), found.stripe(structure.name, "base_shear")
+        shear, base = (
+            found.find_demand(structure.name, "story_shear", 1),
+            found.find_demand(structure.name, "base_shear"),
+        )
         assert moment is not None
         assert force is not None
         assert shear is not None
         assert base is not None
         assert shear.mean == base.mean
-        displaced = found.stripe(structure.name, "displacement")
+        displaced = found.find_demand(structure.name, "displacement")
         assert displaced is not None
         # by moment along y, with the shorter arm, and the weight that is displaced by u R / rho
         most = moment.largest.value + 2.1 / 2.0 * structure.weight * displaced.largest.value  # type: ignore[operator]
@@ -260,13 +265,13 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
     numbers = [Statistic(float(each), 0.001) for each in (np.mean(values), max(values), min(values))]
     shares = (0.16, 0.5, 0.84)
     fractiles = [DemandFractile(float(np.quantile(values, share, method="hazen")), 0.0, share) for share in shares]
-    stripe = Stripe("b", "displacement", None, "exact", "m", 1.0, motions, numbers[0], fractiles, *numbers[1:],
+    stripe = DemandAtScale("b", "displacement", None, "exact", "m", 1.0, motions, numbers[0], fractiles, *numbers[1:],
                     {}, names[-1], names[0])  # fmt: skip
     chosen = [ChosenMotion("b", name, 1.0, ["largest displacement"], {}) for name in names[motions // 2 :]]
     building = BuildingRead(4, 250.0, [[2.0]], [[]], [[]], 2.0, (0.03, 0.06), 0.5, None, ("deck",))
     return EnsembleResult(
         "phase-resonance/ensemble/4", [Structure("b", "A <block>", 1, 1e3, None, building)], (1.0,), motions,
-        {"ok": motions}, [stripe], curves, [], Engine("spatial", chosen), {},
+        {"ok": motions}, [stripe], curves, [], EngineMotions("spatial", chosen), {},
         suite=[GroundMotion(name, 10.0, 2.0) for name in names],
     )  # fmt: skip
 
@@ -322,10 +327,10 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
     found = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
     found = with_demand(found, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009), spatial=(0.001,) * 4)
     found = with_demand(found, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005), spatial=(0.004,) * 4)
-    row = next(row for row in rows.demand_rows(found, 1.0) if row.name == "largest drift ratio")
+    row = next(row for row in rows.make_demand_rows(found, 1.0) if row.name == "largest drift ratio")
     assert (row.cells[0], row.cells[2], row.cells[4]) == ("0.525", "0.4", "0.9"), "mean, median and largest of maxima"
     assert (row.motion, row.where) == ("m4", "below body 2")
-    table = {row.name: row.cells[4] for row in rows.profile_rows(found, "drift_ratio", 1.0)}
+    table = {row.name: row.cells[4] for row in rows.make_profile_rows(found, "drift_ratio", 1.0)}
     assert (table["below body 2"], table["below body 3"]) == ("0.9", "0.5"), "every story by itself"
     for each in found.stripes:
         if each.quantity == "drift_ratio":
@@ -335,7 +340,7 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
         for each in found.curves
     ]
     row = next(
-        row for row in rows.demand_rows(replace(found, curves=unknown), 1.0) if row.name == "largest drift ratio"
+        row for row in rows.make_demand_rows(replace(found, curves=unknown), 1.0) if row.name == "largest drift ratio"
     )
     assert (row.cells[0], row.cells[4], row.where, row.motions) == ("0.5667 (of 3)", "≥ 0.9", "below body 2", "3 of 4")
 
@@ -354,7 +359,7 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     both = replace(one, structures=names, curves=curves, stripes=stripes)
 
     def envelope(found: EnsembleResult) -> rows.DemandRow:
-        shown = rows.demand_rows(found, 1.0)
+        shown = rows.make_demand_rows(found, 1.0)
         return next(row for row in shown if (row.name, row.bound) == ("largest drift ratio", "envelope"))
 
     row = envelope(both)
@@ -364,7 +369,9 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     row = envelope(replace(both, curves=lost))
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
     lost = [replace(each, values=(None,)) if each.motion == "m4" and each.body else each for each in curves]
-    row = next(row for row in rows.demand_rows(replace(both, curves=lost), 1.0) if row.name == "largest drift ratio")
+    row = next(
+        row for row in rows.make_demand_rows(replace(both, curves=lost), 1.0) if row.name == "largest drift ratio"
+    )
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.4", "m1", "below body 3"), "of the motions that have values"
 
 
@@ -402,7 +409,7 @@ def test_rows_of_one_demand_stay_together_on_paper(folder: Path, browser: Browse
 
 def test_an_extended_smallest_force_shows_its_harmful_end() -> None:
     found = with_demand(planted(), "support_force_min", None, exact=(4e3, 3e3, 2e3, 1e3), spatial=(4e3, 3e3, 1e3, 5e2))
-    (cells,) = [cells for row, _, cells in trust.extended_rows(found) if row.name == "smallest support force"]
+    (cells,) = [cells for row, _, cells in trust.extrapolate_ratios(found) if row.name == "smallest support force"]
     assert cells[1] == "1.875 (1.25 to 2.5)"
     assert cells[2] == "16 %: 0.855 (0.57 to 1.14)"
     assert cells[3] == "smallest: 0.75 (0.5 to 1)"
@@ -412,7 +419,7 @@ def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
     def cells(exact: Sequence[float], spatial: Sequence[float], left_out: tuple[str, ...] = ()) -> list[str]:
         found = with_demand(planted(), "support_force_min", None, exact=exact, spatial=spatial)
         kept = [each for each in found.curves if each.model != "spatial" or each.motion not in left_out]
-        rows = trust.extended_rows(replace(found, curves=kept))
+        rows = trust.extrapolate_ratios(replace(found, curves=kept))
         return next(shown for row, _, shown in rows if row.name == "smallest support force")
 
     one = cells((4e3, 3e3, 2e3, 1e3), (1.0, 1.0, 1.0, 5e2), ("m1", "m2", "m3"))
@@ -463,7 +470,7 @@ def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
 
 def cells_of(found: EnsembleResult) -> list[tuple[str, ...]]:
     """Mean, largest value, its motion and the number of motions of the displacement, by bound and of the envelope."""
-    shown = [row for row in rows.demand_rows(found, 1.0) if row.name == "isolator displacement"]
+    shown = [row for row in rows.make_demand_rows(found, 1.0) if row.name == "isolator displacement"]
     return [(row.cells[0], row.cells[-1], row.motion, row.motions) for row in shown]
 
 
@@ -479,30 +486,30 @@ def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_no
     numbers = {name: Estimate(value, 0.0) for name, value in zip("abcd", (3.0, math.nan, 1.0, 2.0))}
     force = summarize_motions(("b", "support_force_min", None, "exact", "N", 1.0), numbers, {"rim reached": 1})
     assert (force.mean.value, [each.value for each in force.known], force.known_motion) == (None, [2.0, 1.0], "c")
-    told = rows.tell(planted().structures[0], force)
+    told = rows.summarize_demand(planted().structures[0], force)
     assert (told.marks, told.motion, told.numbers[-1].value) == ((" (of 3)", "", "", "", "≤ "), "c", 1.0)
     whole = summarize_motions(("b", "displacement", None, "exact", "m", 1.0), {"a": Estimate(1.0, 0.0)}, {})
-    assert (list(whole.known), rows.tell(planted().structures[0], whole).marks) == ([], ("",) * 5)
+    assert (list(whole.known), rows.summarize_demand(planted().structures[0], whole).marks) == ([], ("",) * 5)
 
 
 def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(found: EnsembleResult) -> None:
-    checks = {(bound, check.what): check for bound, check in hand_checks.check_rows(found)}
+    checks = {(bound, check.what): check for bound, check in hand_checks.list_hand_check_rows(found)}
     assert len(checks) == 8, "stories that differ along x and y have no drift by hand"
     weight = checks["lower bound", "weight"]
     assert (weight.by_hand, weight.found, weight.verdict) == ("882.9 kN", pytest.approx(882.9), "0.00 %")
     for (_, what), check in checks.items():
         assert check.verdict in ("0.00 %", "inside"), what
     structure = replace(found.structures[0], weight=2.0 * found.structures[0].weight)
-    wrong = {check.what: check.verdict for check in hand_checks.hand_checks(found, structure)}
+    wrong = {check.what: check.verdict for check in hand_checks.list_hand_checks(found, structure)}
     assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
     alike = replace(found.structures[0].building, stiffness=[[30e6, 20e6], [25e6, 25e6]])  # type: ignore[type-var]
     (drift,) = (
         each
-        for each in hand_checks.hand_checks(found, replace(found.structures[0], building=alike))
+        for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=alike))
         if each.what == "median drift below roof"
     )
-    shear = found.stripe(found.structures[0].name, "story_shear", 3)
+    shear = found.find_demand(found.structures[0].name, "story_shear", 3)
     assert shear is not None
     assert drift.low == pytest.approx(1e3 * shear.fractiles[1].value / 25e6)  # type: ignore[operator]
 
@@ -525,14 +532,14 @@ def test_support_forces_say_of_how_many_motions_they_are() -> None:
     assert said.endswith("The worst may be under a motion without a value."), "of one bound, and so of all"
     (said,) = sentences.support_sentences(replace(planted(), supports=[replace(about, model="spatial", motions=2)]))
     assert said.startswith("By the spatial engine, 2 of 4 motions: ")
-    shown = page.page_of(some)
+    shown = page.render_ensemble_page(some)
     assert '<td class="number">3 of 4</td>' in shown
 
 
 def test_every_motion_of_every_bound_is_a_row_with_its_outcome() -> None:
     found = two_bounds()
-    assert rows.motion_heads(found) == ["isolator displacement, mm"]
-    read = {(motion, bound): (cells, outcome) for motion, bound, cells, outcome in rows.motion_rows(found)}
+    assert rows.make_motion_heads(found) == ["isolator displacement, mm"]
+    read = {(motion, bound): (cells, outcome) for motion, bound, cells, outcome in rows.make_motion_rows(found)}
     assert len(read) == 8
     assert read["m4", "b"] == (["none"], "travel reached")
     assert read["m4", "c"] == (["400"], "ok")
@@ -561,7 +568,7 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
         ChosenMotion("c", "m4", 1.0, ["base shear", "median"], {"spatial": "step limit"}),
         ChosenMotion("c", "m2", 1.0, ["asked for"], {"spatial": "ok"}),
     ]
-    found = replace(two_bounds(), engine=Engine("spatial", chosen, 0.02))
+    found = replace(two_bounds(), engine=EngineMotions("spatial", chosen, 0.02))
     assert sentences.engine_sentences(found) == [
         "The spatial engine computed, b: m3 (displacement).",
         "The spatial engine computed, c: m4 (base shear, median; step limit); m2 (asked for).",
@@ -582,7 +589,7 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
-    (row,) = trust.trust_rows(planted())
+    (row,) = trust.make_trust_rows(planted())
     assert (row.motions, row.value) == (("m3", "m4"), pytest.approx(0.35)), "the other motions are in no mean"
     assert {key: ratio.mean for key, ratio in row.ratios.items()} == pytest.approx(
         {"small": 0.9, "translational": 1.002, "spatial": 1.05}
@@ -600,7 +607,7 @@ def test_the_ratio_of_the_engine_is_extended_to_the_suite_with_its_spread() -> N
         replace(each, values=(0.44,)) if (each.model, each.motion) == ("spatial", "m4") else each
         for each in found.curves
     ]
-    ((_, ratio, cells),) = trust.extended_rows(replace(found, curves=curves))
+    ((_, ratio, cells),) = trust.extrapolate_ratios(replace(found, curves=curves))
     assert (ratio.mean, ratio.smallest, ratio.largest) == pytest.approx((1.075, 1.05, 1.1))
     mean, share, largest = 0.25 * 1.075, 1e3 * 0.386 * 1.075, 1e3 * 0.4 * 1.075
     assert cells == [
@@ -612,7 +619,7 @@ def test_the_ratio_of_the_engine_is_extended_to_the_suite_with_its_spread() -> N
 def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(found: EnsembleResult) -> None:
     assert {each.model for each in found.stripes} == {"exact"}, "no fractiles of the engine's few motions"
     named = {each.name: each for each in found.structures}
-    shown = rows.demand_rows(found, 1.0)
+    shown = rows.make_demand_rows(found, 1.0)
     of_engine = "uplift of a support", "support displacement, with torsion"
     uplift = [row for row in shown if row.name in of_engine]
     assert [row.cells[:4] for row in uplift] == [("–",) * 4] * 2 * len(named)
@@ -623,14 +630,14 @@ def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(fo
         DemandCurve("b", "uplift", None, "spatial", name, (1.0,), (value,), (None,))
         for name, value in (("m2", None), ("m3", 2e-3), ("m4", 5e-3), ("m1", 1e-3))
     ]
-    (row,) = (row for row in rows.demand_rows(replace(planted(), curves=lifts), 1.0) if row.name == of_engine[0])
+    (row,) = (row for row in rows.make_demand_rows(replace(planted(), curves=lifts), 1.0) if row.name == of_engine[0])
     assert (row.cells[4], row.motion, row.motions) == ("5", "m4", "3 of 4 (spatial engine)")
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
     for motions, expected in ((2, ["–", "150", "–"]), (3, ["–", "200", "–"]), (4, ["114", "250", "386"])):
         row = next(
-            row for row in rows.demand_rows(planted(motions=motions), 1.0) if row.name == "isolator displacement"
+            row for row in rows.make_demand_rows(planted(motions=motions), 1.0) if row.name == "isolator displacement"
         )
         assert list(row.cells[1:4]) == expected
 
@@ -642,12 +649,12 @@ def test_the_envelope_is_the_worst_of_the_bounds_in_every_column() -> None:
     both = replace(
         one, structures=[*one.structures, replace(one.structures[0], name="c")], stripes=[*one.stripes, *other]
     )
-    envelope = next(row for row in rows.demand_rows(both, 1.0) if row.bound == "envelope")
+    envelope = next(row for row in rows.make_demand_rows(both, 1.0) if row.bound == "envelope")
     assert (envelope.cells[0], envelope.cells[-1], envelope.motion) == ("250 ± 1", "900", "m1")
     assert (envelope.bounds, envelope.every_bound) == (("b", "b", "b", "b", "c"), ""), "each cell has its own bound"
-    assert "<small>c</small>" in page.page_of(both)
+    assert "<small>c</small>" in page.render_ensemble_page(both)
     lost = [replace(each, largest=Statistic(None, None), answered=3, reasons={"travel reached": 1}) for each in other]
-    envelope = next(row for row in rows.demand_rows(replace(both, stripes=[*one.stripes, *lost]), 1.0)
+    envelope = next(row for row in rows.make_demand_rows(replace(both, stripes=[*one.stripes, *lost]), 1.0)
                     if row.bound == "envelope")  # fmt: skip
     assert (envelope.cells[-1], envelope.motion, envelope.every_bound) == ("≥ 400 ± 1", "m4", "b")
 
@@ -663,7 +670,7 @@ def test_bounds_of_different_weight_are_compared_in_the_unit_that_is_read() -> N
     weights = {"b": 1e3, "c": 4e3, "d": 1e3}
     structures = [replace(one.structures[0], name=name, weight=weight) for name, weight in weights.items()]
     found = replace(one, structures=structures, stripes=shears)
-    force, share = (row for row in rows.demand_rows(found, 1.0) if row.bound == "envelope")
+    force, share = (row for row in rows.make_demand_rows(found, 1.0) if row.bound == "envelope")
     assert (force.cells[0], force.cells[-1], force.motion) == ("0.7", "1", "m4")
     assert (share.cells[0], share.cells[-1], share.motion) == ("31", "40", "m4")
     assert [(row.bounds[0], row.bounds[-1]) for row in (force, share)] == [("c", "c"), ("d", "b")]
@@ -698,7 +705,7 @@ def test_a_platform_below_its_contact_is_said() -> None:
 def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
     found = planted()
     curves = [replace(each, errors=(0.01,)) for each in found.curves]
-    (drawn,) = (make() for make in panels.isolator_panels(replace(found, curves=curves)))
+    (drawn,) = (make() for make in panels.make_isolator_panels(replace(found, curves=curves)))
     series = drawn["plot"]["series"]
     dots = [each for each in series if each.get("color") == 0 and "one motion" in each["name"]]
     assert [each["y"][0] for each in dots] == pytest.approx([100.0, 200.0, 300.0, 400.0])
@@ -709,11 +716,13 @@ def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
 
 
 def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) -> None:
-    drawn = next(each for each in (make() for make in panels.height_panels(found)) if "acceleration" in each["title"])
+    drawn = next(
+        each for each in (make() for make in panels.make_height_panels(found)) if "acceleration" in each["title"]
+    )
     assert drawn["plot"]["y"]["title"] == "height above the sliding contact, m"
     median = next(each for each in drawn["plot"]["series"] if each["name"] == "upper bound, 50 %")
     assert median["y"] == pytest.approx([0.5, 3.5, 6.5])
-    expected = [found.stripe("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
+    expected = [found.find_demand("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
     assert median["x"] == pytest.approx([each.fractiles[1].value / GRAVITY for each in expected])  # type: ignore[union-attr, operator]
     assert [each.partition(":")[0] for each in median["titles"]] == ["deck", "body 2", "roof"]
 
@@ -726,9 +735,9 @@ def fails(*rest: Any) -> None:
     ("owner", "name", "lost"),
     [
         (panels, "_demand_panel", "plot 1"), (panels, "_profile_panel", "plot 1"),
-        (page, "trust_rows", "section trust"),
-        (page, "demand_rows", "section demands"), (sentences, "support_sentences", "section supports"),
-        (sentences, "answer_sentence", "answer"), (page, "extended_rows", "section extended"),
+        (page, "make_trust_rows", "section trust"),
+        (page, "make_demand_rows", "section demands"), (sentences, "support_sentences", "section supports"),
+        (sentences, "answer_sentence", "answer"), (page, "extrapolate_ratios", "section extended"),
     ],
 )  # fmt: skip
 def test_a_part_that_fails_costs_one_line(
@@ -739,9 +748,9 @@ def test_a_part_that_fails_costs_one_line(
     name: str,
     lost: str,
 ) -> None:
-    whole = page.page_of(found)
+    whole = page.render_ensemble_page(found)
     monkeypatch.setattr(owner, name, fails)
-    without = page.page_of(found)
+    without = page.render_ensemble_page(found)
     said = capsys.readouterr().err.splitlines()
     assert said[0] == f"{lost} could not be shown: RuntimeError: planted"
     assert without.count("RuntimeError: planted") >= 1
@@ -752,8 +761,8 @@ def test_a_part_that_fails_costs_one_line(
 def test_a_page_that_fails_costs_neither_tables_nor_files(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("comparison.analyses.ensemble.command.page_of", fails)
-    monkeypatch.setattr("comparison.analyses.ensemble.terminal.demand_rows", fails)
+    monkeypatch.setattr("comparison.analyses.ensemble.command.render_ensemble_page", fails)
+    monkeypatch.setattr("comparison.analyses.ensemble.terminal.make_demand_rows", fails)
     assert run("mine.toml", "--engine", "0", "--out", "lost") == 0
     said = capsys.readouterr()
     assert "index.html could not be shown: RuntimeError: planted" in said.err

@@ -11,7 +11,7 @@ from runs import RUN
 from studies import solved
 
 from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
-from comparison.analyses.families.analysis import family_demands_over_phases
+from comparison.analyses.families.analysis import list_family_demands_over_phases
 from comparison.analyses.families.feature import family_panels
 from comparison.registry import report_of
 from comparison.result_types import UncertainNumber
@@ -58,7 +58,7 @@ def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
         ]
 
     first, _, third = (scene.name for scene in family.scenes)
-    [band] = family_demands_over_phases(family, {first: statistics(5.0), third: statistics(7.0)})
+    [band] = list_family_demands_over_phases(family, {first: statistics(5.0), third: statistics(7.0)})
     assert (band.quantity, band.body, band.motions) == ("drift", 2, (12, 0, 12))
     assert [band.lowest[0], band.median[0], band.highest[0], band.median[2]] == pytest.approx([4.0, 5.5, 7.0, 7.5])
     assert np.isnan(band.median[1])

@@ -75,7 +75,7 @@ def test_both_functions_of_a_model_have_its_tolerance_and_law(monkeypatch):
     monkeypatch.setattr(analysis, "import_function", lambda path: lambda *given, **settings: asked.append(settings))
     for quantity in ("mu", "drift"):
         with pytest.raises((AttributeError, TypeError)):  # None is no answer
-            analysis.peaks_at((PLAIN, REGULARIZED, 1e-4, (0.0, 0.0), ((quantity, 2),)))
+            analysis.compute_peaks_at_phases((PLAIN, REGULARIZED, 1e-4, (0.0, 0.0), ((quantity, 2),)))
     assert asked == [{"tolerance": 1e-4, **REGULARIZED.settings}] * 2
 
 

@@ -14,15 +14,15 @@ import multibody
 import reference
 from comparison.analyses.motions import analysis
 from comparison.analyses.motions.analysis import (
-    SHARE,
+    MAX_DECIMATION_ERROR,
+    MotionPlace,
     Motions,
-    Place,
     StoredMotion,
     choose_places,
-    compute_motion,
+    compute_stored_motion,
     decimate,
 )
-from comparison.analyses.motions.page_data import contact_geometry, encode_motions, places_with_motions
+from comparison.analyses.motions.page_data import contact_geometry, encode_motions, list_pairs_with_motions
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import trace_contact_paths
@@ -32,8 +32,8 @@ PHASE = (2.0, 0.7)
 
 
 def stored(scene: Scene, model: Model) -> StoredMotion:
-    motion = compute_motion(
-        (scene, model, 1e-6 if model.side == "reference" else 1e-3, Place(scene.name, 0, 1, "why"), PHASE)
+    motion = compute_stored_motion(
+        (scene, model, 1e-6 if model.side == "reference" else 1e-3, MotionPlace(scene.name, 0, 1, "why"), PHASE)
     )
     assert motion.error_message == ""
     return motion
@@ -52,7 +52,10 @@ def scene() -> Scene:
 
 def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -> None:
     whole, motion = reference.trajectory(scene, PHASE, equations="small"), stored(scene, SMALL)
-    kept, others = motion.blocks(), [stored(scene, model).blocks() for model in (TRANSLATIONAL, SPATIAL)]
+    kept, others = (
+        motion.series_by_name(),
+        [stored(scene, model).series_by_name() for model in (TRANSLATIONAL, SPATIAL)],
+    )
     assert [*others[1]] == [*others[0], "support_force", "yaw"] == [*kept, "support_force", "yaw"]
     assert motion.demands.displacement == reference.demands(whole).displacement
     np.testing.assert_array_equal(motion.spectra.acceleration, reference.floor_spectra(whole).acceleration)
@@ -67,7 +70,7 @@ def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -
         for extreme in (np.min, np.max):
             np.testing.assert_array_equal(extreme(kept[name], axis=0), extreme(columns, axis=0))
         lines = np.stack([np.interp(whole.time, kept["time"][:, 0], column) for column in kept[name].T], axis=1)
-        assert (np.abs(lines - columns) <= 1.001 * SHARE * analysis.half_swing(columns)).all(), name
+        assert (np.abs(lines - columns) <= 1.001 * MAX_DECIMATION_ERROR * analysis.half_swing(columns)).all(), name
 
 
 def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
@@ -86,7 +89,7 @@ def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
 def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
-    [place] = places_with_motions(found(motion), long)
+    [place] = list_pairs_with_motions(found(motion), long)
     assert (place["row"], place["column"], place["phases"]) == (0, 1, [0.2, 2.0])
     [about] = place["motions"]
     assert (about["status"], about["count"], about["blocks"]) == ("step limit", 0, {})
@@ -113,7 +116,10 @@ def test_lines_between_the_kept_instants_miss_little() -> None:
     columns = [np.sin(7.0 * time) * np.exp(-time / 4.0), np.sign(np.sin(3.0 * time)) * 40.0, one_high]
     kept = decimate(time, np.stack(columns, axis=1), np.array([123]))
     for values in columns:
-        assert np.abs(np.interp(time, time[kept], values[kept]) - values).max() <= SHARE * np.abs(values).max()
+        assert (
+            np.abs(np.interp(time, time[kept], values[kept]) - values).max()
+            <= MAX_DECIMATION_ERROR * np.abs(values).max()
+        )
     assert {0, 123, 4999, 5000, 5001, 20000} <= set(kept.tolist()), "both ends, the peak asked for and the high instant"
     assert len(kept) < 1000, "a twentieth of the instants is enough for such a motion"
 
@@ -158,12 +164,12 @@ def slides(scene: Scene, phase: object, tolerance: float, **settings: object) ->
 
 def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     model = replace(SMALL, trajectory="test_motion_data:slides", settings={"cutoff": 1e-3})
-    rest = 1e-3, Place("fig3-I", 0, 0, "why"), (0.0, 0.0)
+    rest = 1e-3, MotionPlace("fig3-I", 0, 0, "why"), (0.0, 0.0)
     scene = load_scene("fig3-I")
-    motion, whole = compute_motion((scene, model, *rest)), slides(scene, None, 0.0)
+    motion, whole = compute_stored_motion((scene, model, *rest)), slides(scene, None, 0.0)
     peaks = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0).tolist()
     peaks += [np.linalg.norm(part, axis=1).argmax() for part in (whole.position[:, 0], whole.isolator_force)]
     assert (motion.status, motion.error_message) == ("ok", "")
     assert set(whole.time[peaks]) <= set(motion.time), "peaks of bodies, displacement and force are kept as they are"
-    missing = compute_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
+    missing = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
     assert (missing.status, missing.error_message.split(":")[0]) == ("solver failed", "AttributeError")

@@ -50,7 +50,7 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
         return answer
 
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: refusing)
-    worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    worst = analysis.LargestOverPhases(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     engine = analysis._compute_engine_nearby(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert math.isnan(engine.value)
     assert engine.reason == Outcome.STEP_LIMIT.value
@@ -74,7 +74,7 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
     sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", sides.__getitem__)
     monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.full(len(phases), 0.5))
-    worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    worst = analysis.LargestOverPhases(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = analysis._compute_engine_nearby(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert beside.evaluations == 6, "the middle, the corners, and where it is predicted to be largest"
     assert (beside.value, beside.at_start, beside.start_error) == pytest.approx((2.00001, 1.99998, 2e-9), rel=2e-6)
@@ -90,7 +90,7 @@ def test_a_largest_value_has_the_reading_of_its_model_or_both_without_dry_fricti
         ("fig4-viscous", "exact", "amplification", "both readings"),
         (SHORT.name, "small", "displacement", ""),
     ):
-        assert _name_reading(report, analysis.Worst(scene, model, quantity, 1)) == reading  # type: ignore[arg-type]
+        assert _name_reading(report, analysis.LargestOverPhases(scene, model, quantity, 1)) == reading  # type: ignore[arg-type]
 
 
 def test_what_a_largest_value_is_stands_beside_it() -> None:
@@ -105,15 +105,16 @@ def test_what_a_largest_value_is_stands_beside_it() -> None:
         ({"kind": "smooth"}, "on a smooth maximum"),
         ({"kind": "jump", "side": (-0.25, 0.968)}, "beside a jump, approached from (-0.25, +0.97)"),
     ):
-        assert _word_kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
+        assert _word_kind(analysis.LargestOverPhases("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
 
 
 def test_a_model_that_was_not_searched_has_the_largest_value_of_the_next_one() -> None:
     found = [
-        analysis.Worst("fig3-I", model, "amplification", 1, mu) for model, mu in (("exact", 1.0), ("regularised", 2.0))
+        analysis.LargestOverPhases("fig3-I", model, "amplification", 1, mu)
+        for model, mu in (("exact", 1.0), ("regularised", 2.0))
     ]
     models = ["small", "exact", "resolved", "regularised", "spatial"]
-    largest = [analysis.nearest_search(found, models, "fig3-I", model, 1).value for model in models]
+    largest = [analysis.find_nearest_search(found, models, "fig3-I", model, 1).value for model in models]
     assert largest == [1.0, 1.0, 2.0, 2.0, 2.0]
 
 
@@ -147,7 +148,9 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
         results.put(task, result_without_value(Outcome.TIME_LIMIT, "took too long"))
     rows = analysis.WorstPhases().collect(study, None, results)
     assert len(rows) == len(tasks) + 2  # the engine's rows
-    assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NOWHERE for row in rows)
+    assert all(
+        row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NO_PHASES for row in rows
+    )
     assert EXACT.key in {row.model for row in rows}
 
 
@@ -162,7 +165,7 @@ def test_the_spatial_engine_has_the_larger_of_its_grid_and_the_worst_phases(
         return Amplification(mu, 0.01 * mu, np.full(len(phases), "ok"), np.full(len(phases), math.nan), 0.0)
 
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: steady)
-    worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.2, 1e-6, (1.0, 2.0), "smooth")
+    worst = analysis.LargestOverPhases(SHORT.name, REGULARIZED.key, "amplification", 1, 2.2, 1e-6, (1.0, 2.0), "smooth")
     largest = GridMaximum("spatial", 1, grid, 0.03, (0.5, 0.25))
     found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, largest), 1e-3)
     assert (found.model, found.kind, found.value) == ("spatial", kind, pytest.approx(value))

@@ -54,8 +54,8 @@ def test_a_suite_with_too_many_motions_is_blamed_on_the_suite(tmp_path: Path, mo
 
 @pytest.mark.parametrize("name", ["=1+1", "\n=1+1", " =1+1", "\t@a", "\r+1", "-1", "+1", "@A1", "\tx"])
 def test_no_cell_of_the_table_begins_like_a_formula(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    monkeypatch.setattr(ensemble, "as_rows", lambda points, result: [{"motion": name, "scale": -1.0}])
-    text = ensemble.table_text((), ())  # type: ignore[arg-type]
+    monkeypatch.setattr(ensemble, "make_table_rows", lambda points, result: [{"motion": name, "scale": -1.0}])
+    text = ensemble.format_table((), ())  # type: ignore[arg-type]
     assert f"'{name}" in text
     assert text.endswith(",-1.0\n")
     assert [*csv.reader(io.StringIO(text, newline=""))][1:] == [[f"'{name}", "-1.0"]]

@@ -27,7 +27,7 @@ from places import ROOT
 from runs import no_executor
 
 import multibody.models.engine
-from comparison.analyses.motions.analysis import Place, StoredMotion
+from comparison.analyses.motions.analysis import MotionPlace, StoredMotion
 from comparison.evidence.claims.table import paper_complete
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.runner.cache import MAGIC, Cache, CacheKey
@@ -179,7 +179,7 @@ calls: list[object] = []
 def motion(task: tuple[object, ...]) -> StoredMotion:
     calls.append(task)
     numbers, two = np.array([0.1, np.nan, -0.0, 1e-300]), np.array([0.0, 1e300])
-    return StoredMotion(Place("s", 1, 2, ""), "small", two, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
+    return StoredMotion(MotionPlace("s", 1, 2, ""), "small", two, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
 
 
 def another_motion(task: tuple[object, ...]) -> StoredMotion:

@@ -13,7 +13,7 @@ from runs import Run
 from studies import body_comparisons, solved
 
 from comparison.analyses.motions import analysis as motions
-from comparison.analyses.motions.analysis import compute_motion
+from comparison.analyses.motions.analysis import compute_stored_motion
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import closure_error
@@ -115,9 +115,9 @@ def test_a_wrong_limit_is_one_line_with_the_nearest_key(
 def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[dict[str, object]] = []
     monkeypatch.setattr(motions, "import_function", lambda path: lambda *motion, **settings: asked.append(settings))
-    place = motions.Place("fig3-I", 0, 0, "")
+    place = motions.MotionPlace("fig3-I", 0, 0, "")
     for model in MODEL_HIERARCHY[:6]:
-        compute_motion((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
+        compute_stored_motion((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
     assert [(settings["equations"], settings["regularization"]) for settings in asked] == [
         ("small", None), ("exact", None), ("small", None), ("exact", None), ("small", 1e-3), ("exact", 1e-3),
     ]  # fmt: skip
