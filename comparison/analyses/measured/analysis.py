@@ -110,7 +110,8 @@ def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> 
 
 def peaks_at(task: Arguments) -> list[Peak]:
     """The peaks of one model at one phase pair. Runs inside a worker process."""
-    scene, model, tolerance, phases, asked = task
+    stated, model, tolerance, phases, asked = task
+    scene = model.scene_of(stated)
     settings: dict[str, Any] = dict(model.settings)
     status = Outcome.OK.value
     known: dict[str, Any] = {}  # estimates by quantity: of the isolator, of every body, or None

@@ -159,7 +159,7 @@ def compute_motion(task: Arguments) -> StoredMotion:
     scene, model, tolerance, place, phase = task
     try:
         motion: Trajectory = import_function(model.trajectory)(
-            scene, phase, tolerance=tolerance, **model.motion_settings
+            model.scene_of(scene), phase, tolerance=tolerance, **model.motion_settings
         )
         if len(motion.time) == 0:  # refused before its first step
             return replace(

@@ -33,7 +33,7 @@ from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
 
 Array = NDArray[np.float64]
 GRID = 4
-SET_VALUED, REGULARIZED, EXACT, TRANSLATIONAL, SPATIAL = range(len(QUESTIONS))
+SET_VALUED, REGULARIZED, EXACT, TRANSLATIONAL, SPATIAL, YIELDING, DAMPED = range(len(QUESTIONS))
 # physics of the paper's scenes, per cent below the literal supremum at these v_c, recorded with 16 x 16 phases
 RECORDED_SPEEDS = (3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12)
 RECORDED = {
