@@ -450,18 +450,21 @@ RIGID = _model_after(
     applies=has_yielding_friction,
     rigid=True,
 )
-_YIELDS = "where the scene says so, elastic up to mu N before it slides"
+_YIELDS = "elastic up to mu N before it slides, mu constant or of the slip velocity"
 
 
-def _tell_of_yielding(model: Model) -> Model:
-    """Return a model with the words that a scene needs whose friction yields."""
+def _tell_of_yielding(model: Model, only: bool) -> Model:
+    """Return a model with the words that scenes need whose friction yields; only: whether that of every scene does."""
     if model.applies is has_dry_friction:  # that is rigid
         return model
-    told = _model_after(model, {"friction": f"{model.assumptions['friction']}; {_YIELDS}"})
+    friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"
+    told = _model_after(model, {"friction": friction} | ({"mu_i": _PEAK} if only else {}))
+    told = replace(told, title=model.title.removesuffix(f", {LITERAL_SUPREMUM}")) if only else told
     if model.key != SMALL.key:
         return told
-    yields = "Friction that yields elastically before it slides never sticks: there no acceleration jumps."
-    return replace(told, effect="yielding friction", adds=f"{model.adds} {yields}")
+    yields = "Friction that yields elastically before it slides never sticks: then no acceleration jumps."
+    adds = f"The paper's small-vibration equations (4.3)-(4.4). {yields}" if only else f"{model.adds} {yields}"
+    return replace(told, effect="yielding friction", adds=adds)
 
 
 def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
@@ -473,6 +476,7 @@ def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) ->
     functions = {model.amplification for model in hierarchy}
     steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)
     added = (model for model in steps if model.amplification in functions and any(map(model.applies, scenes)))
-    if RIGID.amplification in functions and any(map(has_yielding_friction, scenes)):
-        hierarchy = (RIGID, *map(_tell_of_yielding, hierarchy))
+    yields = [has_yielding_friction(scene) for scene in scenes]
+    if RIGID.amplification in functions and any(yields):
+        hierarchy = (RIGID, *(_tell_of_yielding(model, all(yields)) for model in hierarchy))
     return (*hierarchy, *added)
