@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
-from comparison.wording import difference_with_error, scientific, significant
+from comparison.wording import difference_with_error
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
@@ -59,7 +59,7 @@ def _word_yielding(curve: ConditioningCurve) -> str:
     assert curve.own is not None
     place = curve.v.index(curve.own)
     mean, largest = (
-        f"{significant(values[place])} ± {scientific(errors[place])}"
+        f"{values[place]:.5g} ± {errors[place]:.1g}"
         for values, errors in ((curve.mean, curve.mean_error), (curve.largest, curve.largest_error))
     )
     size = _write_size(curve.relative_mean[place], curve.relative_error[place])
