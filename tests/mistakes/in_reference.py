@@ -478,5 +478,8 @@ MISTAKES = (
             "One row of phases counts as a grid.", ("tests/reference/problem/test_loading.py::test_phase_grid_covers_the_torus_once_with_alpha2_fastest",)),
     Mistake("reference/problem/phases.py", "if pair.size != 2:", "if pair.size < 2:",
             "Three phases are refused in the words of NumPy.", ("tests/reference/problem/test_loading.py::test_a_phase_pair_has_two_phases",)),
+    Mistake(PROBLEM + "scene.py", "self._with_friction(stated if len(stated) > 1 else", "self._with_friction(stated if False else",
+            "Rigid friction forgets how it depends on the speed.",
+            (TESTS + "problem/test_yielding_friction.py::test_another_yield_displacement_leaves_the_rest_of_the_law",)),
 )
 # fmt: on
