@@ -336,7 +336,8 @@ def draw_displacements(found: dict[str, Any]) -> None:
         grid = row["phases per axis"]
         label = f"{title.replace(', ', ', links damped by ')}, {grid} × {grid} phases"
         panels.append(make_panel(label, label, {"title": "u_y, m", "log": True}, {"title": "μ_1"}, series))
-    draw_panels(PICTURE, "μ_1 over the yield displacement, exact equations", panels, columns=2)
+    draw_panels(PICTURE, "Platform factor over the yield displacement, exact equations", panels, columns=2)
+    PICTURE.with_suffix(".pdf").unlink()  # drawn along
 
 
 def displacement_table() -> str:
