@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from scipy.optimize import least_squares
 
 import reference
@@ -35,7 +36,6 @@ from comparison.evidence.benchmarks import cases
 from comparison.evidence.sides import EQUATIONS, spline_along
 from comparison.evidence.validation import frame, pendulum, table
 from comparison.evidence.validation.files import Swing, read_folder
-from comparison.report.panels import draw_panels, make_panel
 from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, ground_peak, load_scene
 from reference.problem.friction import Heat
@@ -318,26 +318,19 @@ def compute_displacements() -> dict[str, Any]:
 
 def draw_displacements(found: dict[str, Any]) -> None:
     """Draw mean and largest mu_1 over the yield displacement beside both readings of rigid friction."""
-    panels = []
-    for title, row in found["displacements"].items():
-        ways = [float(key) for key in row if key[0].isdigit()]
-        series = [
-            {"name": quantity, "x": ways, "y": [row[f"{way:g}"][place] for way in ways], "color": place, "marks": True}
-            for place, quantity in enumerate(("mean", "largest"))
-        ]
-        series += [
-            {
-                "name": f"{quantity}, rigid, {reading}", "x": [ways[-1], ways[0]], "y": [row[reading][place]] * 2,
-                "color": shift + place, "dash": "5 3",
-            }
-            for shift, reading in ((0, "literal supremum"), (2, "as integrated"))
-            for place, quantity in enumerate(("mean", "largest"))
-        ]  # fmt: skip
-        grid = row["phases per axis"]
-        label = f"{title.replace(', ', ', links damped by ')}, {grid} × {grid} phases"
-        panels.append(make_panel(label, label, {"title": "u_y, m", "log": True}, {"title": "μ_1"}, series))
-    draw_panels(PICTURE, "Platform factor over the yield displacement, exact equations", panels, columns=2)
-    PICTURE.with_suffix(".pdf").unlink()  # drawn along
+    rows = found["displacements"]
+    figure = Figure(figsize=(11.0, 8.6), dpi=100, layout="constrained")
+    for axes, (title, row) in zip(figure.subplots(-(-len(rows) // 2), 2).flat, rows.items()):
+        yields = [key for key in row if key[0].isdigit()]
+        for place, quantity in enumerate(("mean", "largest")):
+            axes.semilogx(list(map(float, yields)), [row[way][place] for way in yields], f"C{place}o-", label=quantity)
+            for style, reading in (("--", "literal supremum"), (":", "as integrated")):
+                axes.axhline(row[reading][place], color=f"C{place}", ls=style, label=f"{quantity}, rigid, {reading}")
+        grid, axes_of = row["phases per axis"], {"xlabel": "yield displacement, m", "ylabel": "$\\mu_1$"}
+        axes.set(title=f"{title.replace(', ', ', links damped by ')}, {grid} × {grid} phases", **axes_of)
+        axes.legend(fontsize=7)
+        axes.grid(alpha=0.3)
+    figure.savefig(PICTURE)
 
 
 def displacement_table() -> str:
