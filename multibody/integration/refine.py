@@ -36,8 +36,8 @@ WORK = Range(1.0, 1e12, "steps")
 MAX_DIFFERENT_MOTIONS = 3
 
 # Least number of levels that show an error where friction yields. Short slides that one level has and the next has not
-# decide how the platform swings on its springs: levels 0 and 1 may agree and both be off (measured: by twelve times the
-# error that their difference shows, while level 2 is off by a hundredth of theirs).
+# decide how the platform swings on its springs: levels 0 and 1 may agree and both be off (measured: by seven times the
+# error that their difference shows, and level 2 by a seventeenth of theirs).
 LEAST_LEVELS_OF_SPRINGS = 3
 
 
