@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.study.batches import BatchResult, execute_batch
-from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
+from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_steps_of_scenes
 from comparison.study.study import STUDY_TOLERANCE, Study
 from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.missing_values import MissingValues, list_missing_values
@@ -116,7 +116,7 @@ def _broken_limits(
 ) -> list[str]:
     """Return a line for each limit that one scene breaks, and for missing values."""
     with_total = any(name.startswith("total") for name in stated)
-    hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
+    hierarchy = [*(with_steps_of_scenes(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
     if engine is not None:
         hierarchy.append(replace(user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}

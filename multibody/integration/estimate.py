@@ -64,7 +64,7 @@ ERROR_PER_WARPING_LOAD = 0.25
 # levels 1 to 4).
 MIN_ERROR_WITH_IMPACTS = 4e-3
 
-# Error that a level typically has where friction yields, over that of rigid friction (measured: 2.3 at u_y = 0.1 mm).
+# Error that a level typically has where friction yields, over that of rigid friction (measured at level 2: 2.0).
 FLOOR_OF_SPRINGS = 3.0
 
 # Smallest relative error of a peak: smaller ones are not measured.

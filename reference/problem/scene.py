@@ -441,6 +441,19 @@ class Scene(Table):
             rule = f"{user} has friction that is rigid before it slides: remove this key"
             raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
 
+    def with_yield_displacement(self, way: float) -> Scene:
+        """Return the scene, of the same name, with friction that yields at `way`, m; 0: rigid, as without the keys."""
+        friction = self.isolator.friction
+        if not isinstance(friction, VelocityFriction) or (way == 0.0 and not self.dry_friction.elastic):
+            return self if way == 0.0 else self._with_friction({"slow": friction, "yield_displacement": way})
+        stated = friction.model_dump(exclude_none=True, exclude={"initial_stiffness", "yield_displacement"})
+        if way > 0.0:
+            return self._with_friction({**stated, "yield_displacement": way})
+        return self._with_friction(stated if len(stated) > 1 else friction.slow)
+
+    def _with_friction(self, friction: object) -> Scene:
+        return self.with_values({"isolator.friction": friction, "name": self.name})
+
     @property
     def has_dry_friction(self) -> bool:
         """True if dry friction is rigid and not zero: only then a law can be regularized and a motion comes to rest."""

@@ -444,8 +444,8 @@ MISTAKES = (
     Mistake(SOLVER + "phases/yielding.py", "if system.rate == 0.0 or gain[0] >= 0.0:", "if True or gain[0] >= 0.0:",
             "Steps pass the kink of a coefficient of the speed.",
             (YIELDING + "factors_are_those_of_the_other_program[planar, rising]",)),
-    Mistake(SOLVER + "run_yielding.py", "shorter, aims = h * portion, 1",
-            "shorter, aims = 0.99 * h * portion, MAX_AIMS", "Friction yields a little before its bound.",
+    Mistake(SOLVER + "run_yielding.py", "1.0 + shift, shift != NEVER", "1.0 + shift, False",
+            "Friction does not slide where its force reaches the bound.",
             (YIELDING + "free_decay_has_the_turning_points_of_a_bilinear_oscillator",)),
     Mistake(MEASURES + "energy.py", " - float(self.sheared[-1] - self.sheared[0])", "",
             "The elastic energy of friction counts as dissipated.",
@@ -482,5 +482,8 @@ MISTAKES = (
             "One row of phases counts as a grid.", ("tests/reference/problem/test_loading.py::test_phase_grid_covers_the_torus_once_with_alpha2_fastest",)),
     Mistake("reference/problem/phases.py", "if pair.size != 2:", "if pair.size < 2:",
             "Three phases are refused in the words of NumPy.", ("tests/reference/problem/test_loading.py::test_a_phase_pair_has_two_phases",)),
+    Mistake(PROBLEM + "scene.py", "self._with_friction(stated if len(stated) > 1 else", "self._with_friction(stated if False else",
+            "Rigid friction forgets how it depends on the speed.",
+            (TESTS + "problem/test_yielding_friction.py::test_another_yield_displacement_leaves_the_rest_of_the_law",)),
 )
 # fmt: on

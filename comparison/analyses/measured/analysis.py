@@ -111,7 +111,8 @@ def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> 
 
 def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
     """Return the peaks of one model at one phase pair. Runs inside a worker process."""
-    scene, model, tolerance, phases, asked = task
+    stated, model, tolerance, phases, asked = task
+    scene = model.scene_of(stated)
     settings: dict[str, Any] = dict(model.settings)
     status = Outcome.OK.value
     known: dict[str, Any] = {}  # estimates by quantity; a value may be for the isolator, for every body, or None

@@ -166,7 +166,7 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
     scene, model, tolerance, place, phase = task
     try:
         motion: Trajectory = import_function(model.trajectory)(
-            scene, phase, tolerance=tolerance, **model.motion_settings
+            model.scene_of(scene), phase, tolerance=tolerance, **model.motion_settings
         )
         if len(motion.time) == 0:  # The model refused the scene before its first step.
             return replace(
