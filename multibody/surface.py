@@ -20,8 +20,8 @@ from multibody.models.system import EngineModel
 from reference.problem import Amplification, Outcome, Scene, ground_peak
 from reference.problem.phases import flat_phases
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
-from reference.problem.readings import FINER, describe_law, reading_of
-from reference.problem.reductions import in_plane, planar_chain
+from reference.problem.readings import SECOND_V_REG_RATIO, describe_law, reading_of
+from reference.problem.reductions import has_planar_chain, turn_loading_to_x
 from reference.problem.scene import takes_scene
 from reference.support.arguments import check_number
 
@@ -131,7 +131,7 @@ def amplification(
         nothing = np.where(np.isfinite(found.mu), 0.0, np.nan)
         return replace(found, regularization_effect=nothing, displacement_effect=nothing[..., 0])
     assert regularization is not None  # refused with dry friction
-    v_reg = FINER * regularization
+    v_reg = SECOND_V_REG_RATIO * regularization
     finer = amplification(scene, phases, model, v_reg, tolerance, full=full, levels=levels, max_work=max_work)
     effect, slip = finer.mu - found.mu, finer.displacement - found.displacement
     return replace(
@@ -199,8 +199,8 @@ def _reduce_model(scene: Scene, model: str, regularization: float | None, full: 
     in one. `complete` of the result assembles the asked one.
     """
     chosen = choose_model(scene, model, full)
-    planar = chosen == "translational" and not full and planar_chain(scene).allowed
-    moving = in_plane(scene) if planar else scene
+    planar = chosen == "translational" and not full and has_planar_chain(scene).allowed
+    moving = turn_loading_to_x(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, **axes)
 

@@ -11,7 +11,7 @@ import numpy as np
 from reference.measures.story_forces import heights_above_contact, support_loads_at_rest
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
-from reference.problem.chain_modes import solve_chain
+from reference.problem.chain_modes import solve_chain_modes
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 from reference.support.arguments import name_some
@@ -125,7 +125,7 @@ def describe_building(scene: Scene) -> Building:
     """
     weight, supports = scene.total_mass * GRAVITY, scene.isolator.support_count
     places, law = scene.support_places, scene.dry_friction
-    isolated = [solve_chain(scene.masses, stiffness, DESCRIBED)[0] for stiffness in linear_stiffness(scene).T]
+    isolated = [solve_chain_modes(scene.masses, stiffness, DESCRIBED)[0] for stiffness in linear_stiffness(scene).T]
     fixed = [_solve_fixed_base(scene, axis) for axis in range(2)]
     with np.errstate(divide="ignore"):
         return Building(
@@ -156,7 +156,7 @@ def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array, Array]:
     """
     if len(scene.bodies) == 1:
         return np.zeros(0), np.zeros(0), np.zeros(0)
-    frequency, shape = solve_chain(scene.masses[1:], scene.stiffness[:, axis], DESCRIBED)
+    frequency, shape = solve_chain_modes(scene.masses[1:], scene.stiffness[:, axis], DESCRIBED)
     elongation = np.diff(shape, axis=0, prepend=0.0)
     ratio: Array = scene.damping[:, axis] @ elongation**2 / (2.0 * frequency)
     above = scene.masses[1:]

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eig
 
 from reference.problem import GRAVITY, Scene
-from reference.problem.chain_modes import solve_chain
+from reference.problem.chain_modes import solve_chain_modes
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 
@@ -191,7 +191,7 @@ def _solve_damped_axis(
 
 def _solve_modes_along_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     """Return frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
-    frequency, shape = solve_chain(masses, stiffness)
+    frequency, shape = solve_chain_modes(masses, stiffness)
     participation = masses @ shape
     sign = np.where(participation < 0.0, -1.0, 1.0)
     return frequency, shape * sign, participation * sign

@@ -17,7 +17,7 @@ from reference.problem import GRAVITY, Amplification, Outcome, Scene, exponents,
 from reference.problem.phases import flat_phases
 from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
 from reference.problem.readings import describe_law, reading_of
-from reference.problem.reductions import in_plane, linear, planar
+from reference.problem.reductions import is_linear, is_planar, turn_loading_to_x
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import NOT_MET, RunPeaks, peaks_with_error
 from reference.solver.system import (
@@ -126,8 +126,8 @@ def amplification(
     """
     pairs, shape = flat_phases(phases)
     # (4.6) as printed knows directions; friction that yields is solved along both axes
-    flat = not full and rest_condition == "consistent" and planar(scene).allowed and not scene.dry_friction.elastic
-    moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
+    flat = not full and rest_condition == "consistent" and is_planar(scene).allowed and not scene.dry_friction.elastic
+    moving, axes = (turn_loading_to_x(scene), 1) if flat else (scene, 2)
     system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     basis: dict[str, Any] = {
         "scene_name": scene.name,
@@ -138,7 +138,7 @@ def amplification(
     found = _PointAnswers.without_any(len(pairs), len(scene.bodies))
     cost = 0.0
     if loads_are_finite(system):
-        summed = system.small and not full and linear(scene).allowed
+        summed = system.small and not full and is_linear(scene).allowed
 
         def solve(part: slice) -> float:
             return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)

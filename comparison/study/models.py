@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
-from reference.problem.reductions import mirror_symmetric
+from reference.problem.reductions import is_mirror_symmetric
 
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
@@ -407,7 +407,7 @@ SPATIAL = _model_after(
     batch=1,
     applies=has_spatial_data,
     most=16,
-    symmetric=mirror_symmetric,
+    symmetric=is_mirror_symmetric,
     seconds=0.22,
 )
 

@@ -58,7 +58,7 @@ from multibody.models.supports import (
 from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
 from reference.problem import DryFriction, Scene, State
-from reference.problem.supports import ring_places
+from reference.problem.supports import ring_positions
 
 Array = NDArray[np.float64]
 
@@ -177,7 +177,7 @@ def _measure_geometry(scene: Scene, units: Units) -> _Geometry:
     else:
         assert isolator.supports is not None
         assert isolator.ring is not None
-        places = ring_places(isolator.supports, isolator.ring / units.length)
+        places = ring_positions(isolator.supports, isolator.ring / units.length)
         distances = np.hypot(*places[:1].T)
     masses, radius = scene.masses / units.mass, isolator.sphere_radius / units.length
     sizes = np.array([body.size for body in scene.bodies]) / units.length

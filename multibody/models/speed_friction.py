@@ -88,7 +88,7 @@ class SpeedFriction:
         if slip != self._slip:
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
-            if self.law.by_load:
+            if self.law.depends_on_load:
                 load = self._read_loads(mbs)
                 self._load_rate = [(new - old) / span for new, old in zip(load, self._load, strict=True)]
                 self._load = load

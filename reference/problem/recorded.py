@@ -1,4 +1,4 @@
-"""What was read of the recorded motion of a scene."""
+"""Description of the recorded motion of a scene."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reference.records.description import RecordDescription, describe_samples
 @takes_scene
 def describe_record(scene: Scene) -> RecordDescription:
     """
-    Return what was read of a recorded motion, with warnings where it is hardly meant so.
+    Return what was read of a recorded motion, with warnings about values that are hardly intended.
 
     Parameters
     ----------

@@ -42,8 +42,8 @@ RECORD_RULE = (
 SUITE = ("suite", "motion", "normalized", "components")
 ARRAYS = {"time", "acceleration"}
 FROM_ARRAYS = "arrays"  # in place of the files of a record that was given as arrays
-SET_BY_THE_READER = ("samples", "origin")  # what the excitation holds in addition to the keys of a file
-OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
+READER_KEYS = ("samples", "origin")  # what the excitation holds in addition to the keys of a file
+TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")
 
 
 def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
@@ -51,11 +51,11 @@ def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data
-    for key in OF_TWO_FREQUENCIES:
+    for key in TWO_FREQUENCY_KEYS:
         if key in table:
             rule = "a record takes the place of amplitudes, periods and decay: remove it, or the record"
             raise SceneError(label, f"excitation.{key}", table[key], rule)
-    for key in SET_BY_THE_READER:
+    for key in READER_KEYS:
         if key in table:
             raise SceneError(label, f"excitation.{key}", table[key], "unknown key; remove it")
     record = table["record"]

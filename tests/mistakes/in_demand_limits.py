@@ -270,7 +270,7 @@ MISTAKES = (
             "Damping of modes that move nothing is a warning.", (WRONG + "what_is_hardly_meant_is_one_line",)),
     Mistake("reference/plausibility.py", "np.diff(building.heights) <= 0.0", "np.diff(building.heights) <= -100.0",
             "A roof below a lower floor passes without a word.", (WRONG + "what_is_hardly_meant_is_one_line",)),
-    Mistake("reference/problem/validation.py", 'if error["type"] in LENGTHS:', "if False:",
+    Mistake("reference/problem/validation.py", 'if error["type"] in LENGTH_ERRORS:', "if False:",
             "A list of another length is said in the words of pydantic.",
             (WRONG + "a_list_of_another_length_is_one_line_with_its_form",)),
     Mistake("comparison/report/page.py", 'if text else ""', 'if not text else ""',

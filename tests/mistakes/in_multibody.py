@@ -282,7 +282,7 @@ MISTAKES = (
             (YIELDING + "test_engine_and_equations_agree_within_their_errors",)),
     Mistake("multibody/surface.py", "effect, slip = finer.mu - found.mu,", "effect, slip = found.mu - finer.mu,",
             "The effect of regularization has the other sign.", ("tests/multibody/test_regularization_effect.py",)),
-    Mistake("multibody/surface.py", "v_reg = FINER * regularization", "v_reg = 0.3 * regularization",
+    Mistake("multibody/surface.py", "v_reg = SECOND_V_REG_RATIO * regularization", "v_reg = 0.3 * regularization",
             "The effect of regularization is that of another v_reg than its law says.",
             ("tests/multibody/test_regularization_effect.py",)),
     Mistake("multibody/surface.py", "reading=reading_of(scene, regularization),", 'reading="literal supremum",',

@@ -315,7 +315,7 @@ MISTAKES = (
     Mistake("comparison/evidence/trends.py", "each = missed[0]", "each = missed[-1]", "The last exponent is called the first.", TRENDS),
     Mistake("comparison/evidence/trends.py", "<= max(AGREES, slope.uncertainty)", "<= AGREES + slope.uncertainty",
             "An exponent agrees beyond both of its limits.", TRENDS),
-    Mistake("reference/problem/readings.py", "to v_reg = {FINER * regularization:g} m/s", "to v_reg = {regularization:g} m/s",
+    Mistake("reference/problem/readings.py", "to v_reg = {SECOND_V_REG_RATIO * regularization:g} m/s", "to v_reg = {regularization:g} m/s",
             "A law names the speed that it starts from twice.", LAWS),
     Mistake("reference/problem/readings.py", "np.nanmax(np.abs(part))", "np.nanmean(np.abs(part))", "A mean change of mu is the largest.", LAWS),
     Mistake("comparison/evidence/validation/table.py", "return f\"{one.removesuffix(')')} / {two.split('(by ')[1]}\"",

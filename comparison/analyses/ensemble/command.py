@@ -75,7 +75,7 @@ from comparison.study.costs import STARTING, WRITING, wall_seconds
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
 from comparison.verdicts import MET
 from reference.problem import Family, SceneError
-from reference.problem.families import family_of, with_bounds
+from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.motion_lists import FILE as MOTIONS
 from reference.records.motion_lists import Motion, motion_list_text
@@ -311,7 +311,7 @@ def make_suite_family(options: argparse.Namespace, source: str) -> Family:
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     if loading is not None:
         data["excitation"] = loading
-    return family_of(with_bounds(data, read_bounds(options)), source)
+    return make_family(with_bounds(data, read_bounds(options)), source)
 
 
 def _parser() -> CommandParser:

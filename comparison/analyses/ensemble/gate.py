@@ -14,7 +14,7 @@ from comparison.runner.task import Task, execute
 from comparison.runner.task_results import TaskResults
 from comparison.verdicts import MET
 from reference.problem.acceptance import DemandLimits
-from reference.problem.families import family_of, with_bounds
+from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 
 

@@ -32,7 +32,7 @@ from comparison.verdicts import (
 from reference.measures import Estimate, demands
 from reference.measures.peak_demands import unit_of
 from reference.problem import Outcome, Scene
-from reference.problem.measured import OF_BODIES, Measured
+from reference.problem.measured import BODY_QUANTITIES, Measured
 
 NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")
 
