@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from reference.records.formats import OPTIONS
-from reference.records.loading import READER_KEYS, SUITE
-from reference.records.samples import AXES, files_by_axis, name_of_file
+from reference.records.loading import READER_KEYS, SUITE_KEYS
+from reference.records.samples import AXES, file_name, files_by_axis
 from reference.support.arguments import as_float, brief
 from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
@@ -39,7 +39,7 @@ def short_key(key: str) -> str:
 
 def word_table(table: Mapping[str, Any]) -> str:
     """Return the file names of one record, or the keys and numbers of a table, as one text."""
-    parts = [(key, name_of_file(part)) for key, part in files_by_axis(table).items()]
+    parts = [(key, file_name(part)) for key, part in files_by_axis(table).items()]
     return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in parts)
 
 
@@ -122,7 +122,7 @@ def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tu
     record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
     if table != "excitation.record" or not isinstance(record, dict):
         return key, value
-    own: Sequence[str] = SUITE if "suite" in record else OPTIONS if "file" in record else AXES
+    own: Sequence[str] = SUITE_KEYS if "suite" in record else OPTIONS if "file" in record else AXES
     if last not in own:
         raise unknown_key(scene, key, value, own)
     return table, {name: part for name, part in {**record, last: value}.items() if part is not None}

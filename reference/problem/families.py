@@ -38,7 +38,7 @@ from reference.problem.scene_file import (
     scene_text,
 )
 from reference.records.pairing import SuiteError
-from reference.records.samples import files_by_axis, name_of_file
+from reference.records.samples import file_name, files_by_axis
 from reference.records.suites import motion_names, suite_motions
 from reference.support.arguments import Range, as_float, brief, takes
 from reference.support.scene_error import SceneError, printable
@@ -404,7 +404,7 @@ def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | 
 
 
 def _is_table_of_files(value: Any) -> bool:
-    named = map(name_of_file, files_by_axis(value).values())
+    named = map(file_name, files_by_axis(value).values())
     return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in named)
 
 

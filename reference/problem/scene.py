@@ -26,8 +26,8 @@ from reference.problem.ranges import MAX_CYCLES
 from reference.problem.supports import are_on_one_line, ring_positions, static_shares
 from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, Superstructure, kind_of_excitation
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
-from reference.records.loading import with_samples
-from reference.records.samples import take_zero_line
+from reference.records.loading import load_record_samples
+from reference.records.samples import subtract_zero_line
 from reference.support.arguments import Range, as_float, takes
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
@@ -100,7 +100,7 @@ class Scene(Table):
         if not isinstance(table, dict) or "record" not in table or "samples" in table:
             return data
         try:
-            return with_samples(data, "")
+            return load_record_samples(data, "")
         except SceneError as error:
             raise MisfitError(error.key, error.value, error.rule) from None
 
@@ -489,7 +489,7 @@ class Scene(Table):
             return np.zeros((0, 4))
         knots = np.array(self.excitation.samples)
         if self.excitation.detrend is not None:
-            take_zero_line(knots, self.excitation.detrend)
+            subtract_zero_line(knots, self.excitation.detrend)
         with np.errstate(over="ignore"):  # validation refuses infinite accelerations
             knots[:, 1:] *= self.excitation.scale
         if knots[-1, 1:].any():

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from reference.problem.scene import KEYS, Scene
 from reference.problem.validation import first_scene_error
-from reference.records.loading import EXAMPLES, READER_KEYS, TWO_FREQUENCY_KEYS, shipped_examples, with_samples
+from reference.records.loading import EXAMPLES, READER_KEYS, TWO_FREQUENCY_KEYS, load_record_samples, shipped_examples
 from reference.support.arguments import takes
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
@@ -177,7 +177,7 @@ def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
     """Return the scene of these tables after reading its record; `label` names it in errors. Raises SceneError."""
     unread = None
     try:
-        tables = with_samples(data, label)
+        tables = load_record_samples(data, label)
     except SceneError as error:  # the error is reported with all others of the scene
         others = {key: value for key, value in data["excitation"].items() if key not in RECORD_KEYS}
         tables = {"duration": 1.0, **data, "excitation": {**others, **RECORD_AT_REST}}

@@ -36,7 +36,7 @@ from reference.problem.keys import (
 )
 from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_POSITION
 from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
-from reference.records.samples import check_samples, files_by_axis, name_of_file
+from reference.records.samples import check_samples, file_name, files_by_axis
 from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
 
@@ -295,7 +295,7 @@ class Record(Table):
         if isinstance(self.record, dict) and "suite" in self.record:
             normalized = ", normalized" if self.record.get("normalized") else ""
             return f"{Path(str(self.record['suite'])).name} {self.record['motion']}{normalized}"
-        return ", ".join(Path(str(name_of_file(file))).name for file in files_by_axis(self.record).values())
+        return ", ".join(Path(str(file_name(file))).name for file in files_by_axis(self.record).values())
 
 
 def kind_of_excitation(excitation: Any) -> str:

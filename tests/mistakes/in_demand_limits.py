@@ -276,7 +276,7 @@ MISTAKES = (
     Mistake("comparison/report/page.py", 'if text else ""', 'if not text else ""',
             "No printed page has the title of its report.",
             ("tests/comparison/analyses/test_ensemble_report.py::test_every_number_of_the_printed_report_is_read_back",)),
-    Mistake("reference/records/suites.py", "return read_once(file, status.st_mtime_ns, status.st_size)", "return read(file)",
+    Mistake("reference/records/suites.py", "return read_uncached(file, status.st_mtime_ns, status.st_size)", "return read(file)",
             "Every file of a suite is parsed for every motion.",
             ("tests/reference/records/test_record_suites.py::test_every_file_of_a_suite_is_parsed_twice_however_often_it_is_listed",)),
 )

@@ -77,7 +77,7 @@ from comparison.verdicts import MET
 from reference.problem import Family, SceneError
 from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
-from reference.records.motion_lists import FILE as MOTIONS
+from reference.records.motion_lists import FILE_NAME as MOTIONS
 from reference.records.motion_lists import Motion, motion_list_text
 from reference.records.suites import list_motions
 from reference.support.files import write_new

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import parse_number, read_values, unit_factor
-from reference.records.samples import RecordError, RecordSamples, evenly_spaced
+from reference.records.samples import RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import brief
 
 FORMAT = "ESM .ASC"
@@ -17,13 +17,13 @@ ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
 
 
 def recognizes_esm(head: Sequence[str]) -> bool:
-    """Tell whether one of the first lines states the sampling interval of ESM."""
+    """Return True if one of the first lines states the sampling interval as ESM does."""
     return any(line.startswith("SAMPLING_INTERVAL_S:") for line in head)
 
 
 @lru_cache(maxsize=64)
 def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
-    """Return what such a file holds. Raises RecordError."""
+    """Return the samples of an ESM .ASC file. Raises RecordError."""
     lines = text.splitlines()
     size = next((at for at, line in enumerate(lines) if not ENTRY.fullmatch(line.strip())), len(lines))
     stated = {match[1]: match[2] for line in lines[:size] if (match := ENTRY.fullmatch(line.strip()))}
@@ -35,4 +35,4 @@ def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
         raise RecordError(f"NDATA: {brief(count)}: must be a whole number")
     values, notes = read_values(lines[size:], size + 1, int(count), f"NDATA: {count}")
     word = stated.get("STREAM", "").strip()
-    return evenly_spaced(FORMAT, parse_number(1, step), factor * np.array(values), word, notes)
+    return make_even_samples(FORMAT, parse_number(1, step), factor * np.array(values), word, notes)
