@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.defaults import DEFAULT_TOLERANCE
-from reference.measures.local_maxima import GRID, local_maxima
+from reference.measures.local_maxima import GRID, find_local_maxima
 from reference.measures.local_search import (
     LocalSearch,
     Surface,
+    advance_searches,
     classify_maximum,
     follow_jump,
     merge_searches,
-    search_round,
 )
 from reference.problem import Scene
 from reference.problem.phases import check_phases
@@ -139,7 +139,9 @@ def worst_phases(
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
         phases, taken = distinct_pairs(scene, GRID)
-        starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
+        starts = find_local_maxima(
+            surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene
+        )
     searches = _start_searches(surface, check_phases(starts))
     if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
@@ -149,7 +151,7 @@ def worst_phases(
         active = [search for search in searches if search.may_reach(highest)]
         if not active:
             break
-        search_round(surface, active)
+        advance_searches(surface, active)
         searches = merge_searches(searches, shifts)
     kinds = _classify_highest(surface, searches)
     best, *others = sorted(merge_searches(searches, shifts), key=lambda search: -search.value)
@@ -157,7 +159,7 @@ def worst_phases(
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
     return PhaseMaximum(
         value=best.value,
-        error=best.error + best.search_error,
+        error=best.error + best.recent_gain,
         phases=(alpha1, alpha2),
         kind=kind,
         side=side,

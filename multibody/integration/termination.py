@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from multibody.integration.chunk import find_first_ends
 from multibody.integration.constant_step import EngineMotion
 from multibody.models.system import EngineModel
-from reference.measures.demand_reader import squares_and_summits
+from reference.measures.demand_reader import squared_lengths_and_interval_maxima
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def find_travel_end(motion: EngineMotion, model: EngineModel) -> tuple[float, in
     if model.travel == math.inf:
         return math.inf, len(time) - 1
     place, velocity = motion.coordinates[:, axes], motion.velocities[:, axes]
-    square, summits = squares_and_summits(time, place, velocity)
+    square, summits = squared_lengths_and_interval_maxima(time, place, velocity)
     beyond = np.flatnonzero((summits > limit) | (square[1:] > limit))
     if not len(beyond):
         return math.inf, len(time) - 1

@@ -1,4 +1,4 @@
-"""Effective linear isolator that design codes put in the place of a friction pendulum."""
+"""Effective linear isolator that replaces a friction pendulum in design codes."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
         raise ValueError(f"effective_isolator: displacement is {displacement!r}: pass lengths in m above 0")
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
-    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # elastic where it does not yield
+    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # less where friction is elastic
     dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)
     stiffness = weight * (friction + slope) / amplitude
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Forces over the height of a structure, and of its single supports: what columns and bearings are designed for."""
+"""Forces over the height of a structure and forces of its supports, for the design of columns and bearings."""
 
 from __future__ import annotations
 
@@ -77,15 +77,17 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     has_supports = read.samples.support.shape[1] > 0
     support: Callable[[DemandSamples], Array] | None = None
     if has_supports:
-        support = _support_of_model
+        support = _support_forces_of_model
     elif places is not None and heights is not None:
-        support = _keep_by_samples(_support_by_statics(scene, heights, places))
+        support = _cache_by_samples(_support_forces_by_statics(scene, heights, places))
     return StoryForces(
-        shear=tuple(read.extreme(_shear_below(scene, body)) for body in bodies),
-        moment=None if heights is None else tuple(read.extreme(_moment_below(scene, heights, body)) for body in bodies),
-        support_min=_of_supports(read, support, np.min),
-        support_max=_of_supports(read, support, np.max),
-        uplift=_of_supports(read, _uplift_of_model, np.max) if has_supports else None,
+        shear=tuple(read.extreme(_story_shear_reader(scene, body)) for body in bodies),
+        moment=None
+        if heights is None
+        else tuple(read.extreme(_overturning_moment_reader(scene, heights, body)) for body in bodies),
+        support_min=_read_supports(read, support, np.min),
+        support_max=_read_supports(read, support, np.max),
+        uplift=_read_supports(read, _uplift_of_model, np.max) if has_supports else None,
     )
 
 
@@ -97,15 +99,17 @@ def heights_above_contact(scene: Scene) -> Array | None:
     plane of a flat slider.
     """
     heights = [body.height for body in scene.bodies]
-    return None if None in heights else np.array(heights, dtype=float) - (0.0 if scene.flat else _depression(scene))
+    return (
+        None if None in heights else np.array(heights, dtype=float) - (0.0 if scene.flat else _depression_radius(scene))
+    )
 
 
-def _depression(scene: Scene) -> float:
-    """Radius R = rho + r of the depressions, m."""
+def _depression_radius(scene: Scene) -> float:
+    """Return the radius of the depressions, R = rho + r, m."""
     return scene.radius + (scene.isolator.sphere_radius or 0.0)
 
 
-def _support_of_model(samples: DemandSamples) -> Array:
+def _support_forces_of_model(samples: DemandSamples) -> Array:
     return samples.support
 
 
@@ -113,8 +117,8 @@ def _uplift_of_model(samples: DemandSamples) -> Array:
     return samples.uplift
 
 
-def _keep_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[DemandSamples], Array]:
-    """Compute the forces of all supports once for samples that outlive the reading: each support reads its own."""
+def _cache_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[DemandSamples], Array]:
+    """Return a function that computes the forces of all supports only once for the same samples."""
     known: dict[int, Array] = {}
 
     def forces(samples: DemandSamples) -> Array:
@@ -125,10 +129,10 @@ def _keep_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[Deman
     return forces
 
 
-def _of_supports(
+def _read_supports(
     read: DemandReader, force: Callable[[DemandSamples], Array] | None, extreme: Callable[..., float]
 ) -> tuple[Estimate, ...] | None:
-    """Return the smallest or largest value of every support."""
+    """Return the smallest or largest value of every support, with its error; None without single supports."""
     if force is None:
         return None
 
@@ -140,14 +144,14 @@ def _of_supports(
     return tuple(read.extreme(read_support(number)) for number in range(count))
 
 
-def _shear_below(scene: Scene, body: int) -> Callable[[DemandSamples], float]:
-    """Largest resultant of the forces of inertia from a body on upwards, N."""
+def _story_shear_reader(scene: Scene, body: int) -> Callable[[DemandSamples], float]:
+    """Return a function that reads the largest resultant of the inertia forces from a body upwards, N."""
     masses = scene.masses[body:]
     return lambda samples: _largest_length(np.einsum("i,tia->ta", masses, samples.acceleration[:, body:]))
 
 
-def _moment_below(scene: Scene, heights: Array, body: int) -> Callable[[DemandSamples], float]:
-    """Largest moment of the forces of inertia from a body on upwards about the body below, N m."""
+def _overturning_moment_reader(scene: Scene, heights: Array, body: int) -> Callable[[DemandSamples], float]:
+    """Return a function that reads the largest moment of these forces from a body upwards about the body below, N m."""
     arms = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
     return lambda samples: _largest_length(np.einsum("i,tia->ta", arms, samples.acceleration[:, body:]))
 
@@ -157,23 +161,24 @@ def _largest_length(vectors: Array) -> float:
 
 
 def support_loads_at_rest(scene: Scene) -> Array | None:
-    """Return the forces of equally stiff supports under the weight at rest, (K,), N; None unless they are placed."""
+    """Return the forces of equally stiff supports under the weight at rest, (K,), N; None without their positions."""
     if (places := scene.support_places) is None:
         return None
     return scene.total_mass * GRAVITY * static_shares(places, scene.center_of_mass)
 
 
-def _support_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
+def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
     """
-    Forces (T, K), N, of equally stiff supports in balance with the normal force and the overturning moment.
+    Return a function for forces (T, K), N, of equally stiff supports in balance with the normal force and the moment.
 
     The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
     the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
     """
     middle = places.mean(axis=0)
     arms = places - middle
-    leverage = arms @ np.linalg.inv(arms.T @ arms)  # force of every support for a moment along x and y, (K, 2), 1/m
-    lean = 1.0 if scene.flat else _depression(scene) / scene.radius
+    # (K, 2), 1/m: force of every support for a unit moment along x and y
+    leverage = arms @ np.linalg.inv(arms.T @ arms)
+    lean = 1.0 if scene.flat else _depression_radius(scene) / scene.radius
     shares = scene.masses / scene.total_mass
 
     def forces(samples: DemandSamples) -> Array:
