@@ -10,10 +10,10 @@ from multibody.motion import trajectory
 from reference.measures import PeakDemands
 from reference.measures.peak_demands import demands_of_motions
 from reference.problem import Scene, Trajectory
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 
 
-@takes_scene
+@require_scene
 def peak_demands(
     scene: Scene,
     phases: ArrayLike,

@@ -19,7 +19,7 @@ from reference.problem import Accuracy, Scene, State, Trajectory, ground_acceler
 from reference.problem.phases import check_phase
 from reference.problem.ranges import TOLERANCE, check_state
 from reference.problem.readings import describe_law
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import Range, check_choice, check_number
 
 # Largest number of steps of a single run, which is held in memory whole.
@@ -28,7 +28,7 @@ PENETRATION = Range(1e-14, 0.1, "of rho")
 NEWTON = Range(1e-14, 1.0)
 
 
-@takes_scene
+@require_scene
 def trajectory(
     scene: Scene,
     phase: ArrayLike,
@@ -102,7 +102,7 @@ def trajectory(
     return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
 
 
-@takes_scene
+@require_scene
 def single_run(
     scene: Scene,
     phase: ArrayLike,

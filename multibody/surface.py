@@ -22,13 +22,13 @@ from reference.problem.phases import flat_phases
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
 from reference.problem.readings import SECOND_V_REG_RATIO, describe_law, reading_of
 from reference.problem.reductions import has_planar_chain, turn_loading_to_x
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
 Array = NDArray[np.float64]
 
 
-@takes_scene
+@require_scene
 def amplification(
     scene: Scene,
     phases: ArrayLike,

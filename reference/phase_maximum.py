@@ -1,5 +1,5 @@
 """
-The worst initial phases: the largest value over all phase pairs, not over a grid of them.
+The worst initial phases: the largest value over all phase pairs instead of those of a grid.
 
 A grid finds local maxima, and from each of the highest ones a search goes on (`reference.measures.local_search`).
 """
@@ -26,15 +26,15 @@ from reference.problem import Scene
 from reference.problem.phases import check_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.problem.symmetry import distinct_pairs, find_half_turns
 from reference.support.arguments import check_choice
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")
-GRID_TOLERANCE = 1e-4  # relative error of mu there
+GRID_TOLERANCE = 1e-4  # relative error of mu on the grid of phases
 MAX_ROUNDS = 60
-MAX_SHORTFALL = 0.01  # share of the maximum: searches that end lower need not follow their jumps
+MAX_SHORTFALL = 0.01  # share of the maximum: a search that ends lower by more need not follow its jump
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class PhaseMaximum:
     law: str = ""
 
 
-@takes_scene
+@require_scene
 def worst_phases(
     scene: Scene,
     body: int = 1,
@@ -91,7 +91,7 @@ def worst_phases(
     starts: ArrayLike | None = None,
 ) -> PhaseMaximum:
     """
-    Largest amplification factor of a body, or displacement of the isolator, over all initial phases.
+    Return the largest amplification factor of a body, or displacement of the isolator, over all initial phases.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
 def _classify_highest(
     surface: Surface, searches: Sequence[LocalSearch]
 ) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
-    """Return kind and side of the highest maxima, after those next to a jump have followed it."""
+    """Return kind and side of the highest maxima, after searches at a jump have followed it."""
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
     kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:

@@ -22,7 +22,7 @@ from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Scene
 from reference.problem.ranges import TOLERANCE
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
 MAX_LEVELS = 8
@@ -198,7 +198,7 @@ class Level:
         return min(math.ceil(math.log(self.step / allowed, STEP_RATIO) - 1e-9), self.max_divisions)
 
 
-@takes_scene
+@require_scene
 def levels(
     scene: Scene,
     model: str = "translational",

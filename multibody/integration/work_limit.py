@@ -16,7 +16,7 @@ from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
 from reference.problem.ranges import TOLERANCE
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
 # Work of two levels, and of the compliance of the second, over a first level in its largest steps. The factor of two is
@@ -24,7 +24,7 @@ from reference.support.arguments import check_number
 WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
-@takes_scene
+@require_scene
 def refusal(
     scene: Scene,
     model: str = "translational",

@@ -8,7 +8,7 @@ import numpy as np
 
 from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate, ReadNumber
 from reference.measures.energy import Energy
-from reference.problem.result import Trajectory, takes_motion
+from reference.problem.result import Trajectory, require_motion
 from reference.problem.scene import Scene
 
 
@@ -78,7 +78,7 @@ class Demands:
     energy_balance: Estimate | None
 
 
-@takes_motion
+@require_motion
 def demands(trajectory: Trajectory) -> Demands:
     """
     Return the demands of one motion, with errors.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.problem.result import Array
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.support.constants import GRAVITY
 
 
@@ -36,7 +36,7 @@ class EffectiveIsolator:
     restoring: Array
 
 
-@takes_scene
+@require_scene
 def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolator:
     """
     Return effective stiffness, period and damping of the isolator at a displacement, and its re-centering ratio.

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
-from reference.problem.result import Array, Trajectory, takes_motion
+from reference.problem.result import Array, Trajectory, require_motion
 from reference.support.arguments import Range, check_array, check_number
 from reference.support.build_cache import cache_on_disk
 
@@ -52,7 +52,7 @@ class FloorSpectra:
     error: Array
 
 
-@takes_motion
+@require_motion
 def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damping: float = 0.05) -> FloorSpectra:
     """
     Return floor response spectra of every body of one motion, with errors.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate
-from reference.problem.result import Array, Trajectory, takes_motion
+from reference.problem.result import Array, Trajectory, require_motion
 from reference.problem.scene import Scene
 from reference.problem.supports import static_shares
 from reference.support.constants import GRAVITY
@@ -39,7 +39,7 @@ class StoryForces:
     uplift: tuple[Estimate, ...] | None
 
 
-@takes_motion
+@require_motion
 def story_forces(trajectory: Trajectory) -> StoryForces:
     """
     Return story shears, overturning moments and forces of the single supports of one motion, with errors.

@@ -10,7 +10,7 @@ from typing import Any
 from reference.records.formats import OPTIONS
 from reference.records.loading import READER_KEYS, SUITE_KEYS
 from reference.records.samples import AXES, file_name, files_by_axis
-from reference.support.arguments import as_float, brief
+from reference.support.arguments import as_float, quote
 from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
 # Most letters of one changed value in a name of a scene, and of all of them; more become "changed"
@@ -142,7 +142,7 @@ def _index_of(
     if not valid:
         raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
     if part in valid and not isinstance(place, dict):
-        rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
+        rule = f"{table} is {quote(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
         raise SceneError(scene, key, value, rule)
     if isinstance(place, dict) and (part in valid or f"{table}.*" in keys):
         if not last and keys_of_table(f"{table}.{part}".lstrip("."), keys):

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import check_phases
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ SAMPLES_PER_PERIOD = 32  # per period of the faster harmonic; |u|^2 has twice it
 MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 
 
-@takes_scene
+@require_scene
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     """
     Return the largest ground acceleration over the duration, the denominator of (5.1).

@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.phases import check_phase
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.problem.tables import Excitation
 from reference.support.arguments import check_array
 
 Array = NDArray[np.float64]
 
 
-@takes_scene
+@require_scene
 def exponents(scene: Scene) -> NDArray[np.complex128]:
     """
     Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
@@ -54,7 +54,7 @@ def exponents(scene: Scene) -> NDArray[np.complex128]:
     return np.array([complex(-decay, 2.0 * np.pi / period) for decay, period in zip(load.decay, load.periods)])
 
 
-@takes_scene
+@require_scene
 def loading_period(scene: Scene) -> float:
     """
     Return the time in which the ground acceleration changes.
@@ -84,7 +84,7 @@ def loading_period(scene: Scene) -> float:
     return float(2.0 * np.pi * largest / rate) if rate > 0.0 and np.isfinite(rate) else scene.duration
 
 
-@takes_scene
+@require_scene
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Return the acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
@@ -117,7 +117,7 @@ def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], 
     return lambda time: (np.exp(time[..., None] * powers) @ amplitudes).real
 
 
-@takes_scene
+@require_scene
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Return the velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
@@ -145,7 +145,7 @@ def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     return _superpose(scene, phase, np.expm1(np.multiply.outer(_check_instants(time), s)) / s)
 
 
-@takes_scene
+@require_scene
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Return the displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.

@@ -40,7 +40,7 @@ from reference.problem.scene_file import (
 from reference.records.pairing import SuiteError
 from reference.records.samples import file_name, files_by_axis
 from reference.records.suites import motion_names, suite_motions
-from reference.support.arguments import Range, as_float, brief, takes
+from reference.support.arguments import Range, as_float, quote, require_type
 from reference.support.scene_error import SceneError, printable
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ class Family:
         return data.set_index(scene=names).unstack("scene") if len(every) == len(results) > 1 else data
 
 
-@takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
+@require_type(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_family(
     source: str | Path, amplitude: float | None = None, bounds: tuple[float, float] | None = None
 ) -> Family:
@@ -265,7 +265,7 @@ def _locate_bound_error(
         make_scene({**tables, "isolator": {**tables["isolator"], "friction": data["isolator"]["friction"]}}, label, "")
     except SceneError as own:
         return own
-    return SceneError(label, BOUNDS_KEY, factors, f"makes {error.key} = {brief(error.value)}, which {error.rule}")
+    return SceneError(label, BOUNDS_KEY, factors, f"makes {error.key} = {quote(error.value)}, which {error.rule}")
 
 
 class _VariedParameter:
@@ -305,7 +305,7 @@ def _separate_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], 
         rule = "must be two factors of friction, the smaller first, from 0.01 to 100, as [0.8, 1.5]"
         raise SceneError(label, BOUNDS_KEY, factors, rule)
     if not (_is_number(friction) or isinstance(friction, dict)) or any(find_varied_keys(("friction",), friction)):
-        rule = f"multiplies one friction: isolator.friction is {brief(friction)}, give a number or slow, fast and rate"
+        rule = f"multiplies one friction: isolator.friction is {quote(friction)}, give a number or slow, fast and rate"
         raise SceneError(label, BOUNDS_KEY, factors, rule)
     own = {**data, "isolator": {key: value for key, value in isolator.items() if key != "bounds"}}
     return own, [_FrictionBoundsKey(factors, [_scale_friction(friction, factor) for factor in factors])]

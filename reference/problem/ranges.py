@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.support.arguments import Range, brief, check_array
+from reference.support.arguments import Range, check_array, quote
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def check_state(initial: Any, bodies: int, radius: float, travel: float | None =
     try:
         x, v = check_array("initial", initial.position, rule), check_array("initial", initial.velocity, rule)
     except AttributeError:
-        raise ValueError(f"initial = {brief(initial)}: must be a reference.problem.State") from None
+        raise ValueError(f"initial = {quote(initial)}: must be a reference.problem.State") from None
     if x.shape != (bodies, 2) or v.shape != (bodies, 2):
         raise ValueError(f"initial: {rule}")
     for values, allowed in ((x, POSITION), (v, VELOCITY)):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.problem.tables import Record
 from reference.records.description import RecordDescription, describe_samples
 
 
-@takes_scene
+@require_scene
 def describe_record(scene: Scene) -> RecordDescription:
     """
     Return what was read of a recorded motion, with warnings about values that are hardly intended.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.scene import Scene
-from reference.support.arguments import brief, check_choice, takes
+from reference.support.arguments import check_choice, quote, require_type
 from reference.support.drawing import draw_motion, draw_surface, escape_for_matplotlib
 from reference.support.html_table import html_table, text_of_number
 
@@ -209,7 +209,7 @@ class Amplification:
         """
         bodies = self.mu.shape[-1]
         if not (isinstance(body, int) and 1 <= body <= bodies):
-            raise ValueError(f"body = {brief(body)}: must be a whole number from 1 to {bodies}")
+            raise ValueError(f"body = {quote(body)}: must be a whole number from 1 to {bodies}")
         grid = grid_axes(self.phases)
         if grid is None:
             rule = "must be a grid of at least 2 x 2 phases, as phase_grid(8) is"
@@ -453,5 +453,7 @@ class State:
     velocity: Array
 
 
-takes_motion = takes(Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return")
+require_motion = require_type(
+    Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return"
+)
 """Decorator of functions whose first argument is a motion."""

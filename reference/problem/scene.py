@@ -28,7 +28,7 @@ from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Re
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
 from reference.records.loading import load_record_samples
 from reference.records.samples import subtract_zero_line
-from reference.support.arguments import Range, as_float, takes
+from reference.support.arguments import Range, as_float, require_type
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
@@ -582,7 +582,7 @@ class Scene(Table):
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
-takes_scene = takes(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
+require_scene = require_type(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
 """Decorator of functions whose first argument is a scene."""
 
 

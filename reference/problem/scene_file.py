@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from reference.problem.scene import KEYS, Scene
 from reference.problem.validation import first_scene_error
 from reference.records.loading import EXAMPLES, READER_KEYS, TWO_FREQUENCY_KEYS, load_record_samples, shipped_examples
-from reference.support.arguments import takes
+from reference.support.arguments import require_type
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
 
@@ -61,7 +61,7 @@ def example_scenes() -> list[str]:
     return shipped_examples()
 
 
-@takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
+@require_type(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     """
     Read a scene.
@@ -112,7 +112,7 @@ def scene_text(source: str | Path) -> bytes:
         raise SceneError(label, "scene", label, rule) from None
 
 
-@takes(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
+@require_type(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
 def parse_scene(text: bytes, label: str) -> Scene:
     '''
     Return the scene in a text.

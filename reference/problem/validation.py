@@ -9,7 +9,14 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from reference.support.scene_error import IS_REQUIRED, ONE_SURFACE, MisfitError, SceneError, keys_of_table, unknown_key
+from reference.support.scene_error import (
+    IS_REQUIRED,
+    ONE_SURFACE_HINT,
+    MisfitError,
+    SceneError,
+    keys_of_table,
+    unknown_key,
+)
 
 # Names of the forms of a table or key: pydantic puts the name of the intended form into the location of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
@@ -108,5 +115,5 @@ def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
     if key in LISTS_OF_SURFACES and isinstance(error["input"], list):
-        rule = f"must be a number: {ONE_SURFACE}"
+        rule = f"must be a number: {ONE_SURFACE_HINT}"
     return SceneError(file, key, error["input"], rule)

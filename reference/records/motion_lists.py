@@ -12,7 +12,7 @@ from typing import Any
 
 from reference.records.numerals import decode_text
 from reference.records.samples import AXES, RecordError
-from reference.support.arguments import brief, name_some
+from reference.support.arguments import name_some, quote
 from reference.support.files import read_file
 from reference.support.scene_error import one_line
 
@@ -107,7 +107,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
                 raise RecordError(f"{len(row)} cells, and {len(heads)} columns: a decimal comma needs quotes")
             motion = _read_motion(dict(zip(heads, row)), folder)
             if motion.name in motions:
-                raise RecordError(f"{brief(motion.name)}: two motions have one name")
+                raise RecordError(f"{quote(motion.name)}: two motions have one name")
             motions[motion.name] = motion
         except RecordError as error:
             faults.append(f"line {number}: {error}")
@@ -134,7 +134,7 @@ def _split_cells(text: str) -> list[list[str]]:
     ):
         optional = ", ".join((*OPTION_COLUMNS, MAGNITUDE_COLUMN))
         rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {optional}"
-        raise RecordError(f"{FILE_NAME}: line 1: {brief(lines[0])}: {rule}")
+        raise RecordError(f"{FILE_NAME}: line 1: {quote(lines[0])}: {rule}")
     if not rows:
         raise RecordError(f"{FILE_NAME}: no motions: must have a line for each")
     return [heads, *rows]
@@ -164,16 +164,16 @@ def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) ->
         files = dict.fromkeys(AXES[: len(columns)], files["x"])
     if len(columns) > 1 and len(columns) != len(files):
         rule = f"must be one column, or one for each of {', '.join(files)}"
-        raise RecordError(f"column = {brief(row['column'])}: {rule}")
+        raise RecordError(f"column = {quote(row['column'])}: {rule}")
     for file in files.values():
         if not _is_file(file):
-            raise RecordError(f"{brief(file.name)}: no such file in the folder")
+            raise RecordError(f"{quote(file.name)}: no such file in the folder")
     return files
 
 
 def _whole_number(name: str, text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
-        raise RecordError(f"{name} = {brief(text)}: must be a whole number up to {MAX_NUMBER}")
+        raise RecordError(f"{name} = {quote(text)}: must be a whole number up to {MAX_NUMBER}")
     return int(text)
 
 
@@ -194,7 +194,7 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
     except ValueError:
         value = math.nan
     if not 0.0 < abs(value) <= most:
-        raise RecordError(f"{name} = {brief(text)}: must be a number up to {most:g}, not 0")
+        raise RecordError(f"{name} = {quote(text)}: must be a number up to {most:g}, not 0")
     return value
 
 

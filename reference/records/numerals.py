@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from reference.records.samples import MAX_ACCELERATION, RecordError
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
 MAX_LINE, MAX_CELL = 1000, 100  # letters of a line that is searched, and of a number
@@ -71,12 +71,12 @@ def parse_number(line: int, cell: str) -> float:
         raise RecordError(f"line {line}: {cell}: must be finite")
     if "**" in cell:
         lost = "a Fortran field that has overflowed, its value is lost: take the record from its source"
-        raise RecordError(f"line {line}: {brief(cell)}: {lost}")
+        raise RecordError(f"line {line}: {quote(cell)}: {lost}")
     if len(cell) > MAX_CELL or not NUMBER.fullmatch(cell):
-        raise RecordError(f"line {line}: {brief(cell)}: must be a number of at most {MAX_CELL} letters")
+        raise RecordError(f"line {line}: {quote(cell)}: must be a number of at most {MAX_CELL} letters")
     value = float(cell.lower().replace("d", "e"))
     if abs(value) > MAX_ACCELERATION:
-        raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")
+        raise RecordError(f"line {line}: {quote(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")
     return value
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from reference.records.directions import KNOWN_SPELLINGS, Direction, assign_axes, split_name
 from reference.records.motion_lists import COLUMNS, FILE_NAME, Motion
-from reference.support.arguments import brief, name_some
+from reference.support.arguments import name_some, quote
 
 MAX_NAMED = 20  # an error names at most so many files
 
@@ -77,7 +77,7 @@ def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Pat
 
 
 def _list_names(names: Sequence[str]) -> str:
-    return name_some([brief(name) for name in names], MAX_NAMED)
+    return name_some([quote(name) for name in names], MAX_NAMED)
 
 
 def find_vertical_components(files: Sequence[Path]) -> set[Path]:

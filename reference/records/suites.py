@@ -34,7 +34,7 @@ from reference.records.samples import (
     join_directions,
     word_origin,
 )
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 from reference.support.files import read_file
 from reference.support.scene_error import one_line
@@ -166,7 +166,7 @@ def _pair_records(records: Sequence[Path]) -> list[Motion]:
     whole = [file for file in records if _holds_directions(file)]
     parts = [file for file in records if file not in whole]
     if whole and parts:
-        shown = f"{brief(whole[0].name)} holds whole motions, {brief(parts[0].name)} a component"
+        shown = f"{quote(whole[0].name)} holds whole motions, {quote(parts[0].name)} a component"
         raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE_NAME}")
     return pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
 
@@ -273,7 +273,7 @@ def _check_distinct_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
     named: dict[str, Motion] = {}
     for motion in motions:
         if (first := named.setdefault(motion.name, motion)) is not motion:
-            files = [brief(next(iter(one.files.values())).name) for one in (first, motion)]
+            files = [quote(next(iter(one.files.values())).name) for one in (first, motion)]
             raise SuiteError("suite", f"{files[0]} and {files[1]} have one name: rename one of them")
     return tuple(motions)
 
@@ -299,6 +299,6 @@ def _read_motion_of_package(name: str, motion: int, normalized: bool) -> Array:
     samples[:, 0] = longest["Time"]
     for axis, component in enumerate(pair, start=1):
         if not np.array_equal(component["Time"], longest["Time"][: len(component["Time"])]):
-            raise SuiteError("motion", f"the two components of motion {brief(motion)} have other instants")
+            raise SuiteError("motion", f"the two components of motion {quote(motion)} have other instants")
         samples[: len(component["Time"]), axis] = GRAVITY * component[column]
     return check_samples(samples)

@@ -17,7 +17,7 @@ from comparison.analyses.ensemble.statistics import (
 from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from reference import describe_building
-from reference.building import horizontal_peak
+from reference.building import largest_horizontal_acceleration
 from reference.measures import effective_isolator
 from reference.problem import GRAVITY, Outcome, Scene
 from reference.records.motion_lists import Motion
@@ -88,7 +88,7 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
     found = []
     for motion, own in group_rows_by(members, "motion").items():
         member = own[0]
-        peak = horizontal_peak(member.scene) / member.scale
+        peak = largest_horizontal_acceleration(member.scene) / member.scale
         about = listed.get(motion)
         factor, magnitude = (about.factor, about.magnitude) if about else (1.0, None)
         found.append(result.GroundMotion(motion, member.scene.duration, peak, factor * member.factor, magnitude))

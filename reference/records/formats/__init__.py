@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from reference.records.formats import at2, cosmos, csv_table, esm, jma, knet, plain_text
 from reference.records.numerals import MAX_HEADER_LINES, UNIT_NAMES, decode_text
 from reference.records.samples import Array, RecordError, RecordSamples, join_directions
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 
 class Reader(NamedTuple):
@@ -73,7 +73,7 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
             f"{reader.name} states its own unit: remove unit, or state step, unit and skip of a plain text"
         )
     if given and not isinstance(given["unit"], str):
-        raise RecordError(f"unit = {brief(given['unit'])}: must be one of {UNIT_NAMES}")
+        raise RecordError(f"unit = {quote(given['unit'])}: must be one of {UNIT_NAMES}")
     return reader.read(text, name, **given)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.records.numerals import MAX_LINE, holds_numbers, parse_number, quote_name, read_values
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
 FORMAT = "PEER .AT2"
@@ -43,7 +43,7 @@ def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
     whole = count.isascii() and count.isdecimal() and len(count) <= MAX_COUNT_DIGITS
     if not (whole and int(count) > 0):
         rule = f"must be a whole number greater than 0 of at most {MAX_COUNT_DIGITS} digits"
-        raise RecordError(f"line {counts[0] + 1}: NPTS = {brief(count)}: {rule}")
+        raise RecordError(f"line {counts[0] + 1}: NPTS = {quote(count)}: {rule}")
     spacing = parse_number(counts[0] + 1, SECONDS_SUFFIX.sub("", step))
     if spacing <= 0.0:
         raise RecordError(f"line {counts[0] + 1}: DT = {step} s: must be greater than 0")
@@ -63,15 +63,15 @@ def _check_unit(header: list[str], proposal: str) -> None:
     for number, line in found:
         at = UNIT_LINE.search(line)
         if NO_ACCELERATION.search(line):
-            raise RecordError(f"line {number}: {brief(line)}: is no acceleration: take the .AT2 file of the same name")
+            raise RecordError(f"line {number}: {quote(line)}: is no acceleration: take the .AT2 file of the same name")
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
-            raise RecordError(f"line {number}: the header names no unit that is known: {brief(line)}: {rule}")
+            raise RecordError(f"line {number}: the header names no unit that is known: {quote(line)}: {rule}")
     named = [(number, line) for number, line in enumerate(header, 1) if ACCELERATION_LINE.search(line)]
     if found or any(
         (at := ACCELERATION_LINE.search(line)) and ACCELERATION_IN_G.fullmatch(line[at.start() :]) for _, line in named
     ):
         return
-    quoted = f"line {named[-1][0]}: {brief(named[-1][1])}: " if named else ""
+    quoted = f"line {named[-1][0]}: {quote(named[-1][1])}: " if named else ""
     raise RecordError(f"{quoted}the header names no unit that is known: {rule}")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.records.numerals import parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 FORMAT = "COSMOS V2"
 BLOCK_HEADER = re.compile(
@@ -50,7 +50,7 @@ def read_cosmos(text: str, name: str = "file.V2") -> RecordSamples:
     at, block = blocks[0]
     factor = unit_factor(block["unit"])
     if factor is None:
-        raise RecordError(f"line {at + 1}: {brief(block['unit'])}: must be the unit of an acceleration, as cm/sec2")
+        raise RecordError(f"line {at + 1}: {quote(block['unit'])}: must be the unit of an acceleration, as cm/sec2")
     width = int(block.groupdict().get("width") or CSMIP_FIELD_WIDTH)
     values: list[float] = []
     for number, line in enumerate(lines[at + 1 :], at + 2):

@@ -18,7 +18,7 @@ import numpy as np
 from reference.records.directions import Direction, assign_axes, parse_direction
 from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, quote_name, unit_factor
 from reference.records.samples import AXES, RecordError, RecordSamples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 FORMAT = "CSV"
 HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
@@ -71,7 +71,7 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
         cells, below = units, below[1:]
     columns = _header_columns(head, cells, unit, name)
     notes = [f"{top} lines above the header are ignored"] if top else []
-    if others := [brief(column.text) for column in columns if column.kind == "other"]:
+    if others := [quote(column.text) for column in columns if column.kind == "other"]:
         notes.append(f"columns that are not needed: {', '.join(others)}")
     directions = _columns_by_axis(head, [column for column in columns if column.kind == "acceleration"])
     table = _read_table(below, columns, separator)
@@ -154,7 +154,7 @@ def _header_columns(line: int, cells: list[str], unit: str | None, name: str) ->
     usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
     if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
         raise RecordError(
-            f"line {line}: {brief(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
+            f"line {line}: {quote(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
             'column of the time write record = {file = "...", step = 0.01, unit = "g", skip = 1, column = 1}'
         )
     if not times or not usable:
@@ -166,26 +166,26 @@ def _with_unit(line: int, column: HeaderCell, unit: str | None, name: str) -> He
     """Return the column with its unit checked. Raises RecordError."""
     cell, (_, stated) = column.text, _name_and_unit(column.text)
     if column.kind == "time" and stated.lower() not in SECOND_NAMES:
-        raise RecordError(f"line {line}: column {brief(cell)}: unknown unit {brief(stated)}: write time [s]")
+        raise RecordError(f"line {line}: column {quote(cell)}: unknown unit {quote(stated)}: write time [s]")
     if column.kind == "wrong":
         allowed = "must be one of time, ax, ay, az with its unit"
-        raise RecordError(f"line {line}: column {brief(cell)}: {allowed}")
+        raise RecordError(f"line {line}: column {quote(cell)}: {allowed}")
     if column.kind != "acceleration":
         return column
     factor, shown = unit_factor(stated), column.word or "acceleration"
     if factor is None and not stated and unit is not None:
         factor = unit_factor(unit)
         if factor is None:
-            raise RecordError(f"unit = {brief(unit)}: unknown unit: must be one of {UNIT_NAMES}")
+            raise RecordError(f"unit = {quote(unit)}: unknown unit: must be one of {UNIT_NAMES}")
     elif unit is not None and factor is not None and unit_factor(unit) != factor:
-        raise RecordError(f"line {line}: column {brief(cell)}: the scene says unit = {brief(unit)}: remove one of them")
+        raise RecordError(f"line {line}: column {quote(cell)}: the scene says unit = {quote(unit)}: remove one of them")
     if factor is None:
-        quoted = f"unknown unit {brief(stated)}" if stated else "no unit"
+        quoted = f"unknown unit {quote(stated)}" if stated else "no unit"
         if stated:
             rule = f"write {shown} [m/s^2], {shown} [g] or {shown} [cm/s^2]; units are {UNIT_NAMES}"
         else:
             rule = f'write {shown} [g], or record = {{file = {quote_name(name)}, unit = "g"}}; units are {UNIT_NAMES}'
-        raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: {rule}")
+        raise RecordError(f"line {line}: column {quote(cell)}: {quoted}: {rule}")
     return HeaderCell(column.place, cell, column.kind, column.word, factor)
 
 
@@ -235,7 +235,7 @@ def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, Head
         return {"": columns[0]}  # the only column names no direction, or an azimuth
     places = assign_axes(known) if len(known) == len(columns) else None
     if places is None:
-        listed = ", ".join(brief(column.text) for column in columns)
+        listed = ", ".join(quote(column.text) for column in columns)
         raise RecordError(
             f"line {line}: columns {listed}: two have one direction, or none is told: name them ax, ay, az"
         )

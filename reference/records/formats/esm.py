@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.records.numerals import parse_number, read_values, unit_factor
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 FORMAT = "ESM .ASC"
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
@@ -30,9 +30,9 @@ def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
     step, count, unit = (stated.get(key, "").strip() for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"))
     factor = unit_factor(unit)
     if factor is None:
-        raise RecordError(f"UNITS: {brief(unit)}: must be that of an acceleration, as cm/s^2")
+        raise RecordError(f"UNITS: {quote(unit)}: must be that of an acceleration, as cm/s^2")
     if not (count.isascii() and count.isdecimal() and len(count) < 10):
-        raise RecordError(f"NDATA: {brief(count)}: must be a whole number")
+        raise RecordError(f"NDATA: {quote(count)}: must be a whole number")
     values, notes = read_values(lines[size:], size + 1, int(count), f"NDATA: {count}")
     word = stated.get("STREAM", "").strip()
     return make_even_samples(FORMAT, parse_number(1, step), factor * np.array(values), word, notes)

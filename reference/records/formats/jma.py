@@ -11,7 +11,7 @@ import numpy as np
 from reference.records.directions import axis_of_word
 from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 FORMAT = "JMA CSV"
 RATE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
@@ -31,7 +31,7 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     unit = next(match for line in lines if (match := UNIT.match(line)))
     factor, sampling = unit_factor(unit[1]), parse_number(1, rate[1])
     if factor is None or sampling <= 0.0:
-        raise RecordError(f"UNIT = {brief(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
+        raise RecordError(f"UNIT = {quote(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
     top, words = _find_header(lines)
     rows = [(at, line.split(",")) for at, line in enumerate(lines[top + 1 :], top + 2) if line.strip(" ,")]
     for at, cells in rows:

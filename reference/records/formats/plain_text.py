@@ -26,7 +26,7 @@ from reference.records.numerals import (
     unit_factor,
 )
 from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, make_even_samples
-from reference.support.arguments import as_float, brief
+from reference.support.arguments import as_float, quote
 
 FORMAT = "plain text"
 OPTIONS = ("step", "unit", "skip", "column")
@@ -62,13 +62,13 @@ def read_plain_text(
         raise RecordError(f"plain text needs step and unit: {propose_line(text, name)}")
     spacing, factor = as_float(step), unit_factor(unit) if isinstance(unit, str) else None
     if not MIN_INTERVAL <= spacing < np.inf:
-        raise RecordError(f"step = {brief(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
+        raise RecordError(f"step = {quote(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
     if factor is None:
-        raise RecordError(f"unit = {brief(unit)}: must be one of {UNIT_NAMES}")
+        raise RecordError(f"unit = {quote(unit)}: must be one of {UNIT_NAMES}")
     for key, value, lowest, highest in (("skip", skip, 0, MAX_SKIP), ("column", column, 0, MAX_COLUMN)):
         whole = isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
         if not whole and not (key == "column" and value is None):
-            raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
+            raise RecordError(f"{key} = {quote(value)}: must be a whole number from {lowest} to {highest}")
     return _read_stated(text, name, spacing, factor, skip, column)
 
 
@@ -198,7 +198,7 @@ def _read_rows(
         values = parse_plain_lines([plain])
         if values is None:
             if number == skip + 1 and not holds_numbers(line):
-                raise RecordError(f"line {number}: {brief(line.strip())}: must be numbers: {propose()}")
+                raise RecordError(f"line {number}: {quote(line.strip())}: must be numbers: {propose()}")
             values = parse_fields(number, plain)
             glued = glued or len(values) > len(plain.split())
         rows.append((number, values))

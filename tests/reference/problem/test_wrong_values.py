@@ -9,7 +9,7 @@ from reference import plausibility
 from reference.building import describe_building
 from reference.plausibility import implausible_drift
 from reference.problem import Scene, SceneError, load_scene
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}
@@ -157,7 +157,7 @@ def test_a_list_of_another_length_is_one_line_with_its_form(values: dict[str, An
 @pytest.mark.parametrize(("values", "key", "rule"), WRONG)
 def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[str, Any], key: str, rule: str) -> None:
     said = refusal(load_scene("fig3-I").with_values, values, kind=SceneError)
-    value = "" if rule == "this key is required" else f" = {brief(said.value)}"
+    value = "" if rule == "this key is required" else f" = {quote(said.value)}"
     assert str(said).startswith(f"fig3-I: {key if ' = ' in key else f'{key}{value}: '}")
     assert rule in said.rule
     assert len(str(said)) < 700
