@@ -782,7 +782,7 @@ MISTAKES = (
             "Difference of x and y of the last motion alone.", ("tests/comparison/evidence/test_claims.py::test_evidence_of_the_paper_is_what_the_equations_give",)),
     Mistake("comparison/analyses/motions/analysis.py", "for part in (whole.position[:, 0], whole.isolator_force)]", "for part in (whole.position[:, 0],)]",
             "The peak of the isolator's force is not kept.", ("tests/comparison/analyses/test_motion_data.py::test_a_motion_keeps_its_peaks_or_says_why_there_is_none",)),
-    Mistake("comparison/cli/options.py", "    for scene in scenes:\n        for name, limits in scene.acceptance.of_engines.items():", "    for scene in scenes[:1]:\n        for name, limits in scene.acceptance.of_engines.items():",
+    Mistake("comparison/cli/options.py", "    for scene in scenes:\n        for name, limits in scene.acceptance.user_engine_limits.items():", "    for scene in scenes[:1]:\n        for name, limits in scene.acceptance.user_engine_limits.items():",
             "Limits of engines of the second scene are not checked.", ("tests/comparison/surfaces/test_lost_points.py::test_a_wrong_limit_is_one_line_with_the_nearest_key",)),
     Mistake("comparison/cli/user_models.py", '"like-for-like", *Acceptance.model_fields}', '"like-for-like"}',
             "An engine may have the name of a limit.", ("tests/comparison/study/test_user_engines.py::test_a_wrong_spelling_is_one_line_and_exit_code_2",)),

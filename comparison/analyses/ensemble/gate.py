@@ -29,7 +29,7 @@ def check_demands(
     """Return a line for every demand that is not met; limits: in place of those of the file. Raises ValueError."""
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
-    members = list_members([family_of(with_bounds(data, bounds), str(source))])
+    members = list_members([make_family(with_bounds(data, bounds), str(source))])
     asked = read_demand_limits({member.structure: member.scene for member in members})
     for member in members:
         own = asked.get(member.structure, DemandLimits()).model_dump(exclude_none=True)

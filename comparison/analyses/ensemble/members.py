@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from comparison.study.models import Model, has_spatial_data, why_not_spatial
 from reference.problem import Family, Scene, SceneError
-from reference.problem.families import BOUNDS
+from reference.problem.families import BOUNDS_KEY
 from reference.problem.keys import range_of
 from reference.problem.tables import Record
 
@@ -74,7 +74,7 @@ def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
 
 def _word_varied_value(family: Family, key: str, n: int) -> str:
     """Return the name and value of one varied key, which distinguishes a structure from others."""
-    return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
+    return family.labels[key][n] if key == BOUNDS_KEY else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
 def refuse_scenes_without_model_data(members: Sequence[EnsembleMember], model: Model) -> None:

@@ -123,7 +123,7 @@ def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
     if any(quantity != "mu" for quantity, _ in asked):
         motion = import_function(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
         known, status = vars(demands(motion)) | known, str(motion.status)
-    listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
+    listed = ((known[name], body - BODY_QUANTITIES.get(name, 0)) for name, body in asked)
     numbers = [(each[place] if isinstance(each, tuple) else each) or NO_SUCH_VALUE for each, place in listed]
     return [(number.value, number.error, number.reason or status) for number in numbers]
 
