@@ -11,7 +11,7 @@ from random_buildings import random_building, under_a_record
 import multibody
 from multibody.integration import look_ahead
 from multibody.integration.adaptive import Checkpoint, Integration, continue_run
-from multibody.integration.chunk import find_first_ends, find_last_near, largest_distance
+from multibody.integration.chunk import find_last_row_near_peak, find_rim_exit_rows, largest_distance
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _choose_early_stop
@@ -75,12 +75,12 @@ CONTACT = DRAW.normal(size=(STEPS, 12))  # of three
 def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share: float) -> None:
     at_rim, is_open = ACCELERATIONS[:, 2] >= rim, (CONTACT[:, 0::4] >= 0.0).all(axis=1)
     expected = tuple(int(np.append(holds, True).argmax()) for holds in (at_rim, is_open))
-    assert find_first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
-    assert find_first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
+    assert find_rim_exit_rows(ACCELERATIONS, 2, rim, CONTACT) == expected
+    assert find_rim_exit_rows(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
     size, distance = np.abs(ACCELERATIONS[:, :2]), np.abs(ACCELERATIONS[:, 3])
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
-    assert find_last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
+    assert find_last_row_near_peak(size, sizes, distance, far) == (near[-1] if len(near) else -1)
 
 
 def test_the_largest_distance_is_that_between_the_instants_too() -> None:

@@ -16,7 +16,7 @@ from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.estimate import widen_by_impacts
 from multibody.integration.level import REAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
-from multibody.integration.openings import IMPACT_TIME
+from multibody.integration.openings import BEARING_SETTLING_TIME
 from multibody.integration.peak import PeakReader
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
@@ -160,7 +160,7 @@ def test_the_largest_value_behind_an_impact_converges() -> None:
     push, phase = 20.0, 0.5 * math.pi
     scene = bouncing(0.0, push, 0.5)
     [(_, landing)] = flights(0.0, 0.5, push, phase)
-    counted = landing + IMPACT_TIME * math.sqrt(scene.radius / GRAVITY)
+    counted = landing + BEARING_SETTLING_TIME * math.sqrt(scene.radius / GRAVITY)
     model = assemble(scene, "spatial", 1e-3)
     pair = PhasePair(scene, model, np.array([phase, 0.0]), whole=True)
     runs = [pair.run_level(level, Budget(1e6)) for level in multibody.levels(scene, "spatial")[:3]]
