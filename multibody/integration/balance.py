@@ -110,10 +110,10 @@ class _Balance:
     def solve_under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
         """Solve for the coordinates (n,) at which the loading deforms the stiff links and the closed contacts (K,)."""
         mass = self._compute_mass_matrix(equilibrium)
-        stiff = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
+        stiff = self.kinematics.stiff_deformation_rates(equilibrium, np.ones_like(closed))
         spheres = self._size - stiff.shape[1]
         deformed = np.asarray(np.linalg.solve(mass, block_diag(stiff, np.eye(spheres)).T), dtype=float)
-        slow_of_bodies = null_space(self.kinematics.stiff_rates(equilibrium, closed))
+        slow_of_bodies = null_space(self.kinematics.stiff_deformation_rates(equilibrium, closed))
         slow = np.vstack([slow_of_bodies, np.zeros((spheres, slow_of_bodies.shape[1]))])
         return self._solve_balance(equilibrium, deformed, mass @ slow, closed, 1.0)
 

@@ -145,7 +145,7 @@ def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: Engin
         noise = NOISE_OF_TURNING * level.rounding
         return np.where(peaks <= noise, noise, 0.0)
     noise = NOISE_OF_ROUNDING * level.rounding
-    vertical = peaks if model.ground.shakes(2) else np.minimum(run.max_vertical, peaks)
+    vertical = peaks if model.ground.accelerates(2) else np.minimum(run.max_vertical, peaks)
     gain = (2.0 * vertical + noise) * noise
     error = np.minimum(noise, gain / np.maximum(peaks + np.sqrt(np.maximum(peaks**2 - gain, 0.0)), SMALLEST_CHANGE))
     if scene.flat:

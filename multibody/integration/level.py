@@ -325,7 +325,7 @@ def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> L
 
 def bound_contact_force_change(scene: Scene, model: EngineModel) -> float:
     """Return a bound, in weights, of the contact force's change in a motion from rest, from its speed and path."""
-    if model.ground.shakes(2):
+    if model.ground.accelerates(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
     return 1.5 * speed**2

@@ -168,7 +168,7 @@ class Openings:
 
     def apply_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
         """Return the state after the impact of the contacts `which` and of others that close at the same time."""
-        # Contacts that close within SIMULTANEOUS_CLOSING_TIME, or whose gap is within the compliance of the others, share
+        # Contacts that close within SIMULTANEOUS_CLOSING_TIME, or whose gap is within MAX_GAP_OF_JOINT_IMPACT, share
         # one impact: successive impacts, in an order that rounding decides, would end with other velocities. A contact
         # with a slow approach closes without a jump of velocities, because its damper stops it, and only the light
         # spheres follow the platform. Otherwise velocities jump by the impact law, and the elongation of the bars
@@ -190,13 +190,13 @@ class Openings:
             self._mark_open(self.is_open & ~hit)
             velocities = self.law.carry_spheres_along(state.coordinates, state.velocities, hit)
             return replace(state, velocities=velocities, contact=contact)
-        velocities, is_open = self.law.velocities_after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
+        velocities, is_open = self.law.solve_impact(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
         self._mark_open(is_open)
         self.impacts += 1
-        bar_lags = self.solver.model.bar_lags
-        assert bar_lags is not None
-        lags = bar_lags(self.penetration)
-        coordinates = self.law.relax_bars(state.coordinates, state.velocities, velocities, lags)
+        bar_damping_times = self.solver.model.bar_damping_times
+        assert bar_damping_times is not None
+        damping_times = bar_damping_times(self.penetration)
+        coordinates = self.law.unload_bar_dampers(state.coordinates, state.velocities, velocities, damping_times)
         return replace(
             state, coordinates=coordinates, velocities=velocities, contact=contact, slip_rate=None, load=None
         )

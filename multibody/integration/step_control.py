@@ -62,7 +62,7 @@ class StepControl:
             step_ratio = model.springs.step_ratio(motion, state, level.slide_end) / level.slip_change
         if model.friction is not None:
             allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_STEP_TIMES_FEEDBACK)
-            step_ratio = np.maximum(step_ratio, step / allowed * model.friction.feedback(motion.slip))
+            step_ratio = np.maximum(step_ratio, step / allowed * model.friction.friction_feedback_rate(motion.slip))
         if len(model.ground.knots):
             step_ratio = np.maximum(step_ratio, self._kink_step_ratio(motion, size, peaks, per_change))
         return step_ratio

@@ -11,7 +11,7 @@ from multibody.integration.engine_run import Budget
 from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import MAX_WORK_GROWTH
 from multibody.integration.look_ahead import level_of_longest_steps
-from multibody.integration.refine import MAX_WORK, WORK
+from multibody.integration.refine import MAX_WORK, WORK_RANGE
 from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
@@ -61,7 +61,7 @@ def refusal(
     ''
     """
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
-    max_work = check_number("max_work", max_work, WORK)
+    max_work = check_number("max_work", max_work, WORK_RANGE)
     if softened:
         try:
             scene = scene.softened()

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix
 from multibody.models.engine import BODY_COORDINATES, items
-from multibody.models.speed_friction import DATA_PER_CONTACT, SLIP
+from multibody.models.speed_friction import DATA_PER_CONTACT, SLIP_INDEX
 from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import DryFriction, Scene
@@ -183,7 +183,7 @@ class FrictionSprings:
                 slip, rates[number] = max(slip, end), 0.0
             else:
                 slip = 0.0
-            contact[DATA_PER_CONTACT * number + SLIP] = slip
+            contact[DATA_PER_CONTACT * number + SLIP_INDEX] = slip
             velocities[turn] = np.cross(normal, speeds[number] - slip * along) / self.depressions.radius
             accelerations[turn] = np.cross(normal, rates[number]) / self.depressions.radius
         return replace(
