@@ -159,7 +159,7 @@ class _Progress:
             return self._pass_event(event, step)
         if springs is not None:
             rates = self._fit_rates_of_limits(springs, motion, last)
-            at.state = springs.settle(at.state, before, motion.accelerations[last], rates, level.slide_end)
+            at.state = springs.restart_state(at.state, before, motion.accelerations[last], rates, level.slide_end)
             if change is not None:
                 return self._pass_sliding_change(springs, change, step, rates)
         if failing is not None:
@@ -219,7 +219,7 @@ class _Progress:
             # Newton's iteration fails where a slide ends within a step of any length, so the run continues from rest
             springs, state = self.model.springs, self.at.state
             assert springs is not None
-            self.at.state = springs.rest(state)
+            self.at.state = springs.state_at_rest(state)
             self.at.rested_at, self.at.divisions = self.at.time, DIVISIONS_AT_REST
             return True
         if self.at.divisions == self.level.max_divisions:
@@ -288,18 +288,19 @@ class _Progress:
         """Integrate up to the instant at which a contact begins or ends to slide; return whether the run goes on."""
         at, solver, before = self.at, self.integration.solver, self.at.state
         self.integration.budget.left -= 1.0
-        length = change.share * step
+        length = change.step_share * step
         motion = solver.run(before, at.time, length, 1) if length > MIN_STEP_SHARE * step else None
         if motion is not None and np.isfinite(motion.accelerations).all():
             # no peak is read in this step: the next chunk reads the acceleration at the kink from its side
             size = absolute_accelerations(self.model, motion, self.integration.ground)
             if not self._accept_steps(motion, size, settle=True, read=False):
                 return False
-            at.state = springs.settle(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
+            at.state = springs.restart_state(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
             if change.slides:
                 change = change._replace(limits=springs.limits(motion)[-1])
-        assert at.state.accelerations is not None  # settled
-        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, self.level.slide_end, change)
+        reached = at.state
+        assert reached.accelerations is not None  # restart_state or the previous change has set them
+        at.state = springs.restart_state(reached, reached, reached.accelerations, rates, self.level.slide_end, change)
         self.run.peaks.restart()
         at.next_count = STEPS_AFTER_SLIDING_CHANGE
         return True

@@ -171,7 +171,7 @@ class EngineSolver:
             springs.begin(state)
         if self.model.friction is not None:
             if springs is not None:
-                self.model.friction.factors = springs.factors(state)
+                self.model.friction.coefficient_ratios = springs.coefficient_ratios(state)
             self.model.friction.begin(self.model.mbs, state, begin)
         integration = self.integration
         integration.startTime = begin

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.friction_springs import end_of_slide
+from multibody.models.friction_springs import slide_end_speed
 from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import Scene
@@ -44,7 +44,7 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> Con
     if scene.lubricated:
         return ContactLaw(scene.friction_coefficient * units.velocity * LUBRICATED_SPEED_LIMIT, LUBRICATED_SPEED_LIMIT)
     if scene.dry_friction.elastic:
-        return ContactLaw(scene.friction_coefficient, end_of_slide(scene, units))
+        return ContactLaw(scene.friction_coefficient, slide_end_speed(scene, units))
     if regularization is None:
         return ContactLaw(scene.friction_coefficient, 1.0)
     return ContactLaw(scene.friction_coefficient, regularization / units.velocity)

@@ -43,7 +43,7 @@ class SpeedFriction:
             self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
         # coefficients over those of the law, above 1 for contacts at rest where friction yields (`FrictionSprings`)
-        self.factors = [1.0] * len(contacts)
+        self.coefficient_ratios = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
         # slip speeds and loads over the weight's shares, with their rates, at the start of the step from _start to _end
@@ -124,7 +124,7 @@ class SpeedFriction:
             celsius = self._heat.temperature(end, self._friction_power(coefficients, span), self._heat.distance(end))
             self._factor_of_heat = Heat.factor(celsius)
             coefficients = list(self._factor_of_heat * coefficients)
-        for contact, coefficient, factor in zip(self._add_contacts, coefficients, self.factors, strict=True):
+        for contact, coefficient, factor in zip(self._add_contacts, coefficients, self.coefficient_ratios, strict=True):
             mbs.SetObjectParameter(contact, "dynamicFriction", factor * coefficient)
 
     def _coefficients_without_heat(self, span: float) -> list[float]:

@@ -264,7 +264,7 @@ MISTAKES = (
     Mistake("multibody/demand_surface.py", "tolerance: float = DEFAULT_TOLERANCE", "tolerance: float = 1e-3",
             "A signature has a default of its own.",
             ("tests/test_defaults.py::test_a_default_is_taken_by_its_name_and_stated_with_its_value",)),
-    Mistake(MODELS + "friction_springs.py", "RESTING = 1e6", "RESTING = 1.0",
+    Mistake(MODELS + "friction_springs.py", "RESTING_COEFFICIENT_RATIO = 1e6", "RESTING_COEFFICIENT_RATIO = 1.0",
             "A contact at rest creeps as in a slide, and its spring forgets.",
             (YIELDING + "test_a_platform_vibrates_on_its_springs_below_yield_without_loss",)),
     Mistake(MODELS + "friction_springs.py", "units.length / units.force * radius**2 / count",
