@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from multibody.surface import amplification
     from reference.measures import demands, floor_spectra
 
-ENGINE = {
+_MODULE_OF_NAME = {
     "MAX_WORK": "multibody.integration.refine",
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
@@ -77,8 +77,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in ENGINE:
-        return getattr(import_module(ENGINE[name]), name)
+    if name in _MODULE_OF_NAME:
+        return getattr(import_module(_MODULE_OF_NAME[name]), name)
     raise AttributeError(f"module 'multibody' has no attribute '{name}'")
 
 

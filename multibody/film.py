@@ -1,5 +1,5 @@
 """
-Draws one motion as a GIF: the boxes from above with the paths of the contact points, then the chain from two sides.
+Film of one motion as a GIF: the boxes from above with the paths of the contact points, and the chain from two sides.
 
 What moves is drawn frame by frame on a background that is drawn once. Displacements, contact paths, tilt and yaw are
 magnified. Heights are scaled so that the whole frame fits, its boxes stay apart, and the poles of the supports end

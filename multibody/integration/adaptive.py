@@ -127,12 +127,13 @@ def continue_run(
 class _Progress:
     """Run under way, which integrates chunks of steps and accepts the accurate rows of each."""
 
-    # A chunk can end in four ways. The engine cannot solve a step: the chunk is made again in smaller steps. A step is
-    # larger than the motion allows: the rows before it are accepted, and the run goes on in smaller steps from there,
-    # with a contact force that the gap alone carries. A support opens or closes: the rows before it are accepted, the
-    # event is located, and the run goes on behind it. Otherwise all rows are accepted, and the step may grow by one
-    # division if the last rows would have allowed that. Every step size is the largest one over a power of STEP_RATIO,
-    # so that runs of successive levels take comparable steps at the same instants, which their error estimate needs.
+    # A chunk can end in four ways. If the engine cannot solve a step, the chunk is repeated in smaller steps. If a step
+    # is larger than the motion allows, the rows before it are accepted, and the run continues there in smaller steps,
+    # with the contact force set by the gap alone. If a support opens or closes, the rows before the event are accepted,
+    # the event is located, and the run continues behind it. Otherwise all rows are accepted, and the step may grow by
+    # one division if the last rows would have allowed that. Every step size is the largest one over a power of
+    # STEP_RATIO, so that runs of successive levels take comparable steps at the same instants, which their error
+    # estimate needs.
 
     def __init__(self, integration: Integration, run: EngineRun, at: Checkpoint) -> None:
         self.integration, self.run, self.at = integration, run, at

@@ -1,15 +1,15 @@
 """
 Initial state of a model whose bodies turn: at rest in static equilibrium under its weight, with stiff parts balanced.
 
-Supports that start with equal shares are out of balance by the overturning moment. They would swing for a few of the
-contact's own periods, with an acceleration that no stiffness makes smaller. An eccentric building on elastic supports
-tilts, and as it tilts it shifts, so that every depression stays on its sphere. So the engine's forces are solved
-for zero by Newton's method, first under the weight alone and for all coordinates. Then the loading's first value joins
-it. Contacts, springs of spheres and stiff links give way to it until no force accelerates their deformation. The slow
-motions, which deform none of them, start from where they were. A support that would have to pull carries nothing. A
-loading that is gone before a contact swings is nothing they could give way to.
+Supports that start with equal shares of the weight are out of balance by the overturning moment. They would oscillate
+for a few periods of the contact, with an acceleration that does not depend on its stiffness. An eccentric building on
+elastic supports tilts, and as it tilts it shifts, so that every depression stays on its sphere. So Newton's method
+finds the coordinates at which the engine's forces are zero, first under the weight alone and for all coordinates, then
+also under the initial loading. Contacts, springs of spheres and stiff links deform under this loading until no force
+accelerates their deformation. Slow motions, which deform none of these parts, start from the first equilibrium. A
+support that would have to pull carries no force. A loading that decays faster than a contact oscillates is left out.
 
-Friction is zero at rest. On a plane nothing else holds the platform, which keeps its place there.
+Friction is zero at rest. On a plane no other force holds the platform, so that its position stays as it is.
 """
 
 from __future__ import annotations
@@ -124,11 +124,11 @@ class _Balance:
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
         """Solve for coordinates, from `begin` along `moved` (n, s), at which the residual lies in `held` (n, t)."""
-        # Newton's method on the engine's own forces and their derivative, in the coordinates that may move and the
-        # forces that may be left over, which hold the slow motions. Open contacts add the equations that they just
-        # touch, so that a contact that would have to pull carries nothing. The matrix may be singular where friction
-        # alone holds a platform on a plane, hence least squares. Iterations go on behind the bound of the residual
-        # until they no longer halve it: rounding is reached then.
+        # Newton's method on the engine's own forces and their Jacobian. The unknowns are displacements along `moved`
+        # and forces along `held`, which hold the slow motions in place. The gap of every open contact must be zero, so
+        # that a contact that would have to pull carries no force. The matrix may be singular where friction alone holds
+        # a platform on a plane, hence least squares. Iterations continue below the bound of the residual until they no
+        # longer halve it, because of rounding.
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf

@@ -32,7 +32,7 @@ class Candidate:
       contact's compliance.
     - level_errors: Errors from the differences to other levels and to other springs of the supports, (N,).
     - rounding: Errors that rounding of the contact forces leaves, (N,).
-    - least: Errors that the noise of the contact force leaves, however well runs agree, (N,).
+    - noise_errors: Errors that the noise of the contact force leaves, however well runs agree, (N,).
     - compliance: Errors that the contact's compliance leaves where `shares_contact`; None until a run has shown them,
       (N,).
     - coarser: Other runs, each with the share of its difference to this run that is an error.
@@ -45,7 +45,7 @@ class Candidate:
     shares_contact: bool
     level_errors: Array
     rounding: Array
-    least: Array
+    noise_errors: Array
     compliance: Array | None
     coarser: tuple[tuple[EngineRun, float], ...]
     confirmed: bool
@@ -55,7 +55,7 @@ class Candidate:
     def errors(self) -> Array:
         """Estimated errors (N,) of the peaks, with all parts that are known."""
         shown = widen_without_convergence(self.level_errors + self.rounding, self.run)
-        return np.maximum(shown if self.compliance is None else shown + self.compliance, self.least)
+        return np.maximum(shown if self.compliance is None else shown + self.compliance, self.noise_errors)
 
     @property
     def misses_compliance_error(self) -> bool:

@@ -4,9 +4,9 @@ Levels of accuracy: from one level to the next everything that the answer depend
 The step and the change of the slip velocity in one step fall by two. The compliance of the contact and the tolerance
 of Newton's iteration fall by four. The contact follows a change of the force that it must carry within
 sqrt(penetration) units of time. At a stop that force changes within the time in which regularized friction relaxes,
-share * v_reg / mu with the platform's share of the mass. A slower contact would give the friction limit of a moment
-ago. Then its error at the corner of the law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation: the
-answer of a first-order lag to an exponential.
+share * v_reg / mu with the platform's share of the mass. A slower contact would apply the friction limit of an earlier
+instant. Then its error at the corner of the law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation:
+the response of a first-order lag to an exponential.
 """
 
 from __future__ import annotations
@@ -245,11 +245,11 @@ def levels(
 def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """Return all levels of accuracy of a model for a relative error of `tolerance`."""
     # Step and change of the slip velocity follow from the level's number alone. The penetration falls by
-    # COMPLIANCE_RATIO as often as there is room between its bounds, and then the levels share it: `refine` adds a run
-    # on a softer contact in place of what they cannot show.
+    # COMPLIANCE_RATIO from level to level until it reaches its lower bound. Further levels share it, so that they do
+    # not show the error of the contact's compliance, for which `refine` adds a run on a softer contact.
     period = shortest_period(scene, model)
     step = largest_step(period, model)
-    # a tower tilts on soft contacts, so that its contact stays stiff under a weak loading
+    # a platform that can rotate would tilt on soft contacts, so that its contact stays stiff under a weak loading
     strength = 1.0 if model.allows_liftoff else loading_strength(scene)
     followed = MAX_CONTACT_RESPONSE_TIME_OVER_DURATION * scene.duration / model.units.time
     force_change = bound_contact_force_change(scene, model)
@@ -293,10 +293,10 @@ def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
     """Return the penetrations of the softest and the stiffest contact; slowest: its largest response time."""
-    # A softer contact than the softest would lag behind friction at a stop, join in the motion of stiff links, or not
-    # have followed by the end. A stiffer one than the stiffest would round its force, a position over a penetration, by
-    # more than a share of the tolerance. A weak loading is compared with its own strength, and its contact may be
-    # softer.
+    # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
+    # not follow a force before the end. A stiffer contact than the stiffest would have a rounding error of its force,
+    # a position over the penetration, above a share of the tolerance. Under a weak loading that error is compared with
+    # the loading, and the contact may be softer.
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     most = min(most, COMPLIANCE_RATIO * slowest**2)
     rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, MAX_TOLERANCE_FOR_ROUNDING)

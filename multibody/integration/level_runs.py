@@ -1,12 +1,12 @@
 """
 Runs of one phase pair at successive levels of accuracy: how far each run goes, and on which springs its supports stand.
 
-The first run shows when the last large value comes (`look_ahead`). Runs at further levels stop soon after it, as long
-as they differ from the run before by much less than what separates later values from the largest.
+The first run gives the instant of the last large value (`look_ahead`). Runs at further levels stop soon after that
+instant, if they differ from the run before by much less than later values differ from the largest.
 
-While all supports are closed, their springs against warping give way so far that they take no load. Where one
-opens the springs of real bearings are part of the model. Stiffer ones remain where those change no peak beyond the
-tolerance; the change is an error then.
+While all supports are closed, their springs against warping are so soft that they carry no load. Once a support opens,
+the springs of real bearings are part of the model. Stiffer springs remain if springs of real bearings change no peak by
+more than the tolerance; the change is then a part of the error.
 """
 
 from __future__ import annotations
@@ -117,11 +117,11 @@ class LevelRuns:
 
     def run_next_level(self) -> EngineRun:
         """Run the next level, and adapt the levels to come to its result."""
-        # Three things may replace the plain run at the level. The first run of supports that may rattle is a trial with
-        # a share of the work: rattling on stiff springs would use up all of it. A run that stops early holds only if
-        # its largest values confirm those of the run before: nothing later can then be larger, and otherwise the level
-        # is run to the end. And where a support opens, the springs of real bearings are tried, since the platform of
-        # rigid supports is lifted off by its misfit alone (docs/records/multibody.md, supports).
+        # The run at the level may be replaced in three cases. If supports may rattle, the first run is a trial with a
+        # share of the work, because rattling on stiff springs would use up all work. A run that stops early counts only
+        # if its largest values confirm those of the run before, so that no later value can be larger; otherwise the
+        # level is run to the end. If a support opens, the springs of real bearings are tried, because the misfit of a
+        # platform alone lifts it off rigid supports (docs/records/multibody.md, supports).
         number, level = len(self.runs), self.levels[len(self.runs)]
         trial = number == 0 and self.pair.model.warping_displacement is not None
         run = self._run_trial(level) if trial else self._run_level(level, self.stop)
@@ -185,7 +185,7 @@ class LevelRuns:
             shares_contact=self.shares_contact(number),
             level_errors=errors,
             rounding=rounding,
-            least=noise,
+            noise_errors=noise,
             compliance=None,
             coarser=tuple(coarser),
             confirmed=confirmed,
@@ -211,10 +211,11 @@ class LevelRuns:
 
     def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
         """Return `run`, in which a support opens, or in its place a run on springs of real bearings."""
-        # A support that opens on stiff springs may have been lifted off by the misfit of the platform alone, which real
-        # bearings take up. So the level is repeated on the springs of real bearings. If a support opens there, too, and
+        # A support on stiff springs may open only because of the misfit of the platform, which real bearings
+        # compensate. So the level is repeated on the springs of real bearings. If a support opens in this run, too, and
         # no peak changes by more than the tolerance, the stiff run stays the answer and the change becomes a part of
-        # its error. Otherwise real bearings are part of the model, and all levels from here on have their springs.
+        # its error. Otherwise real bearings are part of the model, and this level and all later ones have their
+        # springs.
         number = len(self.runs)
         level = self.levels[number]
         if level.warping_compliance == REAL_WARPING_COMPLIANCE:

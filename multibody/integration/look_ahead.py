@@ -1,10 +1,11 @@
 """
 Run to the end of the motion that takes accurate steps only as long as large accelerations can come.
 
-Once nothing came near a largest value for a while, the rest of the motion is scanned in steps four times as large, from
-the state that the run has reached. If nothing comes near a largest value there either, the rest is left out. Otherwise
-the run goes on from where it was, for a while beyond the instant that was found, and looks ahead again. Where a contact
-opens, motions of different steps are different motions: such a run goes to the end in full.
+If no value came near its largest for a period of the pendulum, the later motion is scanned in steps four times as
+large, from the state that the run has reached. If no value comes near its largest in the scan either, the later motion
+is left out. Otherwise the run continues from its own state up to a period beyond the large value, and scans the motion
+again. If a contact opens, runs with different steps are different motions, so that the run goes to the end in accurate
+steps.
 """
 
 from __future__ import annotations
@@ -48,12 +49,12 @@ def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Lev
 
 def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineRun:
     """Run the engine with adaptive steps, but leave out late motion in which no value comes near its largest."""
-    # The maximum in (5.1) needs no accurate motion where the accelerations are small. A scan costs a quarter of the
-    # steps, and its error hides no large value: values count as near from NEAR_PEAK_FRACTION of the largest on, and the
-    # largest values of scans fell to 0.96 of those of the level's own steps at worst (measured on 200 random scenes:
-    # docs/records/multibody.md). The scan has a result of its own, which starts with that fraction, so that whatever it
-    # changes came near. It stops where something large comes, opens or fails. The run then goes on from its own
-    # checkpoint, up to a period of the pendulum behind that instant, and the question is put again.
+    # The maximum in (5.1) needs no accurate motion where the accelerations are small. A scan takes a quarter of the
+    # steps, and its error hides no large value: a value counts as near the largest above NEAR_PEAK_FRACTION of it,
+    # while the largest values of scans were 0.96 of those in accurate steps at worst (measured on 200 random scenes:
+    # docs/records/multibody.md). The scan has a result of its own, which starts with that fraction of the largest
+    # values, so that every change of it is a value near the largest. The scan stops at a large value, an opening or a
+    # failure. The run then continues from its own checkpoint to a period of the pendulum beyond that instant.
     model, end = integration.solver.model, integration.end
     run, checkpoint = begin_run(model), Checkpoint(start)
     coarse = integration.level.coarsen()

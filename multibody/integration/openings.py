@@ -1,10 +1,10 @@
 """
 Openings and closings of supports in a run: every closing is an impact, located between two steps of the engine.
 
-A contact whose gap has opened is taken out of the engine, so that every stretch of a run is smooth. The gap is watched
-from the positions. Where it closes, the last step is made again with the length at which the gap is zero, velocities
-jump by `ImpactLaw`, and the run goes on from there. Slow closings, and what is left of the normal motion behind an
-impact, are damped by the contact itself within a time in proportion to the square root of its penetration.
+A contact whose gap has opened is taken out of the engine, so that every part of a run is smooth. Its gap then follows
+from the positions. When the gap closes, the last step is repeated with the length at which the gap is zero, velocities
+jump by `ImpactLaw`, and the run continues from that instant. The contact itself damps slow closings and the remaining
+normal motion after an impact, within a time in proportion to the square root of its penetration.
 """
 
 from __future__ import annotations
@@ -125,11 +125,12 @@ class Openings:
 
         Returns None if the event lies at the start of the step.
         """
-        # The engine knows no events, so the length of the step is the unknown: steps of trial lengths are made from the
-        # same state until the smallest gap of the event's contacts is zero (Brent's method). Two things make this less
-        # than plain root finding. A contact that touches within the tolerance at the start has no sign change behind
-        # it, unless the platform leaves and comes back within the step: such a flight is looked for at ever shorter
-        # steps. And an event whose margin is still positive at the whole step, which rounding permits, ends with it.
+        # The engine has no events, so the length of the step is the unknown: steps of trial lengths are made from the
+        # same state until the smallest gap of the event's contacts is zero (Brent's method). There are two special
+        # cases. A contact that touches within the tolerance at the start has no later change of sign, unless the
+        # platform leaves it and comes back within the step; such a flight is searched for in shorter and shorter steps.
+        # And because of rounding the margin may still be positive after the whole step; then the event lies at the end
+        # of that step.
         sign = 1.0 if event.closes else -1.0
         done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}

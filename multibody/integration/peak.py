@@ -101,12 +101,13 @@ class PeakReader:
 
     def _read_between(self, time: Array, size: Array, slip: Array) -> None:
         """Update the largest values from the samples, and from interpolation between them."""
-        # The largest acceleration lies between two samples. In smooth motion a parabola through the highest sample and
-        # its neighbors is of fourth order at the top. Nothing smooth may be laid across three kinds of rows: where the
-        # slip speed passes v_reg, the corner of the friction law, the slope of the acceleration jumps within the step;
-        # at kinks of a recorded loading and at steps much longer than their neighbor it changes at the sample. A corner
-        # is often the peak itself, at a stop. It is read from each side by itself, at the instant at which the slip
-        # speed of that side passes v_reg, once, as soon as there are samples behind it.
+        # The largest acceleration lies between two samples. In smooth motion the maximum of a parabola through the
+        # highest sample and its neighbors is of fourth order. No parabola may be fitted across three kinds of rows.
+        # Where the slip speed passes v_reg, the corner of the friction law, the slope of the acceleration jumps within
+        # the step. At kinks of a recorded loading, and at steps much longer than their neighbor, it jumps at the
+        # sample. At a stop the corner itself is often the peak. Its acceleration is extrapolated from each side alone,
+        # to the instant at which the slip speed of that side passes v_reg, once, as soon as there are samples behind
+        # the corner.
         corners = self._find_corners(slip)
         ready = [
             left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._last_read_corner
@@ -189,9 +190,9 @@ def _read_parabola_maximum(
 
     The result is value, error and instant.
     """
-    # A fourth sample tells how far the signal is from the parabola: its third divided difference times the cubic that
-    # vanishes at the three samples is the error at the summit. Samples that alternate from step to step are no motion
-    # but ringing of the step, and half of what alternates is an error, whatever the parabola says.
+    # A fourth sample shows the error of the parabola: the third divided difference times the cubic that vanishes at the
+    # three samples is the error at the maximum. Samples that alternate from step to step are ringing of the integrator
+    # and no motion, and the alternating part is an error, too.
     alternating = 0.0
     if last - first >= 4:
         begin = min(max(row - 2, first), last - 4)

@@ -66,11 +66,12 @@ class ImpactLaw:
 
     def solve_impact(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
         """Return velocities (n,) after an impact on contacts `hit`, and the open ones (K,); closed: other contacts."""
-        # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix in which
-        # rigid links hold (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by Newton's
-        # restitution, and closed ones may push without rebounding. Friction and unilateral contact are solved for the
-        # velocities after the impact, by sweeps over the contacts (`_solve_impulses`). The spheres are too light to
-        # matter: one that springs up does not push the platform, and one that is hit follows it.
+        # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix with
+        # rigid links as constraints (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by
+        # Newton's restitution, and closed contacts may push without rebounding. Friction and unilateral contact hold
+        # for the velocities after the impact, which sweeps over the contacts find (`_solve_impulses`). The mass of the
+        # spheres is negligible: a sphere that springs up does not push the platform, and a sphere that is hit follows
+        # it.
         count = BODY_COORDINATES * len(self.masses)
         turning = self._velocity_matrix(coordinates)
         speeds = turning @ velocities[:count]

@@ -1,4 +1,4 @@
-"""Ground acceleration as an expression that the engine evaluates: (5.2)-(5.4), or a record (`recorded.py`)."""
+"""Ground acceleration as an expression for the engine: harmonics (5.2)-(5.4), or a record (`recorded.py`)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """
-The spatial model: rigid bodies free to turn, supports in the plane, contacts that open and close.
+Spatial model: rigid bodies that can rotate, supports in the plane, contacts that open and close.
 
 Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
 per support. Each has its own unilateral contact, so supports share the load as overturning demands. A link is a

@@ -6,9 +6,9 @@ fits three spheres only, by about 3e-8 rho: contacts stiffer than that make it r
 way by far more, so that the vertical forces are c0 + c1 x_k + c2 y_k. Here every sphere can move vertically. Against
 the three patterns of such forces (heave, tilt about x, tilt about y) the spheres are held ten times as stiffly as by
 contacts. Against the K - 3 other patterns, which warp the ring, they give way by a stated share of rho under the
-weight. That is more than the misfit. Where all supports stay closed it is so much more that warping takes no load;
-where one opens, less than what would let it hit the platform as it closes again. The stiffness of the contacts, and
-with it the time in which the total force follows, does not change.
+weight, which is more than the misfit. Where all supports stay closed, this share is so large that warping carries no
+load. Where a support opens, it is so small that the sphere does not hit the platform as it closes again. The stiffness
+of the contacts, and with it the time in which the total force follows, does not change.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 """
-The translational model: the paper's degrees of freedom, the engine's bodies and contact.
+Translational model: the degrees of freedom of the paper, with the bodies and the contact of the engine.
 
 The platform is a rigid body whose moments of inertia are so large that it does not turn: the contact item needs a
 body with an orientation, and locking the rotations by constraints would cost more coordinates. The bodies above
