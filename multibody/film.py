@@ -74,16 +74,16 @@ class Drawing:
     Magnified geometry of a motion, in m, in F frames, with N bodies and K supports.
 
     corners: corners of the boxes, (F, N, 8, 3). centers: centers of mass, (F, N, 3). supports: places, (K, 2). paths:
-    places of the contact points, (F, K, 2). swing: x and z of the curve on which the platform's center moves, (S, 2),
-    from its place at `rest`, (2,). scales: the magnification factors in words.
+    places of the contact points, (F, K, 2). swing_curve: x and z, (S, 2), of the curve on which the platform's center
+    moves, from its place at rest. rest_place: x and y of that place, (2,). scales: the magnification factors in words.
     """
 
     corners: Array
     centers: Array
     supports: Array
     paths: Array
-    swing: Array
-    rest: Array
+    swing_curve: Array
+    rest_place: Array
     scales: str
 
     @property
@@ -164,8 +164,8 @@ def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -
         centers=centers,
         supports=_support_places(scene),
         paths=_support_places(scene) + paths * closer,
-        swing=stretch * np.column_stack([across, rise]),
-        rest=scene.offsets[0],
+        swing_curve=stretch * np.column_stack([across, rise]),
+        rest_place=scene.offsets[0],
         scales=scales,
     )
 
@@ -272,7 +272,11 @@ class _SideView(_Panel):
             panel.plot([support, support], [low, top], color="0.5", linewidth=1.5)
             panel.plot(support, top, "o", color="0.4", markersize=5, clip_on=False)
         panel.plot(
-            drawn.rest[axis] + drawn.swing[:, 0], drawn.swing[:, 1], ":", color="0.2", label="swing of the center"
+            drawn.rest_place[axis] + drawn.swing_curve[:, 0],
+            drawn.swing_curve[:, 1],
+            ":",
+            color="0.2",
+            label="swing of the center",
         )
         self.mast = panel.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0, animated=True)[0]
         self.moving.append(self.mast)

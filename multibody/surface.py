@@ -149,13 +149,13 @@ class _ReducedModel:
     Smallest model with the same mu as the model that the caller names.
 
     complete: assembles the model that the caller names, for pairs where the reduced model has no answer; None where it
-    is not reduced. whole: whether every run goes to the end of the motion.
+    is not reduced. in_full: whether every run goes to the end of the motion.
     """
 
     scene: Scene
     built: EngineModel
     complete: Callable[[], tuple[Scene, EngineModel]] | None
-    whole: bool
+    in_full: bool
 
     def answer(
         self, pairs: Array, ground: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
@@ -185,10 +185,10 @@ class _ReducedModel:
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
         """Refine one phase pair (2,), rad; repeat it with the complete model if the reduced one has no answer."""
-        pair = PhasePair(self.scene, self.built, phase, whole=self.whole)
+        pair = PhasePair(self.scene, self.built, phase, in_full=self.in_full)
         point = refine(pair, tolerance, levels=levels, max_work=max_work)
         if self.complete is not None and np.isnan(point.peaks).any():
-            pair = PhasePair(*self.complete(), phase, whole=self.whole)
+            pair = PhasePair(*self.complete(), phase, in_full=self.in_full)
             point = refine(pair, tolerance, levels=levels, max_work=max_work)
         return point
 

@@ -204,8 +204,8 @@ class _Progress:
         motion = solver.run(self.at.state, self.at.time, step, count)
         work = max(count, solver.newton_iterations / ITERATIONS_PER_STEP_OF_WORK)
         self.run.work += work
-        budget.left -= work
-        if budget.left < 0.0:
+        budget.steps_left -= work
+        if budget.steps_left < 0.0:
             self.run.terminate(Outcome.STEP_LIMIT, self.at.time)
             return None
         if motion is None or not np.isfinite(motion.accelerations).all():
@@ -248,7 +248,7 @@ class _Progress:
         at, run, openings = self.at, self.run, self.openings
         assert openings is not None
         motion = openings.locate_event(at.state, at.time, step, event)
-        self.integration.budget.left -= 1.0
+        self.integration.budget.steps_left -= 1.0
         if motion is not None:
             size = absolute_accelerations(self.model, motion, self.integration.ground)
             if event.closes:
@@ -288,7 +288,7 @@ class _Progress:
     def _pass_sliding_change(self, springs: FrictionSprings, change: ContactChange, step: float, rates: Array) -> bool:
         """Integrate up to the instant at which a contact begins or ends to slide; return whether the run goes on."""
         at, solver, before = self.at, self.integration.solver, self.at.state
-        self.integration.budget.left -= 1.0
+        self.integration.budget.steps_left -= 1.0
         length = change.step_share * step
         motion = solver.run(before, at.time, length, 1) if length > MIN_STEP_SHARE * step else None
         if motion is not None and np.isfinite(motion.accelerations).all():

@@ -37,11 +37,11 @@ WARPING_RELAXATION = 20.0
 class Budget:
     """Number of engine steps that all runs of one phase pair may still take; unlike time, it depends on no machine."""
 
-    left: float
+    steps_left: float
 
     def has_work_left_for(self, span: float, level: Level) -> bool:
         """Return whether enough steps are left to integrate a time `span` at the largest step of a level."""
-        return span / level.step <= self.left
+        return span / level.step <= self.steps_left
 
 
 @dataclass
@@ -57,15 +57,15 @@ class EngineRun:
     - outcome, instant: How the run ended, and when it terminated.
     - work: Steps as the budget counts them.
     - warping_load: Largest load that warping of the supports takes so far, in shares of the weight.
-    - last_open: The latest instant at which a support carried no load.
+    - last_open_at: The latest instant at which a support carried no load.
     - max_displacement: Largest horizontal displacement of the platform.
     - max_vertical: Largest vertical acceleration of the platform, relative to the plate.
-    - last_large: The last instant at which an acceleration or the displacement of the platform came within
+    - last_large_at: The last instant at which an acceleration or the displacement of the platform came within
       `SETTLED_FRACTION` of its largest value.
     - peaks_count_from: Instant at which contact forces have settled after the last impact: peaks are read from here on.
     - impacts: Number of times that supports closed again.
     - min_load: Smallest contact force in weights, of a model that ends where the contact opens.
-    - opened: Whether any contact carried no load.
+    - has_opened: Whether any contact carried no load.
     - scanned_from: Instant from which the motion was only scanned in larger steps.
     - chunks: The motion, if it is kept.
     """
@@ -76,21 +76,21 @@ class EngineRun:
     instant: float = math.nan
     work: float = 0.0
     warping_load: float = 0.0
-    last_open: float = -math.inf
+    last_open_at: float = -math.inf
     max_displacement: float = 0.0
     max_vertical: float = 0.0
-    last_large: float = 0.0
+    last_large_at: float = 0.0
     peaks_count_from: float = -math.inf
     impacts: int = 0
     min_load: float = math.inf
-    opened: bool = False
+    has_opened: bool = False
     scanned_from: float = math.inf
     chunks: list[EngineMotion] = field(default_factory=list)
 
     @property
     def lifts_off(self) -> bool:
         """True if any of the supports that share the load opened."""
-        return self.last_open > -math.inf
+        return self.last_open_at > -math.inf
 
     def terminate(self, outcome: Outcome, instant: float) -> EngineRun:
         """End this run with `outcome` at `instant`, and return it."""
@@ -129,7 +129,7 @@ def record_steps(
         run.peaks.add(time, size, slip)
         _record_last_large(run, time, size, distance)
     gap = float(motion.gap.max())
-    run.opened |= gap >= 0.0
+    run.has_opened |= gap >= 0.0
     if not model.allows_liftoff:
         run.min_load = min(run.min_load, -gap / level.penetration)
 
@@ -150,7 +150,7 @@ def _record_last_large(run: EngineRun, time: Array, size: Array, displacement: A
     large, far = SETTLED_FRACTION * run.peaks.value, SETTLED_FRACTION * run.max_displacement
     row = find_last_row_near_peak(size, large, displacement, far)
     if row >= 0:
-        run.last_large = float(time[row])
+        run.last_large_at = float(time[row])
 
 
 def _record_warping(run: EngineRun, motion: EngineMotion, model: EngineModel, level: Level) -> None:
@@ -160,7 +160,7 @@ def _record_warping(run: EngineRun, motion: EngineMotion, model: EngineModel, le
     displacement = model.warping_displacement(motion.coordinates)
     if run.lifts_off or motion.gap.max() >= 0.0:
         is_open = (motion.gap >= 0.0).any(axis=1)
-        last_open = np.maximum.accumulate(np.where(is_open, motion.time, run.last_open))
+        last_open = np.maximum.accumulate(np.where(is_open, motion.time, run.last_open_at))
         displacement = displacement[motion.time - last_open > WARPING_RELAXATION * math.sqrt(level.warping_compliance)]
-        run.last_open = float(last_open[-1])
+        run.last_open_at = float(last_open[-1])
     run.warping_load = max(run.warping_load, float(displacement.max(initial=0.0)) / level.warping_compliance)

@@ -106,16 +106,16 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
     level_error: Array = np.maximum(change, floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
     starting = _error_of_starting_links(peaks[-1], levels[-1], model)
-    return level_error + peaks[-1].sampling + starting + SMALLEST_MEASURED_ERROR * last
+    return level_error + peaks[-1].sampling_error + starting + SMALLEST_MEASURED_ERROR * last
 
 
 def _error_of_starting_links(peaks: PeakReader, level: Level, model: EngineModel) -> Array:
     """Return the error (N,) by stiff links that oscillate at the start: an early peak minus the first sample."""
-    if model.depressions is None or peaks.first is None:
+    if model.depressions is None or peaks.first_sample is None:
         return np.zeros_like(peaks.value)
     starting = peaks.instant < STARTING_TIME * math.sqrt(level.penetration)
-    swings = starting & (peaks.value <= 2.0 * peaks.first)
-    added: Array = np.where(swings, np.abs(peaks.value - peaks.first), 0.0)
+    swings = starting & (peaks.value <= 2.0 * peaks.first_sample)
+    added: Array = np.where(swings, np.abs(peaks.value - peaks.first_sample), 0.0)
     return added
 
 

@@ -74,10 +74,10 @@ class LevelRuns:
     - tolerance: Largest relative error that the answer may have.
     - budget: Steps left to all runs.
     - levels: Levels of the runs so far, and the levels to come.
-    - softens: Whether small peaks may soften the contact of the levels to come.
+    - may_soften_contact: Whether small peaks may soften the contact of the levels to come.
     - keep: Whether the motions of the last two runs are kept; every run then goes to the end.
     - stop: Time at which the next run stops, where nothing later can matter.
-    - softest: Largest compliance against warping that supports may have.
+    - max_warping_compliance: Largest compliance against warping that supports may have.
     - real_bearings_run: The last run on springs of real bearings that ended, and the change (N,) of the peaks on them,
       once supports opened on stiffer springs.
     """
@@ -86,17 +86,17 @@ class LevelRuns:
     tolerance: float
     budget: Budget
     levels: list[Level]
-    softens: bool
+    may_soften_contact: bool
     keep: bool
     runs: list[EngineRun] = field(default_factory=list)
     stop: float = math.inf
-    softest: float = COMPLIANCE_OF_CLOSED_SUPPORTS
+    max_warping_compliance: float = COMPLIANCE_OF_CLOSED_SUPPORTS
     real_bearings_run: tuple[EngineRun, Array] | None = None
 
     @property
     def runs_to_end(self) -> bool:
         """True if every run goes to the end of the motion in accurate steps."""
-        return self.keep or self.pair.whole
+        return self.keep or self.pair.in_full
 
     def can_run_next(self) -> bool:
         """Return whether there is another level, and enough work left for its runs."""
@@ -107,7 +107,7 @@ class LevelRuns:
         runs = 1.0 + self.shares_contact(number) + (self.real_bearings_run is not None)
         # one level alone has no error estimate, so that a second level is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
-        return not self.runs or self.budget.left >= runs * growth * _compute_work_until(
+        return not self.runs or self.budget.steps_left >= runs * growth * _compute_work_until(
             self.runs[-1], self.stop, self.pair.end
         )
 
@@ -203,10 +203,10 @@ class LevelRuns:
 
     def _run_trial(self, level: Level) -> EngineRun:
         """Run the first level of a model whose supports may rattle, with a share of the work."""
-        trial = Budget(MAX_WORK_SHARE_OF_TRIAL * self.budget.left)
-        self.budget.left -= trial.left
+        trial = Budget(MAX_WORK_SHARE_OF_TRIAL * self.budget.steps_left)
+        self.budget.steps_left -= trial.steps_left
         run = self.pair.run_level(level, trial, keep=self.keep)
-        self.budget.left += trial.left
+        self.budget.steps_left += trial.steps_left
         return run
 
     def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
@@ -227,7 +227,7 @@ class LevelRuns:
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
             self.real_bearings_run = real, change
             return run
-        self.softest = self.softest if stiff else REAL_WARPING_COMPLIANCE
+        self.max_warping_compliance = self.max_warping_compliance if stiff else REAL_WARPING_COMPLIANCE
         self._use_real_bearings(number)
         return real
 
@@ -262,10 +262,13 @@ class LevelRuns:
         """Soften supports and contact of the levels to come as the warping load and the peaks of `run` require."""
         done = len(self.runs)
         if run.lifts_off:
-            self.softest = REAL_WARPING_COMPLIANCE
-        coming = [_adapt_warping_compliance(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
+            self.max_warping_compliance = REAL_WARPING_COMPLIANCE
+        coming = [
+            _adapt_warping_compliance(level, run, self.tolerance, self.max_warping_compliance)
+            for level in self.levels[done:]
+        ]
         # a softer contact would tilt a platform that can rotate
-        if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
+        if self.may_soften_contact and run.outcome == Outcome.OK and self.pair.model.depressions is None:
             smallest = float(run.peaks.value.min())
             coming = [soften_for_small_peaks(level, smallest, self.tolerance) for level in coming]
         self.levels[done:] = coming
@@ -298,7 +301,7 @@ def _choose_early_stop(run: EngineRun, model: EngineModel, step: float) -> float
     limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
     if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:
         return math.inf
-    return run.last_large + STEPS_AFTER_SETTLING * step
+    return run.last_large_at + STEPS_AFTER_SETTLING * step
 
 
 def _confirms_early_stop(run: EngineRun, before: EngineRun) -> bool:

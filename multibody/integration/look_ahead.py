@@ -65,7 +65,7 @@ def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineR
 
     def is_quiet(time: float) -> bool:
         """Return whether no large value came for a period of the pendulum before `time`, in the run or in a scan."""
-        return time >= max(large_at, run.last_large) + QUIET_TIME_BEFORE_SCAN and not run.opened
+        return time >= max(large_at, run.last_large_at) + QUIET_TIME_BEFORE_SCAN and not run.has_opened
 
     while True:
         checkpoint = continue_run(integration, run, checkpoint, pause=is_quiet)
@@ -95,6 +95,6 @@ def _comes_near_largest(ahead: EngineRun, run: EngineRun, time: float) -> bool:
     return bool(
         (ahead.peaks.value > NEAR_PEAK_FRACTION * run.peaks.value).any()
         or ahead.max_displacement > NEAR_PEAK_FRACTION * run.max_displacement
-        or ahead.opened
+        or ahead.has_opened
         or ahead.min_load < NEAR_OPENING_FORCE
     )

@@ -30,7 +30,7 @@ class PhasePair:
     """
     One phase pair (2,), rad, of a scene on an assembled model.
 
-    initial: state from which the motion starts; None is at rest. whole: whether every run without an early stop takes
+    initial: state from which the motion starts; None is at rest. in_full: whether every run without an early stop takes
     accurate steps to the end of the motion.
     """
 
@@ -38,7 +38,7 @@ class PhasePair:
     model: EngineModel
     phase: Array
     initial: State | None = None
-    whole: bool = False
+    in_full: bool = False
 
     @property
     def end(self) -> float:
@@ -63,7 +63,7 @@ class PhasePair:
         if start is None:
             return begin_run(self.model, stop).terminate(Outcome.SOLVER_FAILED, 0.0)
         integration = Integration(solver, self.ground, self.end, level, budget, keep)
-        if stop == math.inf and not (keep or self.whole) and can_look_ahead(self.model, level):
+        if stop == math.inf and not (keep or self.in_full) and can_look_ahead(self.model, level):
             return run_with_look_ahead(integration, start)
         return run_adaptively(integration, start, stop)
 

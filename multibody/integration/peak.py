@@ -68,16 +68,15 @@ class PeakReader:
     - knots: Rising instants at which the loading has a kink, each a sample within `near`, (K,).
 
     Attributes:
-    - value, sampling, instant: Largest value, estimated error of the reading between samples, and instant of each body,
-      (N,).
-    - first: Values of the first sample, (N,).
+    - value, sampling_error, instant: Largest value, estimated error of its interpolation, and instant of each body, (N,).
+    - first_sample: Values of the first sample, (N,).
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
         self.value = np.zeros(bodies)
-        self.sampling = np.zeros(bodies)
+        self.sampling_error = np.zeros(bodies)
         self.instant = np.zeros(bodies)
-        self.first: Array | None = None
+        self.first_sample: Array | None = None
         self._threshold, self._knots, self._near = threshold, knots, near
         self._last_read_corner = -np.inf
         self._time = np.empty(0)
@@ -86,8 +85,8 @@ class PeakReader:
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
         """Add acceleration sizes (T, N) and slip speeds (T, K) at times (T,); the first row repeats the last sample."""
-        if self.first is None:
-            self.first = size[0]
+        if self.first_sample is None:
+            self.first_sample = size[0]
         carried = len(self._time)
         least = CANDIDATE_FRACTION * self.value
         candidate = has_larger_entry(size, 1 if carried else 0, least) or has_larger_entry(self._size, 0, least)
@@ -160,12 +159,12 @@ class PeakReader:
 
     def _update_largest(self, body: int, value: float, error: float, instant: float) -> None:
         """Keep a value if it is the largest so far; the error covers every larger value that earlier errors allow."""
-        possible = max(value + error, self.value[body] + self.sampling[body])
+        possible = max(value + error, self.value[body] + self.sampling_error[body])
         if value > self.value[body]:
             self.value[body], self.instant[body] = value, instant
-            self.sampling[body] = max(error, possible - value)
+            self.sampling_error[body] = max(error, possible - value)
         else:
-            self.sampling[body] = possible - self.value[body]
+            self.sampling_error[body] = possible - self.value[body]
 
 
 def find_kinks(time: Array, knots: Array, near: float) -> Rows:

@@ -72,12 +72,12 @@ def refine(
     keep: whether the motions of the last run and of `coarser` are kept; every run then goes to the end of the motion.
     levels: levels of accuracy; None takes those of `plan_levels`. max_work: steps that all runs together may take.
     """
-    model, budget, whole = pair.model, Budget(max_work), keep or pair.whole
+    model, budget, whole = pair.model, Budget(max_work), keep or pair.in_full
     planned = plan_levels(pair.scene, model, tolerance) if levels is None else list(levels)
     if not budget.has_work_left_for(pair.end, level_of_longest_steps(model, planned[0], whole)):
         no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
-    search = _Search(LevelRuns(pair, tolerance, budget, planned, softens=levels is None, keep=keep))
+    search = _Search(LevelRuns(pair, tolerance, budget, planned, may_soften_contact=levels is None, keep=keep))
     while not search.has_ended and search.runs.can_run_next():
         search.add_level()
     return search.answer or search.make_last_answer()

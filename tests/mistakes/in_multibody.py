@@ -16,13 +16,13 @@ YIELDING = TESTS + "test_friction_springs.py::"
 
 # fmt: off
 MISTAKES = (
-    Mistake(INTEGRATION + "estimate.py", "return level_error + peaks[-1].sampling + starting +",
-            "return 0.1 * level_error + peaks[-1].sampling + starting +",
+    Mistake(INTEGRATION + "estimate.py", "return level_error + peaks[-1].sampling_error + starting +",
+            "return 0.1 * level_error + peaks[-1].sampling_error + starting +",
             "The error that levels show is ten times too small.", (COVERAGE,)),
-    Mistake(INTEGRATION + "estimate.py", "return level_error + peaks[-1].sampling + starting +",
-            "return 10.0 * level_error + peaks[-1].sampling + starting +",
+    Mistake(INTEGRATION + "estimate.py", "return level_error + peaks[-1].sampling_error + starting +",
+            "return 10.0 * level_error + peaks[-1].sampling_error + starting +",
             "The error that levels show is ten times too large.", (COVERAGE,)),
-    Mistake(INTEGRATION + "estimate.py", "return level_error + peaks[-1].sampling + starting +",
+    Mistake(INTEGRATION + "estimate.py", "return level_error + peaks[-1].sampling_error + starting +",
             "return level_error + starting +", "The error of reading between samples is left out.",
             (NUMBERS + "test_the_error_of_levels_is_what_richardson_says",)),
     Mistake(INTEGRATION + "estimate.py", "change = safety * change * (1.0 + contact_lag(levels[-2], model)) / (rate - 1.0)",
@@ -245,7 +245,7 @@ MISTAKES = (
     Mistake(MODELS + "links.py", "damping_time = float(np.trace(damper) / np.trace(shear))",
             "damping_time = 0.5 * float(np.trace(damper) / np.trace(shear))", "Bars are half as damped in bending, tension and twist.",
             (TESTS + "test_damped_links.py::test_a_damper_takes_its_link_s_power_and_keeps_momentum",)),
-    Mistake(INTEGRATION + "peak.py", "self.sampling[body] = max(error, possible - value)", "self.sampling[body] = error",
+    Mistake(INTEGRATION + "peak.py", "self.sampling_error[body] = max(error, possible - value)", "self.sampling_error[body] = error",
             "A larger peak forgets that an earlier one, read with a large error, may be larger still.",
             (PEAK + "test_samples_that_alternate_have_half_of_their_spread",)),
     Mistake(INTEGRATION + "work_limit.py", "WORK_OF_PHASE_PAIR = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)",

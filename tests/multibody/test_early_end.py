@@ -53,7 +53,7 @@ def test_no_peak_is_lost_by_stopping_early(model: str, seeds: range, longest: fl
     stopped = 0
     for scene, phase, v_reg in (random_scene(seed, longest) for seed in seeds):
         early, whole = (
-            refine(PhasePair(scene, assemble(scene, model, v_reg), phase, whole=full), TOLERANCE)
+            refine(PhasePair(scene, assemble(scene, model, v_reg), phase, in_full=full), TOLERANCE)
             for full in (False, True)
         )
         assert early.outcome == whole.outcome
@@ -126,7 +126,7 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
     record = {"record": "two bursts.csv", "samples": samples.tolist()}
     scene = load_scene("fig4-viscous").with_values({"duration": 12.0, "excitation": record})
     model = assemble(scene, "translational", None)
-    early, whole = (refine(PhasePair(scene, model, np.zeros(2), whole=full), TOLERANCE) for full in (False, True))
+    early, whole = (refine(PhasePair(scene, model, np.zeros(2), in_full=full), TOLERANCE) for full in (False, True))
     assert len(ends) == 4, "to the first quiet, ahead to the second burst, over it, ahead to the end"
     assert early.finest.peaks.instant.max() * units_of(scene).time > 5.0
     np.testing.assert_allclose(early.peaks, whole.peaks, rtol=1e-12)
@@ -147,6 +147,6 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
 
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])
 def test_a_run_close_to_its_travel_or_to_opening_goes_to_the_end(travel: float, load: float, stop: float) -> None:
-    run = EngineRun(PeakReader(1, math.inf), math.inf, max_displacement=0.499, min_load=load, last_large=2.0)
+    run = EngineRun(PeakReader(1, math.inf), math.inf, max_displacement=0.499, min_load=load, last_large_at=2.0)
     model: Any = SimpleNamespace(rim=1.0, travel=travel)
     assert _choose_early_stop(run, model, 1e-3) == pytest.approx(stop)

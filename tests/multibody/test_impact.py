@@ -162,7 +162,7 @@ def test_the_largest_value_behind_an_impact_converges() -> None:
     [(_, landing)] = flights(0.0, 0.5, push, phase)
     counted = landing + BEARING_SETTLING_TIME * math.sqrt(scene.radius / GRAVITY)
     model = assemble(scene, "spatial", 1e-3)
-    pair = PhasePair(scene, model, np.array([phase, 0.0]), whole=True)
+    pair = PhasePair(scene, model, np.array([phase, 0.0]), in_full=True)
     runs = [pair.run_level(level, Budget(1e6)) for level in multibody.levels(scene, "spatial")[:3]]
     peaks = np.array([run.peaks.value[0] for run in runs]) * model.units.acceleration
     errors = np.abs(peaks / (push * math.cos(PACE * counted + phase)) - 1.0)
@@ -179,7 +179,7 @@ def tower(ring: float) -> Scene:
 def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float) -> EngineRun:
     """The run of one level on springs of real bearings."""
     level = replace(multibody.levels(scene, "spatial")[number], warping_compliance=REAL_WARPING_COMPLIANCE)
-    pair = PhasePair(scene, assemble(scene, "spatial", 1e-3), np.array(phase), whole=True)
+    pair = PhasePair(scene, assemble(scene, "spatial", 1e-3), np.array(phase), in_full=True)
     return pair.run_level(level, Budget(work))
 
 

@@ -77,7 +77,7 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
     ):
         for reading in (0.0, 0.007):
             peaks = peaks_of(*values)
-            peaks[-1].sampling[:] = reading
+            peaks[-1].sampling_error[:] = reading
             error = error_between_levels(peaks, LEVELS[: len(values)], MODEL)[0]
             assert error == pytest.approx(expected + reading + 1e-6 * values[-1], rel=1e-9)
 

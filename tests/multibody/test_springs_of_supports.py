@@ -53,7 +53,7 @@ def result(platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK
     run = EngineRun(PeakReader(2, math.inf), math.inf, **{"work": STEPS, **more})
     run.peaks.value[:] = platform, 2.0
     run.peaks.instant[:] = 0.2, 0.3
-    run.last_open = 0.5 if opens else -math.inf
+    run.last_open_at = 0.5 if opens else -math.inf
     return run if outcome == Outcome.OK else run.terminate(outcome, 0.7)
 
 
@@ -71,13 +71,13 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
             springs = SOFTER if level.penetration > 1.01 * contacts[number] else level.warping_compliance
             done.asked += f" {number}{NAMES.get(springs, '')}"
             done.springs.append(springs)
-            done.work.append(budget.left)
+            done.work.append(budget.steps_left)
             run = runs(number, springs)
-            budget.left -= run.work
+            budget.steps_left -= run.work
             return run
 
         monkeypatch.setattr(PhasePair, "run_level", run_level)
-        pair = PhasePair(SCENE, MODEL, np.zeros(2), whole=True)
+        pair = PhasePair(SCENE, MODEL, np.zeros(2), in_full=True)
         done.answer = refine(pair, TOLERANCE, levels=planned, max_work=max_work)
         done.asked = done.asked.strip()
         return done
