@@ -116,7 +116,7 @@ def continue_run(
     pause: Callable[[float], bool] = lambda time: False,
 ) -> Checkpoint:
     """Continue a run from a checkpoint to its end, or until `pause` of the time is true; return the last checkpoint."""
-    progress = _Progress(integration, run, replace(checkpoint))
+    progress = _AdaptiveRun(integration, run, replace(checkpoint))
     end = min(integration.end, run.stop) * (1.0 - TIME_ROUNDING)
     while progress.at.time < end and not pause(progress.at.time):
         if not progress.advance():
@@ -124,7 +124,7 @@ def continue_run(
     return progress.at
 
 
-class _Progress:
+class _AdaptiveRun:
     """Run under way, which integrates chunks of steps and accepts the accurate rows of each."""
 
     # A chunk can end in four ways. If the engine cannot solve a step, the chunk is repeated in smaller steps. If a step
@@ -276,7 +276,7 @@ class _Progress:
         if springs is None:
             return None
         end = math.inf if self.at.rested_at == self.at.time else self.level.slide_end
-        return springs.find_change(motion, self.at.state, self.level.slide_end, end)
+        return springs.find_sliding_change(motion, self.at.state, self.level.slide_end, end)
 
     def _fit_rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
         """Return the rates of change (K,), at `row`, of the elastic displacements at which the contacts slide."""

@@ -45,11 +45,11 @@ CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current
 def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """Find the equilibrium near `start` under the plate's acceleration (3,), or `start` without rotations, or None."""
+    """Find the equilibrium near `start` under the plate's acceleration (3,); `start` if no body turns, else None."""
     if model.kinematics is None:
         return start
     static_penetration = model.bearing_penetration or penetration
-    balance = _Balance(model, model.kinematics, start, acceleration, static_penetration, penetration)
+    balance = _EquilibriumSolver(model, model.kinematics, start, acceleration, static_penetration, penetration)
     coordinates, closed = balance.solve_under_weight(), np.ones(len(model.kinematics.depressions.ring), dtype=bool)
     lasts = model.ground.decay_rate * math.sqrt(static_penetration) <= 1.0
     while coordinates is not None and lasts and acceleration.any():
@@ -67,7 +67,7 @@ def find_balanced_start(
 
 
 @dataclass
-class _Balance:
+class _EquilibriumSolver:
     """
     Solver for the coordinates at which the engine's forces on a model at rest balance.
 

@@ -129,14 +129,14 @@ class Openings:
         # same state until the smallest gap of the event's contacts is zero (Brent's method). There are two special
         # cases. A contact that touches within the tolerance at the start has no later change of sign, unless the
         # platform leaves it and comes back within the step; such a flight is searched for in shorter and shorter steps.
-        # And because of rounding the margin may still be positive after the whole step; then the event lies at the end
+        # And because of rounding that gap may still be positive after the whole step; then the event lies at the end
         # of that step.
         sign = 1.0 if event.closes else -1.0
         done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}
 
-        def margin(length: float) -> float:
-            """Return the gap before a closing, or minus the gap before an opening, after a step: negative beyond it."""
+        def gap_before_event(length: float) -> float:
+            """Return the smallest gap, or for an opening minus the largest one, after a step of a `length`."""
             if length not in values:
                 done[length] = motion = self.solver.run(state, time, length, 1)
                 gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.contacts]
@@ -149,15 +149,19 @@ class Openings:
         if begin <= tolerance:
             if not event.closes:
                 return None
-            first = next((length for length in step / FLIGHT_SEARCH_DIVISORS if margin(length) > tolerance), 0.0)
+            first = next(
+                (length for length in step / FLIGHT_SEARCH_DIVISORS if gap_before_event(length) > tolerance), 0.0
+            )
             if first == 0.0:
                 return None
             begin = values[first]
-        end = margin(step)
+        end = gap_before_event(step)
         if end >= 0.0:
             return done[step]
-        length = float(brentq(margin, first, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15))
-        margin(length)
+        length = float(
+            brentq(gap_before_event, first, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15)
+        )
+        gap_before_event(length)
         return done.get(length)
 
     def close_contacts(self, motion: EngineMotion, which: Mask) -> EngineMotion:

@@ -68,7 +68,8 @@ class PeakReader:
     - knots: Rising instants at which the loading has a kink, each a sample within `near`, (K,).
 
     Attributes:
-    - value, sampling_error, instant: Largest value, estimated error of its interpolation, and instant of each body, (N,).
+    - value, sampling_error, instant: Largest value of each body, estimated error of its interpolation, and instant,
+      (N,).
     - first_sample: Values of the first sample, (N,).
     """
 

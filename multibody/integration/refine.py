@@ -77,13 +77,13 @@ def refine(
     if not budget.has_work_left_for(pair.end, level_of_longest_steps(model, planned[0], whole)):
         no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
-    search = _Search(LevelRuns(pair, tolerance, budget, planned, may_soften_contact=levels is None, keep=keep))
+    search = _AnswerSearch(LevelRuns(pair, tolerance, budget, planned, may_soften_contact=levels is None, keep=keep))
     while not search.has_ended and search.runs.can_run_next():
         search.add_level()
     return search.answer or search.make_last_answer()
 
 
-class _Search:
+class _AnswerSearch:
     """
     Search for the answer of one phase pair among its levels.
 

@@ -76,7 +76,9 @@ def corner_and_relaxation(scene: Scene, regularization: float | None, units: Uni
 
 def viscous_relaxation(scene: Scene, units: Units) -> float:
     """
-    Return the relaxation time m1 / (f_c m_sum g) of a lubricated platform's slip speed; inf without lubrication.
+    Return the relaxation time of a lubricated platform's slip speed, in units of time; inf without lubrication.
+
+    It is m1 / (f_c m_sum g) with the platform's mass m1, the viscous friction coefficient f_c and the total mass m_sum.
     """
     friction = scene.friction_coefficient * units.velocity if scene.lubricated else 0.0
     return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf

@@ -35,7 +35,7 @@ class Depressions:
         turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
-        apart = self._spheres(coordinates) - place
+        apart = self._sphere_centers(coordinates) - place
         return apart, np.einsum("tij,tki->tkj", turned, apart)
 
     def clearance(self, coordinates: Array) -> Array:
@@ -73,18 +73,18 @@ class Depressions:
 
     def contact_normals_and_jacobian(self, coordinates: Array) -> tuple[Array, Array]:
         """Return the contact normals (K, 3), and the Jacobian (K, 3, 6) of contact points over platform velocities."""
-        normals = self._normals(coordinates)
-        levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
+        normals = self._platform_normals(coordinates)
+        levers = self._sphere_centers(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
         return normals, jacobian
 
-    def _normals(self, coordinates: Array) -> Array:
+    def _platform_normals(self, coordinates: Array) -> Array:
         """Return the normals (K, 3) of the platform's surface, away from the plate, at its contacts."""
         apart, _ = self.sphere_positions(coordinates[None])
         normals: Array = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
         return normals
 
-    def _spheres(self, coordinates: Array) -> Array:
+    def _sphere_centers(self, coordinates: Array) -> Array:
         """Return the centers (..., K, 3) of the spheres in the axes of the plate for coordinates (..., n)."""
         spheres = np.ones((*coordinates.shape[:-1], len(self.ring), 3))
         spheres[..., :2] = self.ring
@@ -106,7 +106,7 @@ class FlatUnderside(Depressions):
         """Return a mask (T,) without any row, since a plane has no rim."""
         return np.zeros(len(coordinates), dtype=bool)
 
-    def _normals(self, coordinates: Array) -> Array:
+    def _platform_normals(self, coordinates: Array) -> Array:
         upright = rotation_matrices(coordinates[3:6])[:, 2]
         return np.tile(upright, (len(self.ring), 1))
 

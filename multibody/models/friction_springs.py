@@ -111,7 +111,7 @@ class FrictionSprings:
         changes = np.maximum(self.depressions.radius / self.displacement * turned, VELOCITY_CHANGE_WEIGHT * turning)
         return np.append(0.0, changes)
 
-    def find_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
+    def find_sliding_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
         """Find the first contact that begins or ends to slide in steps from `state`; None if there is none."""
         if len(motion.time) < 2:
             return None

@@ -122,7 +122,7 @@ class ImpactLaw:
         jump = (self._velocity_matrix(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
         shifted = coordinates.copy()
         for link, damping_time in enumerate(damping_times):
-            along, levers = turned[link][:, 2], self._levers(link, turned)
+            along, levers = turned[link][:, 2], self._levers_to_link_ends(link, turned)
             ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
             stretch = damping_time * float(along @ (ends[1] - ends[0]))
             for first in range(BODY_COORDINATES * (link + 1), count, BODY_COORDINATES):
@@ -196,7 +196,7 @@ class ImpactLaw:
         places += self.centers
         for link in range(count - 1):
             below, above = BODY_COORDINATES * link, BODY_COORDINATES * (link + 1)
-            levers = self._levers(link, turned)
+            levers = self._levers_to_link_ends(link, turned)
             shift = places[link + 1] + levers[1] - places[link] - levers[0]
             across, along = turned[link][:, :2].T, turned[link][:, 2]
             stretch = rows[3 * link]
@@ -209,7 +209,7 @@ class ImpactLaw:
             rows[3 * link + 1 : 3 * link + 3, above + 3 : above + 6] = across
         return rows[np.repeat(self.rigid, 3)]
 
-    def _levers(self, link: int, turned: Array) -> tuple[Array, Array]:
+    def _levers_to_link_ends(self, link: int, turned: Array) -> tuple[Array, Array]:
         """Return the vectors (3,) from the centers of two bodies, turned by (N, 3, 3), to the ends of their link."""
         below, above = self.centers[link : link + 2]
         half = 0.5 * (above[2] - below[2])
