@@ -1,4 +1,4 @@
-"""Demands of every phase pair of a surface with the engine."""
+"""Peak demands on isolator and structure at every phase pair, by the engine."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def peak_demands(
     max_work: float = MAX_WORK,
 ) -> PeakDemands:
     """
-    Compute what the motion at every phase pair demands of isolator and structure, with errors.
+    Compute the peak demands on isolator and structure of the motion at every phase pair, with errors.
 
     Parameters
     ----------
