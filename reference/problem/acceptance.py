@@ -41,8 +41,8 @@ class DemandLimits(LimitTable):
     """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
 
     limited = (
-        "displacement", "support_displacement", "drift_ratio", "uplift", "base_shear", "support_force_max", "acceleration",
-        "residual",
+        "displacement", "support_displacement", "drift_ratio", "uplift", "base_shear", "support_force_max",
+        "acceleration", "residual",
     )  # fmt: skip
 
     displacement: NonNegative | None = key(

@@ -51,7 +51,7 @@ class DemandCheck:
     A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
 
     key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. on: the
-    statistic and the motions. found, stated: in `unit`, SI; None without a number. excess: found less stated; of a limit 0
+    statistic and its motions. found, stated: in SI; None without a number. excess: found less stated; of a limit 0
     below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
     compared, "" otherwise. is_least: whether the demand is larger than `found` by an unknown amount.
     """
@@ -111,7 +111,7 @@ def _word_check_verdict(check: DemandCheck) -> str:
 
 def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
     """Return limited demand, bound, statistic, demand, stated number, ratio, motion and verdict of every limit."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for each in limits:
         least = "≥ " if each.is_least else ""
         ratio = f"{least}{each.found / each.stated:.3g}" if each.found is not None and each.stated else "none"
@@ -199,8 +199,8 @@ def _check_body(
     if statistic == MEAN_STATISTIC and ended and not governing:
         reason += f"; with the travel there at least {_word_number(least, unit)}" if least > -math.inf else ""
         needed = (limit * len(values) - math.fsum(value for value, *_ in known) / per) / ended
-        there = "there" if ended == 1 else "there in the mean"
-        reason += f"; above {_word_number(needed, unit)} {there} it breaks the limit" if needed > 0.0 else ""
+        theirs = "a value there" if ended == 1 else "a mean of theirs"
+        reason += f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
     if not known:
         reason = reason if values else _explain_lacking_demand(ensemble, key)
         return DemandCheck(*about, None, limit, unit=unit, reason=reason)

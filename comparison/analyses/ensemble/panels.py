@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from comparison.analyses.ensemble.limits import LIMIT_KEY_PREFIX
-from comparison.analyses.ensemble.quantities import SUPREMUM, demand_title, display_unit
+from comparison.analyses.ensemble.quantities import SUPREMUM, demand_title, display_unit, word_value
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import PROFILE_QUANTITIES, label_structures, locate_demand
 from comparison.analyses.ensemble.sentences import TRAVEL_REACHED, word_motion_count
@@ -85,7 +85,7 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     bounds = list(label_structures(ensemble).values())
     strips = {"title": "", "ticks": [[place, bounds[place]] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * ensemble.largest_scale]}
-    axis = strips if one else scales
+    axis: dict[str, Any] = strips if one else scales
     series += _stated_lines(ensemble, quantity, axis["range"])
     label = f"{title} {'by bound' if one else 'over the scale factor'}, {word_motion_count(ensemble.motions)}"
     series += by_engine
@@ -111,7 +111,12 @@ def _travel_arrows(
     }
     if travel is None or not at:
         return []
-    look = {"color": place, "marks": ARROW_MARK, "line": False, "titles": [f"{motion}: at the travel" for motion in at]}
+    look: dict[str, Any] = {
+        "color": place,
+        "marks": ARROW_MARK,
+        "line": False,
+        "titles": [f"{motion}: at the travel" for motion in at],
+    }
     name = f"{label_structures(ensemble)[structure.name]}: a motion that reaches the travel"
     return [{"name": name, "x": list(at.values()), "y": [factor * travel] * len(at), **look}]
 
@@ -119,7 +124,7 @@ def _travel_arrows(
 def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]) -> list[dict[str, Any]]:
     """Return a line across a plot for every travel and every limit that is stated of a demand."""
     factor = display_unit(quantity, 1.0)[1]  # the limit of a base shear is a share of the weight
-    travels = [
+    travels: list[tuple[str, float, dict[str, Any]]] = [
         ("travel", each.building.travel, {"color": "ink", "width": 1.0})
         for each in ensemble.structures
         if each.building and each.building.travel and quantity == "displacement"
@@ -155,7 +160,10 @@ def _motion_series(
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [_strip_place(place, number, len(curves))]
-        line = {"x": x, "y": [_scale_value(value, factor) for value in curve.values], } | look
+        line = {
+            "x": x,
+            "y": [_scale_value(value, factor) for value in curve.values],
+        } | look
         line["legend"] = number == 0 and line.get("legend", True)
         for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
             both = zip(curve.values, curve.errors)
@@ -195,7 +203,7 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
                 "x": [None if value is None else factor * value for value in values],
                 "y": [places[(row.body or 1) - 1] for row in rows], "marks": share == "50 %",
                 "titles": [
-                    f"{locate_demand(structure, quantity, row.body)}: {'none' if value is None else f'{factor * value:.4g}'}"
+                    f"{locate_demand(structure, quantity, row.body)}: {word_value(value, None, factor)}"
                     for row, value in zip(rows, values)
                 ],
             }  # fmt: skip

@@ -137,8 +137,10 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
             broken.setdefault(each.what, []).append(each.bound)
     several = len(ensemble.structures) > 1
     named = [f"{what} ({', '.join(dict.fromkeys(bounds))})" if several else what for what, bounds in broken.items()]
-    said = f"{counts[MET]} of {len(ensemble.limits)} limits met, {counts[NOT_MET]} not met"
-    return f"{said}{': ' if named else ''}{'; '.join(named)}, {counts[NOT_COMPARED]} not compared."
+    more = f" and {len(named) - MAX_LISTED_MOTIONS} more" if len(named) > MAX_LISTED_MOTIONS else ""
+    what = "limits" if all(each.key.startswith("acceptance.") for each in ensemble.limits) else "demands"
+    said = f"{counts[MET]} of {len(ensemble.limits)} {what} met, {counts[NOT_COMPARED]} not compared"
+    return f"{said}, {counts[NOT_MET]} not met{': ' * bool(named)}{'; '.join(named[:MAX_LISTED_MOTIONS])}{more}."
 
 
 def pending_sentence(ensemble: EnsembleResult) -> str:
@@ -310,8 +312,8 @@ def damping_sentence(structure: Structure) -> str:
         return ""
     first = " along x, ".join(dict.fromkeys(percent(axis[0]) for axis in building.modal_damping if axis))
     return (
-        f"Damping is in proportion to the stiffness of the links, c = 2 ζ k / ω₁ with ζ = {first} in the first mode above "
-        "a fixed base; a higher mode has a ratio in proportion to its frequency."
+        f"Damping is in proportion to the stiffness of the links, c = 2 ζ k / ω₁ with ζ = {first} in the first mode "
+        "above a fixed base; a higher mode has a ratio in proportion to its frequency."
     )
 
 
