@@ -211,7 +211,8 @@ def assert_demands(
 
     limits = {
         "displacement": displacement, "support_displacement": support_displacement, "drift_ratio": drift_ratio,
-        "uplift": uplift, "base_shear": base_shear, "support_force_max": support_force_max, "acceleration": acceleration, "residual": residual,
+        "uplift": uplift, "base_shear": base_shear, "support_force_max": support_force_max,
+        "acceleration": acceleration, "residual": residual,
     }  # fmt: skip
     given: dict[str, Any] = {
         name: check_number(name, limit, range_of(DemandLimits, name))

@@ -107,10 +107,8 @@ def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator
         return
     ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # of the third mode
     low, high = 1e3 * shear / (stiff * math.hypot(1.0, 2.0 * ratio)), 1e3 * shear / soft
-    formula = (
-        f"V / (k √(1 + (2 ζ)²)) to V / k, V = {_word_number(shear / 1e3)} kN, k = {stiff / 1e6:.4g} to "
-        f"{soft / 1e6:.4g} MN/m, ζ = {ratio:.3g}"
-    )
+    both = " to ".join(dict.fromkeys(f"{each / 1e6:.4g}" for each in (stiff, soft)))
+    formula = f"V / (k √(1 + (2 ζ)²)) to V / k, V = {_word_number(shear / 1e3)} kN, k = {both} MN/m, ζ = {ratio:.3g}"
     yield HandCheck(f"drift below {name_floor(structure, top)} under {motion}", formula, low, high, 1e3 * drift, "mm")
 
 

@@ -114,7 +114,8 @@ def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for each in limits:
         least = "≥ " if each.is_least else ""
-        ratio = f"{least}{each.found / each.stated:.3g}" if each.found is not None and each.stated else "none"
+        is_compared = each.verdict != NOT_COMPARED and each.found is not None and each.stated
+        ratio = f"{least}{each.found / each.stated:.3g}" if is_compared else "none"
         found, stated = (_word_number(value, each.unit) for value in (each.found, each.stated))
         rows.append((each.what, each.bound, each.on, f"{least}{found}", stated, ratio, each.motion, each.words))
     return rows
@@ -219,7 +220,7 @@ def _explain_lacking_demand(ensemble: EnsembleResult, key: str) -> str:
     if key == "drift_ratio":
         return "heights of the bodies are needed"
     if ensemble.engine.pending:
-        return "the engine’s motions are being computed"
+        return "the engine’s motions are not computed yet"
     return NOT_COMPUTED + ("" if ensemble.engine.motions else "; --engine 0 leaves it out")
 
 

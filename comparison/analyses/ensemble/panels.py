@@ -117,7 +117,7 @@ def _travel_arrows(
         "line": False,
         "titles": [f"{motion}: at the travel" for motion in at],
     }
-    name = f"{label_structures(ensemble)[structure.name]}: a motion that reaches the travel"
+    name = f"{label_structures(ensemble)[structure.name]}: at the travel"
     return [{"name": name, "x": list(at.values()), "y": [factor * travel] * len(at), **look}]
 
 
@@ -207,7 +207,8 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
                     for row, value in zip(rows, values)
                 ],
             }  # fmt: skip
-            series.append(line | ({"dash": dash} if dash else {}))
+            if any(value is not None for value in values):
+                series.append(line | ({"dash": dash} if dash else {}))
     largest = max((value for each in series for value in each["x"] if value is not None), default=0.0)
     x = {"title": f"{demand_title(quantity)}, {unit}", "range": [0.0, 1.06 * largest or 1.0]}
     y: dict[str, Any] = {"title": HEIGHT_AXIS} if heights else {"title": "body, from the platform up"}

@@ -144,10 +144,11 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
 
 
 def pending_sentence(ensemble: EnsembleResult) -> str:
-    """Return that the engine is still computing, in a result that is written before its motions; "" in any other."""
+    """Return that the result is written before the engine has computed its motions; "" for any other."""
     if not (pending := ensemble.engine.pending):
         return ""
-    return f"The engine is computing {word_motion_count(pending)}: this page will be written again with its numbers."
+    count = word_motion_count(pending)
+    return f"Provisional: written while the engine computes {count}. The page is written again with their numbers."
 
 
 def _travel_reached_sentence(ensemble: EnsembleResult) -> str:

@@ -764,10 +764,10 @@ def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -
     (drawn,) = (make() for make in panels.make_isolator_panels(found))
     series = {each["name"]: each for each in drawn["plot"]["series"] if each.get("legend", True)}
     assert [name for name in series if name.startswith("b")] == [
-        "b: one motion", "b: a motion that reaches the travel", "b: median, 16 to 84 %",
+        "b: one motion", "b: at the travel", "b: median, 16 to 84 %",
     ]  # fmt: skip
     dots = [each for each in drawn["plot"]["series"] if each["name"] == "b: one motion"]
-    arrow, median = series["b: a motion that reaches the travel"], series["b: median, 16 to 84 %"]
+    arrow, median = series["b: at the travel"], series["b: median, 16 to 84 %"]
     assert (arrow["x"], arrow["y"], dots[3]["y"]) == (dots[3]["x"], [500.0], [None])
     assert len({arrow["marks"], median["marks"], dots[0]["marks"]}) == 3
     assert (series["travel"]["y"], series["limit (mean)"]["y"]) == ([500.0] * 2, [600.0] * 2)
@@ -777,7 +777,7 @@ def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -
         for each in found.curves
     ])  # fmt: skip
     (drawn,) = (make() for make in panels.make_isolator_panels(scaled))
-    arrow = next(each for each in drawn["plot"]["series"] if "reaches" in each["name"])
+    arrow = next(each for each in drawn["plot"]["series"] if "at the travel" in each["name"])
     assert (arrow["x"], arrow["y"]) == ([1.0], [500.0])
 
 
