@@ -68,8 +68,8 @@ def test_a_family_is_compared_scene_by_scene(tmp_path: Path, monkeypatch: pytest
     [
         (
             {},
-            "no limit: give displacement, drift_ratio, uplift, base_shear, support_force_max, acceleration, residual "
-            "or stored",
+            "no limit: give displacement, support_displacement, drift_ratio, uplift, base_shear, support_force_max, "
+            "acceleration, residual or stored",
         ),
         ({"statistic": "mean"}, "no limit"),
         ({"displacement": -1.0}, "displacement = -1.0: must be"),
