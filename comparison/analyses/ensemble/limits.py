@@ -110,12 +110,13 @@ def _word_check_verdict(check: DemandCheck) -> str:
 
 
 def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
-    """Return demand in words, bound, computed and stated number, ratio, statistic, motion and verdict of every limit."""
+    """Return demand, bound, computed and stated number, ratio, statistic, motion and verdict of every limit."""
     rows: list[tuple[str, ...]] = []
     for each in limits:
         least = "≥ " if each.is_least else ""
-        is_compared = each.verdict != NOT_COMPARED and each.found is not None and each.stated
-        ratio = f"{least}{each.found / each.stated:.3g}" if is_compared else "none"
+        ratio = "none"
+        if each.verdict != NOT_COMPARED and each.found is not None and each.stated:
+            ratio = f"{least}{each.found / each.stated:.3g}"
         found, stated = (_word_number(value, each.unit) for value in (each.found, each.stated))
         rows.append((each.what, each.bound, f"{least}{found}", stated, ratio, each.on, each.motion, each.words))
     return rows
