@@ -39,7 +39,7 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.costs import WRITING
-from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
+from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_steps_of_scenes
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
 from reference.support.command import stop_on_signals
@@ -93,7 +93,7 @@ def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
 
 def _make_study(options: Options, hierarchy: Sequence[Model]) -> Study:
     """Return the whole question."""
-    hierarchy = with_softened_bars(hierarchy, options.scenes)
+    hierarchy = with_steps_of_scenes(hierarchy, options.scenes)
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
     hierarchy = (*hierarchy, *options.models)

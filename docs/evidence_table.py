@@ -196,6 +196,7 @@ def yielding() -> str:
 
 BLOCKS: dict[Path, Sequence[Callable[[], str]]] = {
     DOCS / "evidence.md": (evidence, limits),
+    DOCS / "theory.md": (yielding_friction.displacement_table,),
     DOCS / "validation.md": (limits, counts, quantities, explanations, findings, facts, yielding),
 }
 

@@ -1,14 +1,14 @@
 """
-The same question put to a multibody engine: rigid bodies, springs, and a compliant contact with friction.
+Dynamic amplification by a multibody engine, with rigid bodies, springs and a compliant contact with friction.
 
 Functions
 ---------
 amplification   factors mu_i of (5.1) for many phase pairs, with errors and outcomes
 trajectory      one motion to a tolerance
-single_run      one run at a level of accuracy or a constant step, without an error estimate
-peak_demands    what the motions at many phase pairs demand of isolator and structure, with errors
-demands         that of one motion
-floor_spectra   response spectra of its floors, with errors
+single_run      one run at a level of accuracy or at a constant step, without an error estimate
+peak_demands    peak demands on isolator and structure at many phase pairs, with errors
+demands         peak demands of one motion, with errors
+floor_spectra   response spectra of the floors in one motion, with errors
 levels          the levels of accuracy that `amplification` goes through
 refusal         why a model is refused for a scene, or ""
 
@@ -18,7 +18,7 @@ Level           one level of accuracy: step, contact, tolerances
 
 Constants
 ---------
-MAX_WORK        steps of the engine that a phase pair may take unless the caller says otherwise
+MAX_WORK        default limit of the engine's steps for a phase pair
 
 Examples
 --------
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from multibody.surface import amplification
     from reference.measures import demands, floor_spectra
 
-ENGINE = {
+_MODULE_OF_NAME = {
     "MAX_WORK": "multibody.integration.refine",
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",
@@ -77,8 +77,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in ENGINE:
-        return getattr(import_module(ENGINE[name]), name)
+    if name in _MODULE_OF_NAME:
+        return getattr(import_module(_MODULE_OF_NAME[name]), name)
     raise AttributeError(f"module 'multibody' has no attribute '{name}'")
 
 

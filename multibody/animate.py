@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.defaults import DEFAULT_PENETRATION, DEFAULT_V_REG
-from multibody.film import Look, draw_film
+from multibody.film import FilmSettings, draw_film
 from multibody.integration.constant_step import set_initial_state
 from multibody.integration.refine import MAX_WORK
 from multibody.integration.work_limit import refusal
@@ -41,51 +41,55 @@ from reference.support.files import write_new
 
 Array = NDArray[np.float64]
 
-# Largest number of frames of a film: the paths of its contact points are drawn anew in each.
+# Largest number of frames of a film: the paths of the contact points are drawn anew in each frame.
 MAX_FRAMES = 1500
 
-# Largest factor on displacements.
-MAX_STRETCH = 1e6
+# Largest factor on displacements that --stretch accepts.
+MAX_STRETCH_FACTOR = 1e6
 
-# Numbers of frames per second: a GIF counts hundredths of a second.
-RATES = (1, 2, 4, 5, 10, 20, 25, 50)
+# Frame rates, 1/s, that --rate accepts: a frame of a GIF lasts a whole number of hundredths of a second.
+FRAME_RATES = (1, 2, 4, 5, 10, 20, 25, 50)
 
-# Least and largest width and height, pixels.
-SIZES = (320, 4000)
+# Smallest and largest width and height, pixels, that --size accepts.
+FRAME_SIZES = (320, 4000)
 
-# Endings of the files that can be written with what is installed.
-SUFFIXES = (".gif",)
+# File name endings that --out accepts: one for each format that the installed packages can write.
+FILE_SUFFIXES = (".gif",)
 
-# Number of steps of the viewer's run in a second of motion.
+# Number of steps per second of motion in the run of the viewer.
 VIEWER_STEPS_PER_SECOND = 1000.0
 
 
-def count_frames(duration: float, look: Look) -> int:
-    """Number of frames of a film of `duration` s of motion."""
-    return max(round(min(duration * look.rate / look.speed, 1e9)), 1) + 1
+def count_frames(duration: float, settings: FilmSettings) -> int:
+    """Return the number of frames of a film of `duration` s of motion."""
+    return max(round(min(duration * settings.rate / settings.speed, 1e9)), 1) + 1
 
 
-def check_film_options(scene: Scene, out: Path, look: Look) -> None:
-    """Raise ValueError, one line, if no film can be written to `out` or it would be absurd, before anything is run."""
-    if not (np.isfinite(look.stretch) and 0.0 < look.stretch <= MAX_STRETCH):
-        raise ValueError(f"--stretch: {look.stretch}: must be greater than 0 and at most {MAX_STRETCH:g}")
-    if look.rate not in RATES:
-        raise ValueError(f"--rate: {look.rate}: must be {', '.join(map(str, RATES[:-1]))} or {RATES[-1]} per second")
-    if not all(SIZES[0] <= pixels <= SIZES[1] for pixels in look.size):
-        raise ValueError(f"--size: {look.size[0]} {look.size[1]}: must be {SIZES[0]} to {SIZES[1]} pixels each")
-    if not (np.isfinite(look.speed) and look.speed > 0.0):
-        raise ValueError(f"--speed: {look.speed}: must be finite and greater than 0")
-    fastest = scene.duration * look.rate
-    slowest = fastest / (MAX_FRAMES - 1)
-    if look.speed > fastest or count_frames(scene.duration, look) > MAX_FRAMES:
+def check_film_options(scene: Scene, out: Path, settings: FilmSettings) -> None:
+    """Raise ValueError, one line, if no film can be written to `out` or a setting is out of its bounds."""
+    if not (np.isfinite(settings.stretch) and 0.0 < settings.stretch <= MAX_STRETCH_FACTOR):
+        raise ValueError(f"--stretch: {settings.stretch}: must be greater than 0 and at most {MAX_STRETCH_FACTOR:g}")
+    if settings.rate not in FRAME_RATES:
         raise ValueError(
-            f"--speed: {look.speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
-            f"{look.rate} per second: give {slowest:.2g} to {fastest:.2g}"
+            f"--rate: {settings.rate}: must be {', '.join(map(str, FRAME_RATES[:-1]))} or {FRAME_RATES[-1]} per second"
+        )
+    if not all(FRAME_SIZES[0] <= pixels <= FRAME_SIZES[1] for pixels in settings.size):
+        raise ValueError(
+            f"--size: {settings.size[0]} {settings.size[1]}: must be {FRAME_SIZES[0]} to {FRAME_SIZES[1]} pixels each"
+        )
+    if not (np.isfinite(settings.speed) and settings.speed > 0.0):
+        raise ValueError(f"--speed: {settings.speed}: must be finite and greater than 0")
+    fastest = scene.duration * settings.rate
+    slowest = fastest / (MAX_FRAMES - 1)
+    if settings.speed > fastest or count_frames(scene.duration, settings) > MAX_FRAMES:
+        raise ValueError(
+            f"--speed: {settings.speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
+            f"{settings.rate} per second: give {slowest:.2g} to {fastest:.2g}"
         )
     if out.is_dir():
-        raise ValueError(f"--out: {out}: is a folder: give the name of a {' or '.join(SUFFIXES)} file")
-    if out.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"--out: {out}: must end in {' or '.join(SUFFIXES)}")
+        raise ValueError(f"--out: {out}: is a folder: give the name of a {' or '.join(FILE_SUFFIXES)} file")
+    if out.suffix.lower() not in FILE_SUFFIXES:
+        raise ValueError(f"--out: {out}: must end in {' or '.join(FILE_SUFFIXES)}")
     if not out.parent.is_dir():
         raise ValueError(f"--out: {out}: its folder does not exist")
     if not os.access(out if out.exists() else out.parent, os.W_OK):
@@ -93,7 +97,7 @@ def check_film_options(scene: Scene, out: Path, look: Look) -> None:
 
 
 def open_viewer(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
-    """Run the model in the engine's own viewer. Raises ValueError without a screen."""
+    """Run a model of the scene in the engine's own viewer. Raises ValueError without a screen."""
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         raise ValueError("--view: no screen: DISPLAY is not set; leave --view out to write a film instead")
     built = assemble(scene, model, regularization)
@@ -124,11 +128,15 @@ def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--max-work", type=float, default=MAX_WORK, help="most steps of the engine, %(default)g if not given"
     )
-    parser.add_argument("--stretch", type=float, default=Look.stretch, help="factor on the displacements as drawn")
-    parser.add_argument("--speed", type=float, default=Look.speed, help="seconds of motion per second of film")
-    parser.add_argument("--rate", type=int, default=Look.rate, help=f"frames per second, {Look.rate} if not given")
-    size = "pixels, {} {} if not given".format(*Look.size)
-    parser.add_argument("--size", nargs=2, type=int, default=Look.size, metavar=("W", "H"), help=size)
+    parser.add_argument(
+        "--stretch", type=float, default=FilmSettings.stretch, help="factor on the displacements as drawn"
+    )
+    parser.add_argument("--speed", type=float, default=FilmSettings.speed, help="seconds of motion per second of film")
+    parser.add_argument(
+        "--rate", type=int, default=FilmSettings.rate, help=f"frames per second, {FilmSettings.rate} if not given"
+    )
+    size = "pixels, {} {} if not given".format(*FilmSettings.size)
+    parser.add_argument("--size", nargs=2, type=int, default=FilmSettings.size, metavar=("W", "H"), help=size)
     parser.add_argument("--out", type=Path, default=Path("run.gif"))
     parser.add_argument("--view", action="store_true", help="open the engine's viewer instead of writing a file")
     return parser.parse_args(words)
@@ -143,8 +151,8 @@ def main(words: list[str] | None = None) -> int:
         if options.view:
             open_viewer(scene, phase, options.model, options.regularization)
             return 0
-        look = Look(options.stretch, options.speed, options.rate, tuple(options.size))
-        check_film_options(scene, options.out, look)
+        settings = FilmSettings(options.stretch, options.speed, options.rate, tuple(options.size))
+        check_film_options(scene, options.out, settings)
         motion = trajectory(scene, phase, options.model, options.regularization, max_work=options.max_work)
         if len(motion.time) == 0:
             why = refusal(scene, options.model, options.regularization, full=True, max_work=options.max_work)
@@ -153,8 +161,8 @@ def main(words: list[str] | None = None) -> int:
     except (SceneError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    count = count_frames(float(motion.time[-1]), look)
-    written = write_new(options.out, draw_film(scene, motion, options.model, look, count))
+    count = count_frames(float(motion.time[-1]), settings)
+    written = write_new(options.out, draw_film(scene, motion, options.model, settings, count))
     if written != options.out:
         print(f"{options.out} exists and stays: the film is in {written}", file=sys.stderr)
     print(f"{written}: {motion.time[-1]:.2f} s of motion, status {motion.status}")

@@ -1,14 +1,14 @@
-"""Defaults of the package: each has one name here, which signatures, options and tests use."""
+"""Default values of the package, which signatures, options and tests use by name."""
 
 from __future__ import annotations
 
 from reference.problem.readings import DEFAULT_V_REG as DEFAULT_V_REG
 
-# Relative error that is asked of every mu.
+# Largest relative error of every amplification factor mu, unless the caller gives a tolerance.
 DEFAULT_TOLERANCE = 1e-3
 
-# Penetration of the contact under the weight, in units of rho, of runs at a constant step and of the viewer.
+# Penetration of the contact under the weight, in units of rho, in runs at a constant step and in the viewer.
 DEFAULT_PENETRATION = 1e-6
 
-# Relative tolerance of the forces in Newton's iteration, of runs at a constant step.
+# Relative tolerance of the forces in Newton's iteration, in runs at a constant step.
 DEFAULT_NEWTON_TOLERANCE = 1e-5

@@ -1,4 +1,4 @@
-"""Demands of every phase pair of a surface with the engine."""
+"""Peak demands on isolator and structure at every phase pair, by the engine."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from multibody.motion import trajectory
 from reference.measures import PeakDemands
 from reference.measures.peak_demands import demands_of_motions
 from reference.problem import Scene, Trajectory
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 
 
-@takes_scene
+@require_scene
 def peak_demands(
     scene: Scene,
     phases: ArrayLike,
@@ -23,7 +23,7 @@ def peak_demands(
     max_work: float = MAX_WORK,
 ) -> PeakDemands:
     """
-    Compute what the motion at every phase pair demands of isolator and structure, with errors.
+    Compute the peak demands on isolator and structure of the motion at every phase pair, with errors.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 """
-Draws one motion as a GIF: the boxes from above with the paths of the contact points, then the chain from two sides.
+Film of one motion as a GIF: the boxes from above with the paths of the contact points, and the chain from two sides.
 
 What moves is drawn frame by frame on a background that is drawn once. Displacements, contact paths, tilt and yaw are
 magnified. Heights are scaled so that the whole frame fits, its boxes stay apart, and the poles of the supports end
@@ -28,39 +28,39 @@ from reference.support.drawing import escape_for_matplotlib
 
 Array = NDArray[np.float64]
 
-# Radii of the ring of supports and of the spheres, m, and the supports (K, 2), m, drawn where a scene has no spatial
-# data.
-RING, SPHERE = 1.0, 0.05
-BARE_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * RING / np.sqrt(2.0)
+# Radii of the ring of supports and of the spheres, m, and places of the supports (K, 2), m, of the drawing of a scene
+# without spatial data.
+SUPPORT_RING_RADIUS, SPHERE_RADIUS = 1.0, 0.05
+DEFAULT_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * SUPPORT_RING_RADIUS / np.sqrt(2.0)
 
-# Distance and thickness of boxes of such a scene, in widths of a box.
-STORY, THICKNESS = 0.5, 0.1
+# Distance and thickness of the boxes of a scene without spatial data, over the width of a box.
+BOX_DISTANCE, BOX_THICKNESS = 0.5, 0.1
 
-# Bounds of the drawn distance of the lowest and the highest box, in widths of the widest.
+# Smallest and largest drawn distance of the lowest and the highest box, over the width of the widest box.
 MIN_SPAN, MAX_SPAN = 0.35, 1.2
 
-# Largest thickness of a box, and largest dip of its edge where it is tilted, in smallest distances of two boxes.
-MAX_THICKNESS, MAX_DIP = 0.4, 0.2
+# Largest drawn thickness of a box, and largest drawn dip of its edge by tilt, over the smallest distance of two boxes.
+MAX_DRAWN_THICKNESS, MAX_DRAWN_DIP = 0.4, 0.2
 
-# Bound up to which turns, rad, and contact paths, m, are magnified, and the largest factor.
-MAX_DRAWN = 0.3
+# Largest drawn rotation, rad, and contact path, over the distance of the farthest support, and largest factor on both.
+MAX_DRAWN_ROTATION = 0.3
 MAX_MAGNIFICATION = 1e4
 
-# Length of the poles of the supports, in widths of the widest box.
-POLE = 0.15
+# Length of the poles of the supports, over the width of the drawing.
+POLE_LENGTH = 0.15
 
-# Width of the figure's layout, inches, whatever its pixels.
+# Width of the figure, inches, for any number of pixels, so that the layout does not depend on the pixels.
 LAYOUT_WIDTH = 12.0
 
-# Number of colors of a film, and one more that stands for what has not changed.
-COLORS = 255
+# Number of colors of a film; a GIF has 256, and one stands for unchanged pixels.
+COLOR_COUNT = 255
 
-CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+UNIT_BOX_CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
 @dataclass(frozen=True)
-class Look:
-    """Settings of a film. stretch: factor on displacements. speed: s of motion per s. rate: frames per s. size: px."""
+class FilmSettings:
+    """Settings of a film. stretch: displacement factor. speed: s of motion per s. rate: frames per s. size: pixels."""
 
     stretch: float = 5.0
     speed: float = 1.0
@@ -71,43 +71,43 @@ class Look:
 @dataclass(frozen=True)
 class Drawing:
     """
-    Picture of a motion, in m, magnified: F frames, N bodies, K supports.
+    Magnified geometry of a motion, in m, in F frames, with N bodies and K supports.
 
-    corners: of the boxes, (F, N, 8, 3). centers: (F, N, 3). supports: (K, 2). paths: of the contact points, (F, K, 2).
-    swing: x and z of the curve that the platform's center swings on, (S, 2), from its place at `rest`, (2,).
-    scales: the factors in words.
+    corners: corners of the boxes, (F, N, 8, 3). centers: centers of mass, (F, N, 3). supports: places, (K, 2). paths:
+    places of the contact points, (F, K, 2). swing_curve: x and z, (S, 2), of the curve on which the platform's center
+    moves, from its place at rest. rest_place: x and y of that place, (2,). scales: the magnification factors in words.
     """
 
     corners: Array
     centers: Array
     supports: Array
     paths: Array
-    swing: Array
-    rest: Array
+    swing_curve: Array
+    rest_place: Array
     scales: str
 
     @property
-    def reach(self) -> float:
-        """Half of the width that everything needs."""
+    def half_width(self) -> float:
+        """Half of the width of the drawing, m, in which all boxes and supports have room."""
         return 1.08 * float(max(np.abs(self.corners[..., :2]).max(), np.abs(self.supports).max()))
 
 
 def sample_frames(time: Array, values: Array, count: int) -> Array:
-    """Interpolate `values` (T, ...) given at `time` (T,), s, at `count` equally spaced instants, (F, ...)."""
+    """Return `values` (T, ...), given at `time` (T,), s, at `count` equally spaced instants, (F, ...)."""
     instants = np.linspace(time[0], time[-1], count)
     columns = [np.interp(instants, time, column) for column in values.reshape(len(time), -1).T]
     return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
 
 
 def locate_box_corners(center: Array, size: Array, turns: Array) -> Array:
-    """Corners (..., 8, 3), m, of boxes at `center` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
+    """Return corners (..., 8, 3), m, of boxes at `center` (..., 3), m, rotated by Rx Ry Rz of `turns` (..., 3), rad."""
     matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
-    turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
+    turned: Array = (UNIT_BOX_CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
     return center[..., None, :] + turned
 
 
 def choose_magnification(values: Array, seen: float) -> float:
-    """Choose a factor 1, 2 or 5 times a power of ten, so that the largest value is at most `seen` as drawn."""
+    """Return the largest factor, 1, 2 or 5 times a power of ten, that keeps all values at most `seen` as drawn."""
     largest = float(np.abs(values).max())
     wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))
@@ -115,22 +115,22 @@ def choose_magnification(values: Array, seen: float) -> float:
 
 
 def trace_contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
-    """Trace the contact point in plan from each support, (F, K, 2), m, for the platform's `shift`, `turns` (F, 3)."""
+    """Return the contact points in plan, from each support, (F, K, 2), m, for `shift` and `turns` (F, 3)."""
     supports = _support_places(scene)
     arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
     depressions = shift[:, None, :] + arms @ np.swapaxes(matrices, 1, 2) - arms
-    lever = (scene.isolator.sphere_radius or SPHERE) / scene.radius
+    lever = (scene.isolator.sphere_radius or SPHERE_RADIUS) / scene.radius
     paths: Array = -lever * depressions[:, :, :2]
     return paths
 
 
 def arrange_boxes(scene: Scene) -> tuple[Array, Array, float]:
-    """Heights (N,), from zero, and sizes (N, 3), m, of the boxes as they are drawn, and the factor on the heights."""
-    width = 2.0 * (scene.support_radius or scene.isolator.ring or RING)
-    sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
+    """Return drawn heights (N,) from zero and sizes (N, 3) of the boxes, m, and the factor on the heights."""
+    width = 2.0 * (scene.support_radius or scene.isolator.ring or SUPPORT_RING_RADIUS)
+    sizes: Array = np.array([body.size or [width, width, BOX_THICKNESS * width] for body in scene.bodies])
     width = float(sizes[:, :2].max())
-    heights: Array = STORY * width * np.arange(len(sizes), dtype=np.float64)
+    heights: Array = BOX_DISTANCE * width * np.arange(len(sizes), dtype=np.float64)
     stated = [body.height for body in scene.bodies if body.height is not None]
     if len(stated) == len(sizes) and (np.diff(stated) > 0.0).all():
         heights = np.array(stated) - stated[0]
@@ -138,25 +138,25 @@ def arrange_boxes(scene: Scene) -> tuple[Array, Array, float]:
     if len(sizes) > 1:
         factor = float(np.clip(heights[-1], MIN_SPAN * width, MAX_SPAN * width) / heights[-1])
         gap = factor * float(np.diff(heights).min())
-        sizes[:, 2] = np.minimum(sizes[:, 2], MAX_THICKNESS * gap)
+        sizes[:, 2] = np.minimum(sizes[:, 2], MAX_DRAWN_THICKNESS * gap)
     return factor * heights, sizes, factor
 
 
 def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Drawing:
-    """Return the drawing of a motion in `count` frames."""
+    """Return the magnified geometry of a motion in `count` frames."""
     shifts = sample_frames(motion.time, motion.position, count)
     turns = sample_frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
     heights, sizes, factor = arrange_boxes(scene)
     gap = float(np.diff(heights).min(initial=np.inf))
-    dip = min(MAX_DRAWN, MAX_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
-    tilt, yaw = choose_magnification(turns[..., :2], dip), choose_magnification(turns[..., 2], MAX_DRAWN)
+    dip = min(MAX_DRAWN_ROTATION, MAX_DRAWN_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
+    tilt, yaw = choose_magnification(turns[..., :2], dip), choose_magnification(turns[..., 2], MAX_DRAWN_ROTATION)
     paths = trace_contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = choose_magnification(paths, MAX_DRAWN * float(np.hypot(*_support_places(scene).T).max()))
+    closer = choose_magnification(paths, MAX_DRAWN_ROTATION * float(np.hypot(*_support_places(scene).T).max()))
     scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
     scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
     scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
-    reach = float(np.abs(shifts[..., :2]).max()) if scene.flat else 0.25 * scene.radius
-    across = np.linspace(-1.0, 1.0, 101) * reach
+    half_width = float(np.abs(shifts[..., :2]).max()) if scene.flat else 0.25 * scene.radius
+    across = np.linspace(-1.0, 1.0, 101) * half_width
     rise = np.zeros(101) if scene.flat else scene.radius - np.sqrt(scene.radius**2 - across**2)
     centers = np.column_stack([scene.offsets, heights]) + shifts * stretch
     return Drawing(
@@ -164,16 +164,16 @@ def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -
         centers=centers,
         supports=_support_places(scene),
         paths=_support_places(scene) + paths * closer,
-        swing=stretch * np.column_stack([across, rise]),
-        rest=scene.offsets[0],
+        swing_curve=stretch * np.column_stack([across, rise]),
+        rest_place=scene.offsets[0],
         scales=scales,
     )
 
 
-def draw_film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -> bytes:
-    """Draw the GIF of a motion that `model` computed, in `count` frames."""
-    drawn = make_drawing(scene, motion, look.stretch, count)
-    width, height = look.size
+def draw_film(scene: Scene, motion: Trajectory, model: str, settings: FilmSettings, count: int) -> bytes:
+    """Return a GIF of a motion that `model` computed, in `count` frames."""
+    drawn = make_drawing(scene, motion, settings.stretch, count)
+    width, height = settings.size
     figure = Figure((LAYOUT_WIDTH, LAYOUT_WIDTH * height / width), dpi=width / LAYOUT_WIDTH)
     canvas: Any = FigureCanvasAgg(figure)
     figure.subplots_adjust(left=0.05, right=0.99, bottom=0.21, top=0.8, wspace=0.15)
@@ -181,7 +181,7 @@ def draw_film(scene: Scene, motion: Trajectory, model: str, look: Look, count: i
         f"{escape_for_matplotlib(scene.title)}: {model} model of the engine\n{drawn.scales}", fontsize="medium"
     )
     panels = figure.subplots(1, 3)
-    views = [_FromAbove(panels[0], drawn), _FromSide(panels[1], drawn, 0), _FromSide(panels[2], drawn, 1)]
+    views = [_TopView(panels[0], drawn), _SideView(panels[1], drawn, 0), _SideView(panels[2], drawn, 1)]
     handles: dict[str, Any] = {}
     for panel in panels:
         handles |= dict(zip(*reversed(panel.get_legend_handles_labels())))
@@ -193,28 +193,28 @@ def draw_film(scene: Scene, motion: Trajectory, model: str, look: Look, count: i
 
     def draw_frame(frame: int) -> Image.Image:
         canvas.restore_region(background)
-        clock.set_text(f"t = {frame * look.speed / look.rate:.2f} s")
+        clock.set_text(f"t = {frame * settings.speed / settings.rate:.2f} s")
         for view in views:
             view.show(frame)
         for artist in (clock, *(artist for view in views for artist in view.moving)):
             figure.draw_artist(artist)
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
 
-    return _encode_gif((draw_frame(frame) for frame in range(count)), draw_frame(count // 2), look.rate)
+    return _encode_gif((draw_frame(frame) for frame in range(count)), draw_frame(count // 2), settings.rate)
 
 
 def _encode_gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> bytes:
-    """Encode the pictures in the colors of a typical one, one after the other: none is kept."""
+    """Return a GIF of pictures in the colors of a typical picture; only one picture is in memory at a time."""
     white_stays_white = Image.Quantize.MAXCOVERAGE
-    palette = typical.quantize(COLORS, white_stays_white)
+    palette = typical.quantize(COLOR_COUNT, white_stays_white)
     reduced = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures)
     content = io.BytesIO()
     next(reduced).save(content, "GIF", save_all=True, append_images=reduced, duration=1000 // rate, loop=0)
     return content.getvalue()
 
 
-class _View:
-    """One panel, with the artists that move in it."""
+class _Panel:
+    """Panel of the film with the artists that move in it."""
 
     def __init__(self, panel: Any, drawn: Drawing, axes: tuple[int, int], alpha: float) -> None:
         self.drawn, self.axes = drawn, list(axes)
@@ -224,22 +224,22 @@ class _View:
         ]
         self.moving: list[Any] = [*self.outlines]
         names = ["xyz"[axis] for axis in axes]
-        panel.set(xlim=(-drawn.reach, drawn.reach), aspect="equal", xlabel=f"{names[0]} [m]")
+        panel.set(xlim=(-drawn.half_width, drawn.half_width), aspect="equal", xlabel=f"{names[0]} [m]")
         panel.set_ylabel(f"{names[1]} [m]" if names[1] != "z" else "z", labelpad=2.0)
 
     def show(self, frame: int) -> None:
-        """Move the artists to where they are in a frame."""
+        """Move the artists to their places in a frame."""
         for body, outline in enumerate(self.outlines):
             flat = self.drawn.corners[frame, body][:, self.axes]
             outline.set_xy(flat[ConvexHull(flat).vertices])
 
 
-class _FromAbove(_View):
-    """The boxes, the ring of supports and the paths of the contact points."""
+class _TopView(_Panel):
+    """Panel from above: the boxes, the ring of supports and the paths of the contact points."""
 
     def __init__(self, panel: Any, drawn: Drawing) -> None:
         super().__init__(panel, drawn, (0, 1), 0.1)
-        panel.set(ylim=(-drawn.reach, drawn.reach))
+        panel.set(ylim=(-drawn.half_width, drawn.half_width))
         panel.set_title("from above", fontsize="small")
         distances = np.hypot(*drawn.supports.T)
         if np.allclose(distances, distances[0]):
@@ -258,21 +258,25 @@ class _FromAbove(_View):
         self.points.set_data(*self.drawn.paths[frame].T)
 
 
-class _FromSide(_View):
-    """The boxes above each other on their poles, and the line through their centers."""
+class _SideView(_Panel):
+    """Panel from the side: the boxes above each other on their poles, and the line through their centers."""
 
     def __init__(self, panel: Any, drawn: Drawing, axis: int) -> None:
         super().__init__(panel, drawn, (axis, 2), 0.35)
         panel.set_title("along y" if axis == 0 else "along x", fontsize="small")
         self.axis = axis
         top = float(drawn.corners[:, 0, :, 2].min())
-        low = top - POLE * 2.0 * drawn.reach
-        panel.set(ylim=(low, float(drawn.corners[..., 2].max()) + 0.05 * drawn.reach), yticks=[])
+        low = top - POLE_LENGTH * 2.0 * drawn.half_width
+        panel.set(ylim=(low, float(drawn.corners[..., 2].max()) + 0.05 * drawn.half_width), yticks=[])
         for support in drawn.supports[:, axis]:
             panel.plot([support, support], [low, top], color="0.5", linewidth=1.5)
             panel.plot(support, top, "o", color="0.4", markersize=5, clip_on=False)
         panel.plot(
-            drawn.rest[axis] + drawn.swing[:, 0], drawn.swing[:, 1], ":", color="0.2", label="swing of the center"
+            drawn.rest_place[axis] + drawn.swing_curve[:, 0],
+            drawn.swing_curve[:, 1],
+            ":",
+            color="0.2",
+            label="swing of the center",
         )
         self.mast = panel.plot([], [], "o-", color="0.2", markersize=3, linewidth=1.0, animated=True)[0]
         self.moving.append(self.mast)
@@ -283,12 +287,12 @@ class _FromSide(_View):
 
 
 def _colors_and_names(count: int) -> list[tuple[tuple[float, float, float], str]]:
-    """Color and name of every body; names of as many as a legend holds."""
+    """Return color and name of every body; bodies beyond the sixth have no name in the legend."""
     colors = [colormaps["tab10"](body % 10)[:3] for body in range(count)]
     names = ["platform", *(f"body {body}" for body in range(2, count + 1))]
     return list(zip(colors, [name if body < 6 else "_" for body, name in enumerate(names)]))
 
 
 def _support_places(scene: Scene) -> Array:
-    """Places of the supports in the plane, (K, 2), m."""
-    return BARE_SUPPORTS if scene.support_places is None else scene.support_places
+    """Return the places (K, 2), m, of the supports in the plane, of the scene or of the default drawing."""
+    return DEFAULT_SUPPORTS if scene.support_places is None else scene.support_places

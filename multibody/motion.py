@@ -1,4 +1,4 @@
-"""One motion with the engine: to a tolerance, or from a single run without an error estimate."""
+"""Motion at one phase pair by the engine: to a tolerance, or from a single run without an error estimate."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silen
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
-from multibody.integration.refine import MAX_WORK, WORK, refine
+from multibody.integration.refine import MAX_WORK, WORK_RANGE, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, ground_acceleration
 from reference.problem.phases import check_phase
 from reference.problem.ranges import TOLERANCE, check_state
 from reference.problem.readings import describe_law
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import Range, check_choice, check_number
 
-# Largest number of steps of a single run, which is held in memory whole.
+# Largest number of steps of a single run, whose motion is held in memory.
 MAX_STEPS = 1e7
-PENETRATION = Range(1e-14, 0.1, "of rho")
-NEWTON = Range(1e-14, 1.0)
+PENETRATION_RANGE = Range(1e-14, 0.1, "of rho")
+NEWTON_RANGE = Range(1e-14, 1.0)
 
 
-@takes_scene
+@require_scene
 def trajectory(
     scene: Scene,
     phase: ArrayLike,
@@ -87,7 +87,7 @@ def trajectory(
     scene = scene.softened() if softened else scene
     checked = check_phase(phase)
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
-    max_work = check_number("max_work", max_work, WORK)
+    max_work = check_number("max_work", max_work, WORK_RANGE)
     initial = _check_initial(scene, initial)
     with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
@@ -102,7 +102,7 @@ def trajectory(
     return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
 
 
-@takes_scene
+@require_scene
 def single_run(
     scene: Scene,
     phase: ArrayLike,
@@ -174,8 +174,8 @@ def single_run(
     if (level is None) == (step is None):
         raise ValueError("level, step: give exactly one of the two")
     check_choice("integrator", integrator, INTEGRATORS)
-    penetration = check_number("penetration", penetration, PENETRATION)
-    newton = check_number("newton", newton, NEWTON)
+    penetration = check_number("penetration", penetration, PENETRATION_RANGE)
+    newton = check_number("newton", newton, NEWTON_RANGE)
     with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
         point = PhasePair(scene, built, pair, _check_initial(scene, initial))
@@ -231,7 +231,7 @@ def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: floa
 def _measure_attitude(
     model: EngineModel, motion: EngineMotion, time: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]:
-    """Angles of the bodies, tilt and yaw of the platform, and the intervals in which it leaves a support."""
+    """Return rotations of the bodies, tilt and yaw of the platform, and intervals of lift-off of each support."""
     turns = motion.coordinates[:, model.bodies + 3]
     roll, pitch, yaw = turns[:, 0].T
     open_at = [
@@ -244,7 +244,7 @@ def _measure_attitude(
 
 
 def _find_intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
-    """First and last instant of every unbroken run of rows in which something holds, `around` rows beyond."""
+    """Return first and last instant of every unbroken run of true rows of a mask, widened by `around` rows."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
     last = len(time) - 1
     return [

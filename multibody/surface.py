@@ -1,4 +1,4 @@
-"""Amplification factors over the phases with the engine."""
+"""Amplification factors over the phases, by the engine."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.constant_step import silence_engine
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
-from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
+from multibody.integration.refine import MAX_WORK, WORK_RANGE, Refinement, refine
 from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
 from reference.problem import Amplification, Outcome, Scene, ground_peak
 from reference.problem.phases import flat_phases
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
-from reference.problem.readings import FINER, describe_law, reading_of
-from reference.problem.reductions import in_plane, planar_chain
-from reference.problem.scene import takes_scene
+from reference.problem.readings import SECOND_V_REG_RATIO, describe_law, reading_of
+from reference.problem.reductions import has_planar_chain, turn_loading_to_x
+from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
 Array = NDArray[np.float64]
 
 
-@takes_scene
+@require_scene
 def amplification(
     scene: Scene,
     phases: ArrayLike,
@@ -104,7 +104,7 @@ def amplification(
     stated, scene = scene, scene.softened() if softened else scene
     pairs, leading = flat_phases(phases)
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
-    max_work = check_number("max_work", max_work, WORK)
+    max_work = check_number("max_work", max_work, WORK_RANGE)
     clock = time.process_time()
     ground = ground_peak(scene, pairs)
     with silence_engine():
@@ -127,11 +127,11 @@ def amplification(
     ).reshaped(leading)
     if not regularization_effect:
         return found
-    if not found.reading:  # v_reg has no effect without dry friction
+    if not found.reading:  # without dry friction v_reg has no effect
         nothing = np.where(np.isfinite(found.mu), 0.0, np.nan)
         return replace(found, regularization_effect=nothing, displacement_effect=nothing[..., 0])
-    assert regularization is not None  # refused with dry friction
-    v_reg = FINER * regularization
+    assert regularization is not None  # dry friction without v_reg is refused before
+    v_reg = SECOND_V_REG_RATIO * regularization
     finer = amplification(scene, phases, model, v_reg, tolerance, full=full, levels=levels, max_work=max_work)
     effect, slip = finer.mu - found.mu, finer.displacement - found.displacement
     return replace(
@@ -146,16 +146,16 @@ def amplification(
 @dataclass(frozen=True)
 class _ReducedModel:
     """
-    The smallest model that answers for the one that is asked for.
+    Smallest model with the same mu as the model that the caller names.
 
-    complete: assembles the model that is asked for where the reduced one has no answer; None where it is not reduced.
-    whole: every run goes to the end of the motion.
+    complete: assembles the model that the caller names, for pairs where the reduced model has no answer; None where it
+    is not reduced. in_full: whether every run goes to the end of the motion.
     """
 
     scene: Scene
     built: EngineModel
     complete: Callable[[], tuple[Scene, EngineModel]] | None
-    whole: bool
+    in_full: bool
 
     def answer(
         self, pairs: Array, ground: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
@@ -184,23 +184,24 @@ class _ReducedModel:
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
-        """Refine one phase pair (2,), rad; where the platform leaves its supports on the model that is asked for."""
-        pair = PhasePair(self.scene, self.built, phase, whole=self.whole)
+        """Refine one phase pair (2,), rad; repeat it with the complete model if the reduced one has no answer."""
+        pair = PhasePair(self.scene, self.built, phase, in_full=self.in_full)
         point = refine(pair, tolerance, levels=levels, max_work=max_work)
         if self.complete is not None and np.isnan(point.peaks).any():
-            pair = PhasePair(*self.complete(), phase, whole=self.whole)
+            pair = PhasePair(*self.complete(), phase, in_full=self.in_full)
             point = refine(pair, tolerance, levels=levels, max_work=max_work)
         return point
 
 
 def _reduce_model(scene: Scene, model: str, regularization: float | None, full: bool) -> _ReducedModel:
     """
-    Assemble the cheapest model that gives the same mu: without the coordinates across the plane where the motion stays
-    in one. `complete` of the result assembles the asked one.
+    Assemble the cheapest model with the same mu: without coordinates normal to the plane of a planar motion.
+
+    `complete` of the result assembles the model that the caller names.
     """
     chosen = choose_model(scene, model, full)
-    planar = chosen == "translational" and not full and planar_chain(scene).allowed
-    moving = in_plane(scene) if planar else scene
+    planar = chosen == "translational" and not full and has_planar_chain(scene).allowed
+    moving = turn_loading_to_x(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, **axes)
 

@@ -1,4 +1,4 @@
-"""The building of a scene as it was read: weight, periods, modal damping, and the peak of the ground."""
+"""Description of the building of a scene as it was read: weight, periods, modal damping, and the ground's peak."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ import numpy as np
 from reference.measures.story_forces import heights_above_contact, support_loads_at_rest
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
-from reference.problem.chain_modes import solve_chain
+from reference.problem.chain_modes import solve_chain_modes
 from reference.problem.result import Array
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import name_some
 
-DESCRIBED = 10  # modes of each axis; of a tall chain only the lowest are found
-NAMED = 6  # modes, or buildings, that a line names
-ALIKE = 1e-6  # share of the mean within which the dead loads of supports are equal
-SHOWN = 3  # kinds of buildings that are described
+MAX_DESCRIBED_MODES = (
+    10  # number of modes along each axis in a description; of a tall chain only the lowest modes are computed
+)
+MAX_NAMES_PER_LINE = 6  # a line names at most so many modes, or buildings
+EQUAL_LOAD_TOLERANCE = 1e-6  # share of the mean within which the dead loads of supports count as equal
+MAX_KINDS = 3  # at most so many kinds of buildings are described
 
 
 @dataclass(frozen=True)
@@ -86,17 +88,17 @@ class Building:
 
     @property
     def lines(self) -> list[str]:
-        """The building as lines of text."""
+        """Return the description of the building as lines of text."""
         return word_buildings([self])
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
 
 
-@takes_scene
+@require_scene
 def describe_building(scene: Scene) -> Building:
     """
-    Return the building of a scene as it was read, to see that its numbers and their units are those that were meant.
+    Return the description of a scene's building, which shows whether its numbers and their units are the intended ones.
 
     Parameters
     ----------
@@ -125,7 +127,9 @@ def describe_building(scene: Scene) -> Building:
     """
     weight, supports = scene.total_mass * GRAVITY, scene.isolator.support_count
     places, law = scene.support_places, scene.dry_friction
-    isolated = [solve_chain(scene.masses, stiffness, DESCRIBED)[0] for stiffness in linear_stiffness(scene).T]
+    isolated = [
+        solve_chain_modes(scene.masses, stiffness, MAX_DESCRIBED_MODES)[0] for stiffness in linear_stiffness(scene).T
+    ]
     fixed = [_solve_fixed_base(scene, axis) for axis in range(2)]
     with np.errstate(divide="ignore"):
         return Building(
@@ -138,7 +142,7 @@ def describe_building(scene: Scene) -> Building:
             2.0 * np.pi / np.array([frequency for frequency, _, _ in fixed]),
             np.array([ratio for _, ratio, _ in fixed]),
             np.array([share for _, _, share in fixed]),
-            horizontal_peak(scene),
+            largest_horizontal_acceleration(scene),
             scene.radius,
             (scene.friction_coefficient,) if scene.lubricated else (law.slow, law.fast, law.rate),
             scene.isolator.travel,
@@ -150,21 +154,21 @@ def describe_building(scene: Scene) -> Building:
 
 def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array, Array]:
     """
-    Return frequencies, damping ratios and shares of the mass, (L,), of the modes above a platform that is held.
+    Return frequencies, damping ratios and shares of the mass, (L,), of the modes above a fixed platform.
 
     They are those along one axis.
     """
     if len(scene.bodies) == 1:
         return np.zeros(0), np.zeros(0), np.zeros(0)
-    frequency, shape = solve_chain(scene.masses[1:], scene.stiffness[:, axis], DESCRIBED)
+    frequency, shape = solve_chain_modes(scene.masses[1:], scene.stiffness[:, axis], MAX_DESCRIBED_MODES)
     elongation = np.diff(shape, axis=0, prepend=0.0)
     ratio: Array = scene.damping[:, axis] @ elongation**2 / (2.0 * frequency)
     above = scene.masses[1:]
     return frequency, ratio, (above @ shape) ** 2 / above.sum()
 
 
-def horizontal_peak(scene: Scene) -> float:
-    """Return the largest horizontal acceleration of the ground, m/s^2; of two frequencies over all phases."""
+def largest_horizontal_acceleration(scene: Scene) -> float:
+    """Return the largest horizontal acceleration of the ground, m/s^2; for two frequencies over all phases."""
     with np.errstate(over="ignore"):
         if scene.recorded:
             # The norm of a vector that changes linearly is convex: it is largest at a knot.
@@ -175,31 +179,31 @@ def horizontal_peak(scene: Scene) -> float:
 
 
 def word_buildings(buildings: Sequence[Building]) -> list[str]:
-    """Return the buildings as lines of text: once what is alike, of the first kinds."""
+    """Return buildings as lines of text: one description for buildings with the same, of the first kinds only."""
     alike: dict[str, list[Building]] = {}
     for building in buildings:
         alike.setdefault("\n".join(_word_structure(building)), []).append(building)
     lines = []
-    for text, own in [*alike.items()][:SHOWN]:
+    for text, own in [*alike.items()][:MAX_KINDS]:
         names = [*dict.fromkeys(building.name for building in own)]
-        lines.append(f"Building {name_some(names, NAMED)}: {text}")
+        lines.append(f"Building {name_some(names, MAX_NAMES_PER_LINE)}: {text}")
         lines += _word_frictions(own)
         lines.append(f"  peak of the ground: {_word_peaks([building.ground_peak for building in own])}")
-    if len(alike) > SHOWN:
-        lines.append(f"and {len(alike) - SHOWN} more buildings")
+    if len(alike) > MAX_KINDS:
+        lines.append(f"and {len(alike) - MAX_KINDS} more buildings")
     return "\n".join(lines).splitlines()
 
 
 def _word_loads(building: Building) -> str:
-    """Return how the weight spreads over the supports."""
+    """Return a sentence on how the weight spreads over the supports."""
     loads, mean = building.support_loads, building.load_per_support
-    if loads is None or mean is None or float(np.ptp(loads)) <= ALIKE * mean:
+    if loads is None or mean is None or float(np.ptp(loads)) <= EQUAL_LOAD_TOLERANCE * mean:
         return "(equal dead load)"
     return f"in the mean ({word_force(loads.min())} to {word_force(loads.max())} at rest, by statics)"
 
 
 def _word_structure(building: Building) -> list[str]:
-    """Return what is said of a building without its loading."""
+    """Return sentences on a building without its loading."""
     bodies = f"{building.bodies} {'body' if building.bodies == 1 else 'bodies'}"
     load = building.load_per_support
     each = (
@@ -226,20 +230,20 @@ def _word_extent(extent: Array | None) -> str:
 
 
 def _word_frictions(buildings: Sequence[Building]) -> list[str]:
-    """Return the friction of buildings: a line for each of a few kinds with the names that have it, or their ranges."""
+    """Return sentences on the friction of buildings: a line for each of a few kinds, or the ranges over all."""
     alike: dict[tuple[float, ...], list[str]] = {}
     for building in buildings:
         alike.setdefault(building.friction, []).append(building.name)
-    if len(alike) == 1 or len(alike) > SHOWN:
+    if len(alike) == 1 or len(alike) > MAX_KINDS:
         return [f"  {_word_friction([*alike])}"]
     lines = []
     for friction, own in alike.items():
-        lines.append(f"  {_word_friction([friction])} ({name_some([*dict.fromkeys(own)], SHOWN)})")
+        lines.append(f"  {_word_friction([friction])} ({name_some([*dict.fromkeys(own)], MAX_KINDS)})")
     return lines
 
 
 def _word_friction(kinds: Sequence[tuple[float, ...]]) -> str:
-    """Return the coefficients of one kind of friction, or their ranges over several."""
+    """Return the coefficients of one kind of friction, or their ranges over several kinds, as text."""
     dry = [kind for kind in kinds if len(kind) > 1]
     lubricated = [kind[0] for kind in kinds if len(kind) == 1]
     words = [f"lubrication: {_word_range(lubricated)} s/m"] if lubricated else []
@@ -252,29 +256,29 @@ def _word_friction(kinds: Sequence[tuple[float, ...]]) -> str:
 
 
 def _word_range(values: Sequence[float], digits: int = 4) -> str:
-    """Return one value, or the least and the most of several."""
+    """Return one value, or the least and the largest of several, as text."""
     return " to ".join(dict.fromkeys(f"{end:.{digits}g}" for end in (min(values), max(values))))
 
 
 def _word_peaks(peaks: Sequence[float]) -> str:
-    """Return the peaks of the ground, m/s^2, of one motion or of the least and the most."""
+    """Return the peak of the ground, m/s^2, or the least and the largest over several motions, as text."""
     if not any(peaks):
         return "none, the ground is at rest"
     return f"{_word_range(peaks, 3)} m/s^2 = {_word_range([peak / GRAVITY for peak in peaks], 3)} g"
 
 
 def word_force(force: float) -> str:
-    """Return a force, N, in the unit in which it is read."""
+    """Return a force, N, as text in a suitable unit."""
     unit, factor = next(((unit, size) for unit, size in (("MN", 1e6), ("kN", 1e3)) if force >= size), ("N", 1.0))
     return f"{force / factor:.4g} {unit}"
 
 
 def _word_axes(values: Array, unit: str) -> str:
-    """Return values of both axes (2, M), once where they are alike."""
+    """Return values along both axes (2, M) as text, once if they are equal."""
     along_x, along_y = (_word_values(axis, unit) for axis in values)
     return f"{along_x} along x and y" if along_x == along_y else f"{along_x} along x; {along_y} along y"
 
 
 def _word_values(values: Sequence[float] | Array, unit: str) -> str:
-    more = f" and {len(values) - NAMED} more" if len(values) > NAMED else ""
-    return f"{', '.join(f'{value:.3g}' for value in values[:NAMED])} {unit}{more}"
+    more = f" and {len(values) - MAX_NAMES_PER_LINE} more" if len(values) > MAX_NAMES_PER_LINE else ""
+    return f"{', '.join(f'{value:.3g}' for value in values[:MAX_NAMES_PER_LINE])} {unit}{more}"

@@ -9,11 +9,11 @@ from reference.measures import PeakDemands
 from reference.measures.peak_demands import demands_of_motions
 from reference.motion import trajectory
 from reference.problem import Scene, Trajectory
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.surface import prepare_run
 
 
-@takes_scene
+@require_scene
 def peak_demands(
     scene: Scene,
     phases: ArrayLike,
@@ -57,7 +57,7 @@ def peak_demands(
     """
     prepare_run(scene, equations, regularization, tolerance, None, rest_condition)
 
-    def move(phase: ArrayLike) -> Trajectory:
+    def compute_trajectory(phase: ArrayLike) -> Trajectory:
         return trajectory(scene, phase, equations, regularization, tolerance, rest_condition)
 
-    return demands_of_motions(scene, phases, move)
+    return demands_of_motions(scene, phases, compute_trajectory)

@@ -1,4 +1,4 @@
-"""Derivatives of a computed quantity with respect to values of the scene, by either side, and kinks nearby."""
+"""Derivatives of a computed quantity by values of the scene, for either side, and kinks near these values."""
 
 from __future__ import annotations
 
@@ -15,30 +15,30 @@ from numpy.typing import NDArray
 from reference.measures import Estimate, Estimates
 from reference.problem import Amplification, Scene
 from reference.problem.changed_values import value_at
-from reference.problem.scene import takes_scene
-from reference.support.arguments import brief
+from reference.problem.scene import require_scene
+from reference.support.arguments import quote
 
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]
 
-STEPS = (1e-3, 4e-3, 1.6e-2)  # shares of the value; each derivative also takes twice its step
-SHARES = (-0.05, -0.01, 0.01, 0.05)  # finite changes of the value, as shares of it
-RUNS_PER_KEY = 4 * len(STEPS) + len(SHARES)
-# Least departure of a mean slope from the derivative, over the largest slope, at which a kink is looked for: powers
-# up to the tenth depart by less over 5 % of the value
-CONTRADICTION = 0.05
+STEPS = (1e-3, 4e-3, 1.6e-2)  # changes of the value, as shares of it; each derivative also uses twice its step
+FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # finite changes of the value, as shares of it
+RUNS_PER_KEY = 4 * len(STEPS) + len(FINITE_CHANGES)
+# A kink is sought where a mean slope differs from the derivative by at least this share of the largest slope: powers
+# up to the tenth differ by less over 5 % of the value
+MIN_CONTRADICTION = 0.05
 MAX_HALVINGS = 12
-KINK_WIDTH = 1e-4  # width, as a share of the value, of an interval that locates a kink well enough
-# Part of the change of slope, or of the jump, that remains in the last interval: of a smooth curve less remains
-LEAST_REMAINDER = 0.25
-LEAST_SHRINKING = 0.125  # share of the first interval: errors hide a kink that is located no better
-PROGRESS_AFTER = 2.0  # s
+KINK_WIDTH = 1e-4  # share of the value: an interval of this width locates a kink well enough
+# Share of the change of slope, or of the jump, that must remain in the last interval: less remains of a smooth curve
+MIN_REMAINING_SHARE = 0.25
+MIN_SHRINKING = 0.125  # share of the first interval to which the last must shrink: otherwise errors hide the kink
+PROGRESS_AFTER = 2.0  # s, after which the progress of the runs is printed
 
 
 @dataclass(frozen=True)
 class Sensitivity(Estimates):
     """
-    Derivative of a quantity with respect to one value of the scene.
+    Derivative of a quantity by one value of the scene.
 
     Attributes
     ----------
@@ -48,8 +48,8 @@ class Sensitivity(Estimates):
     at : float
         Value of the key in the scene.
     change : Estimates, (4, ...)
-        Changes of the quantity where the value changes by -5, -1, 1 and 5 % (`SHARES`); NaN where the changed scene
-        has no answer.
+        Changes of the quantity where the value changes by -5, -1, 1 and 5 % (`FINITE_CHANGES`); NaN where the
+        changed scene has no answer.
     reading : str
         Which reading of (5.1) the quantity has: "as integrated" or "literal supremum"; "both agree" without dry
         friction; "not stated" by a quantity that does not say.
@@ -94,10 +94,10 @@ class _Numbers(NamedTuple):
     law: str
 
 
-@takes_scene
+@require_scene
 def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Sensitivity]:
     """
-    Return derivatives of a quantity with respect to numbers in the scene, by central differences, and kinks nearby.
+    Return derivatives of a quantity by numbers in the scene, from central differences, and kinks nearby.
 
     Parameters
     ----------
@@ -148,16 +148,16 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     0.06759
     """
     if isinstance(keys, str):
-        raise TypeError(f"keys = {brief(keys)}: must be a list of keys, [{keys!r}]")
+        raise TypeError(f"keys = {quote(keys)}: must be a list of keys, [{keys!r}]")
     tables, values = scene.model_dump(exclude_none=True), {}
     for key in keys:
         value = value_at(tables, key)
         if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:
-            scene.with_values({key: value})  # refuses an unknown key with the nearest ones
+            scene.with_values({key: value})  # raises an error for an unknown key with the nearest ones
             raise ValueError(f"keys: {key} is {value!r} in this scene: must be a number other than zero")
         values[key] = float(value)
     progress = _ProgressLines(RUNS_PER_KEY * len(values))
-    middle = _numbers_of(quantity(scene)) if values else None
+    middle = _value_and_provenance(quantity(scene)) if values else None
     found = {}
     for number, (key, value) in enumerate(values.items(), start=1):
         progress.start(f"sensitivity to {key}, key {number} of {len(values)}")
@@ -167,7 +167,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
 
 
 class _ProgressLines:
-    """A line on standard error for each key, with the time that is left, once all have taken PROGRESS_AFTER."""
+    """Progress lines on standard error, one per key with the time left, once the runs have taken PROGRESS_AFTER."""
 
     def __init__(self, runs: int) -> None:
         self._began, self._left, self._done, self._spent = time.monotonic(), runs, 0, 0.0
@@ -177,7 +177,7 @@ class _ProgressLines:
         self._line = line
 
     def count(self, seconds: float) -> None:
-        """Add one run and its time."""
+        """Add one run and the time that it took."""
         self._left, self._done, self._spent = max(self._left - 1, 0), self._done + 1, self._spent + seconds
         shown = multiprocessing.parent_process() is None and sys.stderr is not None
         if self._line and shown and time.monotonic() - self._began > PROGRESS_AFTER:
@@ -187,7 +187,7 @@ class _ProgressLines:
 
 
 class _Line:
-    """Quantity along one key of the scene: its computed numbers by the value of the key."""
+    """The quantity as a function of one key of the scene, with all values computed so far."""
 
     def __init__(
         self, scene: Scene, key: str, value: float, quantity: Quantity, middle: _Numbers, progress: _ProgressLines
@@ -197,15 +197,15 @@ class _Line:
         self.known: dict[float, _Numbers] = {value: middle}
 
     def at(self, value: float) -> _Numbers:
-        """Return the quantity of the scene with this value of the key."""
+        """Return the quantity of the scene in which the key has this value."""
         if value not in self.known:
             began = time.monotonic()
-            self.known[value] = _numbers_of(self._quantity(self.scene.with_values({self.key: value})))
+            self.known[value] = _value_and_provenance(self._quantity(self.scene.with_values({self.key: value})))
             self._progress.count(time.monotonic() - began)
         return self.known[value]
 
-    def answer_at(self, value: float) -> _Numbers:
-        """Return the quantity as `at`, NaN where the value makes no scene or the scene has no answer."""
+    def value_or_nan_at(self, value: float) -> _Numbers:
+        """Return the quantity at a value, or NaN if the scene with it is invalid or has no answer."""
         try:
             return self.at(value)
         except ValueError:
@@ -215,9 +215,9 @@ class _Line:
 
 
 def _find_sensitivity(line: _Line) -> Sensitivity:
-    """Return the derivative, the finite changes, and the kink that makes them contradict each other."""
+    """Return the derivative, the finite changes, and the kink between them if they contradict each other."""
     derivative, middle = _differentiate_line(line), line.middle
-    moved = [line.answer_at(line.value * (1.0 + share)) for share in SHARES]
+    moved = [line.value_or_nan_at(line.value * (1.0 + share)) for share in FINITE_CHANGES]
     change = Estimates(
         np.array([each.value - middle.value for each in moved]), np.array([each.error + middle.error for each in moved])
     )
@@ -242,7 +242,7 @@ def _find_sensitivity(line: _Line) -> Sensitivity:
 
 def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, float], jump: float = 0.0) -> str:
     """
-    Say where a quantity has a kink or a jump, and how far the derivative holds.
+    Return a sentence on where a quantity has a kink or a jump, and how far from it the derivative holds.
 
     Examples
     --------
@@ -257,11 +257,11 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
 
 
 def _differentiate_line(line: _Line) -> Estimates:
-    """Return the derivative from the step with the smallest error."""
+    """Return the derivative with the smallest error of all steps."""
     middle, value = line.middle, line.value
 
     def difference(step: float) -> tuple[Array, Array, Array]:
-        """Return the central difference, half the jump of slope at the value, and the error of either."""
+        """Return the central difference, half the jump of slope at the value, and the errors of both."""
         high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
         error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
         return (
@@ -273,7 +273,8 @@ def _differentiate_line(line: _Line) -> Estimates:
     slopes, errors = [], []
     for step in (share * abs(value) for share in STEPS):
         (near, near_jump, near_error), (far, far_jump, far_error) = difference(step), difference(2.0 * step)
-        kink = 2.0 * np.abs(2.0 * near_jump - far_jump)  # a smooth quantity has a jump proportional to the step
+        # The jump of slope of a smooth quantity is proportional to the step
+        kink = 2.0 * np.abs(2.0 * near_jump - far_jump)
         slopes.append((4.0 * near - far) / 3.0)
         errors.append(np.abs(near - far) / 3.0 + kink + (4.0 * near_error + far_error) / 3.0)
     best = np.argmin(np.where(np.isfinite(errors), errors, np.inf), axis=0)[np.newaxis]
@@ -282,15 +283,15 @@ def _differentiate_line(line: _Line) -> Estimates:
 
 def _find_contradiction(derivative: Estimates, change: Estimates, value: float) -> tuple[int | None, float, bool]:
     """
-    Find the element whose finite changes and derivative contradict each other most.
+    Return the element whose finite changes and derivative contradict each other most, and by how much.
 
     Returns the element of the flattened quantity at which a kink is to be looked for, None without one, the departure
     of the mean slope over 5 % there, and whether it is larger than the errors.
     """
-    steps = np.abs(value) * np.array(SHARES[len(SHARES) // 2 :])
+    steps = np.abs(value) * np.array(FINITE_CHANGES[len(FINITE_CHANGES) // 2 :])
     below, above = (np.reshape(part, (len(steps), -1)) for part in np.split(change.value, 2))
     low_error, high_error = (np.reshape(part, (len(steps), -1)) for part in np.split(change.error, 2))
-    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # the nearest change first
+    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # nearest change first
     mean = sign * (above - below) / (2.0 * steps[:, None])
     mean_error = (high_error + low_error) / (2.0 * steps[:, None])
     slope, slope_error = np.ravel(derivative.value), np.ravel(derivative.error)
@@ -298,8 +299,8 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     largest = np.maximum(np.nanmax(one_sided, axis=(0, 1), initial=0.0), np.abs(slope))
     departure = np.abs(mean - slope)
     beyond = departure - mean_error - slope_error
-    uncertain = np.nan_to_num(slope_error - CONTRADICTION * largest, nan=-1.0)
-    excess = np.nan_to_num(beyond - CONTRADICTION * largest, nan=-1.0).max(axis=0, initial=-1.0)
+    uncertain = np.nan_to_num(slope_error - MIN_CONTRADICTION * largest, nan=-1.0)
+    excess = np.nan_to_num(beyond - MIN_CONTRADICTION * largest, nan=-1.0).max(axis=0, initial=-1.0)
     score = np.maximum(excess, uncertain) / np.where(largest > 0.0, largest, 1.0)
     if not (score > 0.0).any():
         return None, 0.0, False
@@ -308,7 +309,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
 
 
 class _Point(NamedTuple):
-    """One element of the quantity at a value of the key."""
+    """One element of the quantity at one value of the key."""
 
     at: float
     value: float
@@ -316,7 +317,7 @@ class _Point(NamedTuple):
 
 
 class _Bracket(NamedTuple):
-    """Two points on the two sides of a corner, with the slopes outside them."""
+    """Two points on the two sides of a kink or jump, with the slopes outside them."""
 
     low: _Point
     high: _Point
@@ -325,47 +326,49 @@ class _Bracket(NamedTuple):
 
     @property
     def width(self) -> float:
-        """Distance of the points."""
+        """Distance of the two points, in the unit of the key."""
         return self.high.at - self.low.at
 
     @property
-    def turn(self) -> float:
-        """Change of slope between the points."""
+    def slope_change(self) -> float:
+        """Change of slope from below the lower point to above the upper point."""
         return self.beyond - self.below
 
     @property
-    def gap(self) -> float:
-        """Change between the points less that by the mean of the slopes outside them."""
+    def jump(self) -> float:
+        """Change of the quantity between the points less the change by the mean of the outer slopes."""
         return self.high.value - self.low.value - 0.5 * (self.below + self.beyond) * self.width
 
 
 def _locate_corner(line: _Line, place: int) -> tuple[_Bracket, float] | None:
-    """Return where one element has a kink within the finite changes, and its jump; None for a smooth or noisy slope."""
+    """Return the bracket of one element's kink within the finite changes, and its jump; None without a clear kink."""
 
     def point(at: float) -> _Point:
-        numbers = line.answer_at(at)
+        numbers = line.value_or_nan_at(at)
         return _Point(at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place]))
 
     points = [each for each in (point(at) for at in sorted(line.known)) if np.isfinite(each).all()]
-    first = _find_turn(points, point) if len(points) >= 4 else None
-    last = None if first is None else _halve(first, point, KINK_WIDTH * abs(line.value))
-    if first is None or last is None or last.width > LEAST_SHRINKING * first.width:
+    first = _bracket_kink(points, point) if len(points) >= 4 else None
+    last = None if first is None else _halve_bracket(first, point, KINK_WIDTH * abs(line.value))
+    if first is None or last is None or last.width > MIN_SHRINKING * first.width:
         return None
-    if abs(last.gap) > max(LEAST_REMAINDER * abs(first.gap), 10.0 * (last.low.error + last.high.error)):
-        return last, last.gap
-    return (last, 0.0) if abs(last.turn) > LEAST_REMAINDER * abs(first.turn) else None
+    if abs(last.jump) > max(MIN_REMAINING_SHARE * abs(first.jump), 10.0 * (last.low.error + last.high.error)):
+        return last, last.jump
+    return (last, 0.0) if abs(last.slope_change) > MIN_REMAINING_SHARE * abs(first.slope_change) else None
 
 
-def _find_turn(points: Sequence[_Point], point: Callable[[float], _Point]) -> _Bracket | None:
-    """Return the neighbors of the point at which the slope changes most; None where errors explain the change."""
+def _bracket_kink(points: Sequence[_Point], point: Callable[[float], _Point]) -> _Bracket | None:
+    """Return the neighbors of the point with the largest change of slope; None where errors explain the change."""
     x, f, e = np.array(points).T
     slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
-    turn = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # at the points between two intervals
-    node = 1 + int(turn.argmax())
-    if not turn[node - 1] > 0.0:
+    slope_change = (
+        np.abs(np.diff(slope)) - error[1:] - error[:-1]
+    )  # change of slope at the points between two intervals
+    node = 1 + int(slope_change.argmax())
+    if not slope_change[node - 1] > 0.0:
         return None
     low, high = points[node - 1], points[node + 1]
-    if node == 1:  # no slope is known on the far side: that of a small part of the outer interval
+    if node == 1:  # no slope is known on the far side: a small part of the outer interval gives it
         low = point(x[0] + 0.1 * (x[1] - x[0]))
     if node == len(points) - 2:
         high = point(x[-1] - 0.1 * (x[-1] - x[-2]))
@@ -374,8 +377,8 @@ def _find_turn(points: Sequence[_Point], point: Callable[[float], _Point]) -> _B
     return _Bracket(low, high, float(below), float(beyond))
 
 
-def _halve(bracket: _Bracket, point: Callable[[float], _Point], enough: float) -> _Bracket | None:
-    """Halve a bracket to the width `enough`, or as far as errors permit; None where a value is missing."""
+def _halve_bracket(bracket: _Bracket, point: Callable[[float], _Point], enough: float) -> _Bracket | None:
+    """Return a bracket halved to the width `enough`, or as far as errors permit; None where a value is missing."""
     low, high, below, beyond = bracket
     for _ in range(MAX_HALVINGS):
         if high.at - low.at <= enough:
@@ -386,7 +389,7 @@ def _halve(bracket: _Bracket, point: Callable[[float], _Point], enough: float) -
             return None
         noise = (low.error + 2.0 * middle.error + high.error) / (middle.at - low.at)
         apart = max(abs(left - below), abs(right - beyond))
-        if apart <= noise < 0.1 * abs(beyond - below):  # both halves are straight: the kink is at the middle
+        if apart <= noise < 0.1 * abs(beyond - below):  # both halves are straight, so the kink is at the middle
             near = max(noise / abs(beyond - below) * (high.at - low.at), 0.5 * enough)
             low = _Point(middle.at - near, middle.value - below * near, middle.error)
             high = _Point(middle.at + near, middle.value + beyond * near, middle.error)
@@ -400,21 +403,21 @@ def _halve(bracket: _Bracket, point: Callable[[float], _Point], enough: float) -
     return _Bracket(low, high, below, beyond)
 
 
-def _numbers_of(found: Any) -> _Numbers:
-    """Return value and error of whatever a quantity returns, with its reading of (5.1) and its law of friction."""
+def _value_and_provenance(found: Any) -> _Numbers:
+    """Return value and error of the result of a quantity, with its reading of (5.1) and its law of friction."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:
         value, error = (np.asarray(part, dtype=float) for part in _value_and_error(found, parts))
     except (TypeError, ValueError):
-        raise _refusal_of(found) from None
+        raise _word_refusal(found) from None
     if value.shape != error.shape or not value.size:
-        raise _refusal_of(found)
+        raise _word_refusal(found)
     return _Numbers(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
 
 
 def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
-    """Return what stands for value and error in what a quantity returned. Raises TypeError for anything else."""
+    """Return the value and error in the result of a quantity. Raises TypeError for a result of another form."""
     if isinstance(found, Amplification):
         return found.mu, found.error
     if all(hasattr(part, "value") and hasattr(part, "error") for part in parts):
@@ -426,6 +429,6 @@ def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
     raise TypeError("neither value nor error")
 
 
-def _refusal_of(found: Any) -> TypeError:
+def _word_refusal(found: Any) -> TypeError:
     kinds = "an Amplification, an object with value and error, several of these, or a pair (value, error)"
-    return TypeError(f"quantity: returns {brief(found)}: must return {kinds}")
+    return TypeError(f"quantity: returns {quote(found)}: must return {kinds}")

@@ -14,7 +14,7 @@ from reference.problem import Accuracy, Outcome, Scene, State, Trajectory, groun
 from reference.problem.phases import check_phase
 from reference.problem.ranges import check_state
 from reference.problem.readings import describe_law
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.solver.error_estimate import (
     DIFFERENCE_FRACTION,
     MIN_STEP_TOLERANCE,
@@ -29,14 +29,14 @@ from reference.support.arguments import check_array
 from reference.surface import OUTCOMES, loads_are_finite, prepare_run
 
 SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
-STEP_SAMPLES = 8000  # default samples in the steps, where these are few
-MAX_SAMPLES = 200_000  # limit of either kind of samples
-# Lower bound on the error of a peak, as a share of the tolerance: closer agreement of two runs is accidental
-# (measured: errors up to 0.2)
+STEP_SAMPLES = 8000  # default number of samples in the steps, if the steps are few
+MAX_SAMPLES = 200_000  # limit of the even samples, and of those in the steps
+# Lower bound on the error of a peak, as a share of the tolerance: a closer agreement of two runs is accidental
+# (measured errors reach 0.2)
 MIN_ERROR_FRACTION = 1.0
 
 
-@takes_scene
+@require_scene
 def trajectory(
     scene: Scene,
     phase: ArrayLike,
@@ -102,7 +102,8 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
-    if other.outcome != Outcome.OK:  # such as a motion close to the rim: a tighter run decides, and shows the error
+    # Such as a motion close to the rim: a more accurate run decides, and shows the error
+    if other.outcome != Outcome.OK:
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
         motion = replace(_sample_trajectory(scene, pair, system, run, asked), law=law)
@@ -115,18 +116,18 @@ def trajectory(
 
 
 class _RecordedRun(NamedTuple):
-    """One run with all its steps."""
+    """One run with the record of all its steps."""
 
     outcome: Outcome
     instant: float  # s, end of the run
     record: StepRecord
     peak: Array  # (N,) m/s^2
-    reading_error: Array  # (N,) m/s^2, errors of the peaks inside their steps
-    system: System  # the system with k_T by the heat of this run
+    reading_error: Array  # (N,) m/s^2, errors of the peaks from interpolation inside their steps
+    system: System  # system with the friction factor k_T from the heat of this run
 
 
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:
-    """Return the run from x, v with all its steps."""
+    """Return the run from the state x, v with the record of all its steps."""
     run, record, system = record_run(x, v, system, phase, settings)
     return _RecordedRun(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
 
@@ -134,7 +135,7 @@ def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunS
 def _sample_trajectory(
     scene: Scene, phase: Array, system: System, run: _RecordedRun, asked: Array | None
 ) -> Trajectory:
-    """Return the run at the instants `asked`, or at those of `_default_instants`."""
+    """Return the run at the instants `asked`, or at those of `_default_instants` without any."""
     record, early = run.record, run.outcome != Outcome.OK
     steps, sticks = (int(number) for number in record.counts)
     instants = _default_instants(scene, record) if asked is None else asked
@@ -161,14 +162,14 @@ def _sample_trajectory(
 
 
 def _friction_power(scene: Scene, place: Array, velocity: Array, motion: SampledMotion) -> Array:
-    """Return the power that friction takes, (T,), W."""
+    """Return the power that friction dissipates, (T,), W."""
     force = friction_force(scene, place, motion.total, scene.masses[0] * motion.reaction)
     power: Array = -(force * velocity).sum(axis=1)
     return power
 
 
 def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
-    """Return an upper bound of the accelerations that an initial state causes, m/s^2."""
+    """Return an upper bound on the accelerations that an initial state causes, m/s^2."""
     gravity = system.mass_ratio * system.gravity
     links = 2.0 * ((system.below + system.above) * np.abs(x).max()).max()
     links += 2.0 * ((system.damping_below + system.damping_above) * np.abs(v).max()).max()
@@ -176,7 +177,7 @@ def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
 
 
 def _default_instants(scene: Scene, record: StepRecord) -> Array:
-    """Return SAMPLES_PER_PERIOD even instants and those of the steps, s."""
+    """Return SAMPLES_PER_PERIOD instants per period at even distances, and instants in every step, s."""
     samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
     even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
@@ -192,7 +193,7 @@ def _check_times(scene: Scene, times: ArrayLike) -> Array:
 
 
 def _vertical_motion(x: Array, v: Array, system: System) -> tuple[Array, Array]:
-    """Return height above the lowest point and vertical velocity (2.1), (3.4); zero in the small equations."""
+    """Return height above the lowest point and vertical velocity (2.1), (3.4); both are zero in the small equations."""
     if system.small:
         return np.zeros(len(x)), np.zeros(len(x))
     squared = (x**2).sum(axis=-1)

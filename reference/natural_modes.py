@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from scipy.linalg import eig
 
 from reference.problem import GRAVITY, Scene
-from reference.problem.chain_modes import solve_chain
+from reference.problem.chain_modes import solve_chain_modes
 from reference.problem.result import Array
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 
 
 @dataclass(frozen=True)
@@ -80,13 +80,13 @@ class DampedModes:
 
     @property
     def frequency(self) -> Array:
-        """Size |lambda|, (2, 2 N), rad/s: the natural frequency where dampers are weak."""
+        """Size |lambda|, (2, 2 N), rad/s, which is the natural frequency if the dampers are weak."""
         result: Array = np.abs(self.eigenvalue)
         return result
 
     @property
     def damping_ratio(self) -> Array:
-        """Ratio -Re lambda / |lambda|, (2, 2 N): 0 undamped or rigid, 1 for a motion that does not swing."""
+        """Damping ratio -Re lambda / |lambda|, (2, 2 N): 0 undamped or rigid, 1 for a motion without oscillation."""
         size = self.frequency
         result: Array = np.divide(-self.eigenvalue.real, size, where=size > 0.0, out=np.zeros_like(size))
         return result
@@ -98,7 +98,7 @@ def linear_stiffness(scene: Scene) -> Array:
     return np.vstack([np.full((1, 2), pendulum), scene.stiffness])
 
 
-@takes_scene
+@require_scene
 def modes(scene: Scene) -> Modes:
     """
     Return natural frequencies, shapes and participation factors of the frictionless linearized chain.
@@ -130,7 +130,7 @@ def modes(scene: Scene) -> Modes:
     return Modes(frequency, shape, participation)
 
 
-@takes_scene
+@require_scene
 def damped_modes(scene: Scene) -> DampedModes:
     """
     Return complex modes of the frictionless linearized chain with the dampers of its links.
@@ -170,7 +170,8 @@ def _solve_damped_axis(
     # masses), see above. A flat slider has no first link: its rigid motion has the eigenvalue 0 twice, once as a
     # displacement, which this state does not contain, and once as a velocity. Both are added by hand, exact.
     count = len(masses)
-    elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)  # elongations of the links by M0^1/2 q
+    # (N, N): row i is the elongation of link i for each mass-normalized coordinate
+    elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)
     held = stiffness > 0.0  # False for the missing first link of a flat slider
     factor = np.sqrt(stiffness[held])[:, None] * elongation[held]
     links = len(factor)
@@ -191,7 +192,7 @@ def _solve_damped_axis(
 
 def _solve_modes_along_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     """Return frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
-    frequency, shape = solve_chain(masses, stiffness)
+    frequency, shape = solve_chain_modes(masses, stiffness)
     participation = masses @ shape
     sign = np.where(participation < 0.0, -1.0, 1.0)
     return frequency, shape * sign, participation * sign

@@ -1,5 +1,5 @@
 """
-The worst initial phases: the largest value over all phase pairs, not over a grid of them.
+The worst initial phases: the largest value over all phase pairs instead of those of a grid.
 
 A grid finds local maxima, and from each of the highest ones a search goes on (`reference.measures.local_search`).
 """
@@ -13,28 +13,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.defaults import DEFAULT_TOLERANCE
-from reference.measures.local_maxima import GRID, local_maxima
+from reference.measures.local_maxima import GRID, find_local_maxima
 from reference.measures.local_search import (
     LocalSearch,
     Surface,
+    advance_searches,
     classify_maximum,
     follow_jump,
     merge_searches,
-    search_round,
 )
 from reference.problem import Scene
 from reference.problem.phases import check_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.problem.symmetry import distinct_pairs, find_half_turns
 from reference.support.arguments import check_choice
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")
-GRID_TOLERANCE = 1e-4  # relative error of mu there
+GRID_TOLERANCE = 1e-4  # relative error of mu on the grid of phases
 MAX_ROUNDS = 60
-MAX_SHORTFALL = 0.01  # share of the maximum: searches that end lower need not follow their jumps
+MAX_SHORTFALL = 0.01  # share of the maximum: a search that ends lower by more need not follow its jump
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class PhaseMaximum:
     law: str = ""
 
 
-@takes_scene
+@require_scene
 def worst_phases(
     scene: Scene,
     body: int = 1,
@@ -91,7 +91,7 @@ def worst_phases(
     starts: ArrayLike | None = None,
 ) -> PhaseMaximum:
     """
-    Largest amplification factor of a body, or displacement of the isolator, over all initial phases.
+    Return the largest amplification factor of a body, or displacement of the isolator, over all initial phases.
 
     Parameters
     ----------
@@ -139,7 +139,9 @@ def worst_phases(
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
         phases, taken = distinct_pairs(scene, GRID)
-        starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
+        starts = find_local_maxima(
+            surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene
+        )
     searches = _start_searches(surface, check_phases(starts))
     if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
@@ -149,7 +151,7 @@ def worst_phases(
         active = [search for search in searches if search.may_reach(highest)]
         if not active:
             break
-        search_round(surface, active)
+        advance_searches(surface, active)
         searches = merge_searches(searches, shifts)
     kinds = _classify_highest(surface, searches)
     best, *others = sorted(merge_searches(searches, shifts), key=lambda search: -search.value)
@@ -157,7 +159,7 @@ def worst_phases(
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
     return PhaseMaximum(
         value=best.value,
-        error=best.error + best.search_error,
+        error=best.error + best.recent_gain,
         phases=(alpha1, alpha2),
         kind=kind,
         side=side,
@@ -182,7 +184,7 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
 def _classify_highest(
     surface: Surface, searches: Sequence[LocalSearch]
 ) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
-    """Return kind and side of the highest maxima, after those next to a jump have followed it."""
+    """Return kind and side of the highest maxima, after searches at a jump have followed it."""
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
     kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:

@@ -1,4 +1,4 @@
-"""Values of a scene that are valid but hardly meant: a wrong unit shows in what follows from it."""
+"""Values of a scene that are valid but hardly intended: a wrong unit shows in quantities computed from them."""
 
 from __future__ import annotations
 
@@ -7,44 +7,44 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from reference.building import NAMED, Building, word_force
+from reference.building import MAX_NAMES_PER_LINE, Building, word_force
 from reference.problem import GRAVITY, Scene
-from reference.records.description import IN_G, RecordDescription
+from reference.records.description import G_UNIT_QUESTION, RecordDescription
 from reference.support.arguments import Range, name_some
 
-LOAD_PER_SUPPORT = Range(1e3, 1e8, "N")
-NORMALIZED = 10.0  # kg: a scene of unit masses, as those of the paper, is meant as no building
-LEAST_RATE = 1.0  # s/m, rate of the growth of friction with the speed
-LARGEST_EXTENT = 300.0  # m, extent of the places of the supports
-EXTENT_OVER_SIZE = 2.0  # extent of the places of the supports over the size of the platform
-FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # period of the first mode along either axis
-LARGEST_RADIUS = 50.0  # m
-LARGEST_FRICTION = 1.0
-LARGEST_DAMPING = 0.2  # damping ratio of the fixed-base modes that matter
-LEAST_MASS = 0.05  # share of the mass above the platform that a mode moves which matters
-LARGEST_PEAK = 3.0  # g
-LARGEST_DRIFT_RATIO = 0.1
-MASS_SHARE = Range(0.01, 100.0)  # mass of a body over the mean of the others
-UNEQUAL_LOADS = 1.5  # largest dead load of a support over the smallest
-LEAST_ACCELERATION = 1.0  # m/s^2, limit on the acceleration of a floor
-LEAST_PEAK = 0.2  # peak of a motion over the median of its suite
+SUPPORT_LOAD_RANGE = Range(1e3, 1e8, "N")
+MAX_UNIT_MASS_SCENE = 10.0  # kg: a lighter scene is of unit masses, as those of the paper, and is no building
+MIN_FRICTION_RATE = 1.0  # s/m: a smaller rate of the growth of friction with speed is hardly intended
+MAX_SUPPORT_EXTENT = 300.0  # m: a larger extent of the supports is hardly intended
+MAX_EXTENT_OVER_SIZE = 2.0  # largest extent of the supports over the size of the platform
+FIXED_BASE_PERIOD_RANGE = Range(0.05, 5.0, "s")  # period of the first fixed-base mode along either axis
+MAX_RADIUS = 50.0  # m, largest radius of a pendulum
+MAX_FRICTION = 1.0
+MAX_DAMPING_RATIO = 0.2  # largest damping ratio of the fixed-base modes that matter
+MIN_MODAL_MASS_SHARE = 0.05  # a mode matters if it moves more than this share of the mass above the platform
+MAX_GROUND_PEAK = 3.0  # g, largest peak of the ground
+MAX_DRIFT_RATIO = 0.1
+MASS_RATIO_RANGE = Range(0.01, 100.0)  # mass of a body over the mean of the other bodies
+MAX_LOAD_RATIO = 1.5  # largest dead load of a support over the smallest
+MIN_ACCELERATION_LIMIT = 1.0  # m/s^2: a smaller limit on the acceleration of a floor is hardly intended
+MIN_PEAK_RATIO = 0.2  # peak of a motion over the median of its suite
 
 
 def implausible_values(scene: Scene, building: Building) -> list[str]:
-    """Return one line for every kind of value that is hardly meant; building: as `describe_building` read it."""
+    """Return one line for each implausible value; building: result of `describe_building`."""
     lines = _implausible_modes(building)
-    if scene.total_mass > NORMALIZED:
+    if scene.total_mass > MAX_UNIT_MASS_SCENE:
         lines += [*_implausible_masses(scene, building), *_implausible_supports(scene, building)]
-    if LARGEST_RADIUS < scene.radius < math.inf:
+    if MAX_RADIUS < scene.radius < math.inf:
         unit = "mm" if scene.isolator.period is None else "is period in s"
-        lines.append(f"the radius of the isolator is {scene.radius:.4g} m, above {LARGEST_RADIUS:g} m: {unit}?")
-    if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > LARGEST_FRICTION:
+        lines.append(f"the radius of the isolator is {scene.radius:.4g} m, above {MAX_RADIUS:g} m: {unit}?")
+    if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > MAX_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
     lines += _implausible_limits(scene, building)
-    # What a record has by itself is said where it is described.
+    # `describe_record` words what is implausible in a record itself.
     as_read = scene.largest_acceleration / (scene.excitation.scale or 1.0) if scene.recorded else 0.0
-    if (peak := building.ground_peak / GRAVITY) > LARGEST_PEAK and as_read <= LARGEST_PEAK * GRAVITY:
-        lines.append(f"the peak of the ground is {peak:.4g} g, above {LARGEST_PEAK:g} g: unit or scale?")
+    if (peak := building.ground_peak / GRAVITY) > MAX_GROUND_PEAK and as_read <= MAX_GROUND_PEAK * GRAVITY:
+        lines.append(f"the peak of the ground is {peak:.4g} g, above {MAX_GROUND_PEAK:g} g: unit or scale?")
     return lines
 
 
@@ -54,7 +54,7 @@ def implausible_suite(motions: Sequence[RecordDescription]) -> list[str]:
     axes = ["".join(one.axis for one in motion.directions) for motion in motions]
     common = max(axes, key=lambda own: (axes.count(own), len(own)), default="")
     for own in dict.fromkeys(each for each in axes if len(each) < len(common)):
-        names = name_some([motion.title for motion, each in zip(motions, axes) if each == own], NAMED)
+        names = name_some([motion.title for motion, each in zip(motions, axes) if each == own], MAX_NAMES_PER_LINE)
         verb, kind = ("has", "") if axes.count(own) == 1 else ("have", " each")
         others = f"{axes.count(common)} others have" if axes.count(common) > 1 else "the other has"
         has = f"{' and '.join(own)}{' alone' * (len(own) == 1)}{kind}" if own else "no acceleration"
@@ -62,29 +62,29 @@ def implausible_suite(motions: Sequence[RecordDescription]) -> list[str]:
     peaks = [motion.largest_peak for motion in motions]
     median = float(np.median(peaks)) if peaks else 0.0
     for motion, peak in zip(motions, peaks):
-        if 0.0 < peak < LEAST_PEAK * median:
+        if 0.0 < peak < MIN_PEAK_RATIO * median:
             few = f"{peak / GRAVITY:.3g} g, below a fifth of the median of the suite, {median / GRAVITY:.3g} g"
-            lines.append(f"the peak of {motion.title} is {few}: unit? {IN_G}")
+            lines.append(f"the peak of {motion.title} is {few}: unit? {G_UNIT_QUESTION}")
     return lines
 
 
 def implausible_drift(ratio: float, place: str) -> str:
-    """Return the line for a drift ratio that is hardly meant, "" for any other; place: the story, in words."""
-    if ratio <= LARGEST_DRIFT_RATIO:
+    """Return the line for an implausible drift ratio, "" for any other; place: the story, in words."""
+    if ratio <= MAX_DRIFT_RATIO:
         return ""
-    share = f"{100.0 * ratio:.3g} % of the height of the story, above {100.0 * LARGEST_DRIFT_RATIO:g} %"
+    share = f"{100.0 * ratio:.3g} % of the height of the story, above {100.0 * MAX_DRIFT_RATIO:g} %"
     return f"the drift {place} is {share}: is stiffness in N/m?"
 
 
 def _implausible_limits(scene: Scene, building: Building) -> Iterator[str]:
-    """Yield the lines for limits on demands that hold, or are not met, whatever happens."""
+    """Iterate over the lines for limits on demands that no motion exceeds, or every motion."""
     limits = scene.acceptance.demands
     if limits is None:
         return
     if limits.displacement is not None and limits.displacement > scene.radius:
         yield f"the limit on the displacement is {limits.displacement:.4g} m, above the radius of the isolator: mm?"
-    if limits.drift_ratio is not None and limits.drift_ratio > LARGEST_DRIFT_RATIO:
-        share = f"{limits.drift_ratio:.4g}, above {LARGEST_DRIFT_RATIO:g}"
+    if limits.drift_ratio is not None and limits.drift_ratio > MAX_DRIFT_RATIO:
+        share = f"{limits.drift_ratio:.4g}, above {MAX_DRIFT_RATIO:g}"
         yield f"the limit on the drift ratio is {share}: percent?"
     load = building.load_per_support if building.support_loads is None else float(building.support_loads.max())
     if limits.support_force_max is not None and load is not None and limits.support_force_max < load:
@@ -93,24 +93,28 @@ def _implausible_limits(scene: Scene, building: Building) -> Iterator[str]:
         )
         stated = f"{limits.support_force_max:.4g} N, below the dead load of {word_force(load)}"
         yield f"the limit on the force of a support is {stated}{in_kilonewtons}"
-    if limits.acceleration is not None and limits.acceleration < LEAST_ACCELERATION and scene.total_mass > NORMALIZED:
-        stated = f"{limits.acceleration:.4g} m/s^2, below {LEAST_ACCELERATION:g} m/s^2"
+    if (
+        limits.acceleration is not None
+        and limits.acceleration < MIN_ACCELERATION_LIMIT
+        and scene.total_mass > MAX_UNIT_MASS_SCENE
+    ):
+        stated = f"{limits.acceleration:.4g} m/s^2, below {MIN_ACCELERATION_LIMIT:g} m/s^2"
         yield f"the limit on the acceleration is {stated}: g? Write {limits.acceleration * GRAVITY:.4g}"
 
 
 def _implausible_modes(building: Building) -> list[str]:
-    """Return the lines for the first modes above a fixed base."""
+    """Return the lines for implausible first modes above a fixed base."""
     if building.bodies == 1:
         return []
     lines: list[str] = []
     periods = sorted(map(float, building.fixed_base_period[:, 0]), reverse=True)
-    if (period := next((each for each in periods if each not in FIXED_BASE_PERIOD), None)) is not None:
-        limit = _word_end_beyond(period, FIXED_BASE_PERIOD, lambda value: f"{value:g} s")
+    if (period := next((each for each in periods if each not in FIXED_BASE_PERIOD_RANGE), None)) is not None:
+        limit = _word_end_beyond(period, FIXED_BASE_PERIOD_RANGE, lambda value: f"{value:g} s")
         lines.append(f"the period above a fixed base is {period:.4g} s, {limit}: stiffness in N/m, mass in kg?")
     damping, mass = building.modal_damping, building.modal_mass
-    if (beyond := np.argwhere(((damping > LARGEST_DAMPING) & (mass >= LEAST_MASS)).T)).size:
+    if (beyond := np.argwhere(((damping > MAX_DAMPING_RATIO) & (mass >= MIN_MODAL_MASS_SHARE)).T)).size:
         mode, axis = beyond[0]
-        share = f"{100.0 * damping[axis, mode]:.4g} % of critical, above {100.0 * LARGEST_DAMPING:g} %"
+        share = f"{100.0 * damping[axis, mode]:.4g} % of critical, above {100.0 * MAX_DAMPING_RATIO:g} %"
         which = "the first mode" if mode == 0 else f"mode {mode + 1} along {'xy'[axis]}"
         why = "percent?" if mode == 0 else f"it moves {100.0 * mass[axis, mode]:.2g} % of the mass; is this meant?"
         lines.append(f"the damping of {which} above a fixed base is {share}: {why}")
@@ -118,32 +122,32 @@ def _implausible_modes(building: Building) -> list[str]:
 
 
 def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
-    """Yield the lines for the weight of a support, and for the mass that is farthest from the others."""
+    """Iterate over the lines for an implausible support load, and for the mass that differs most from the others."""
     load = building.load_per_support
-    if load is not None and load not in LOAD_PER_SUPPORT:
-        limit = _word_end_beyond(load, LOAD_PER_SUPPORT, word_force)
+    if load is not None and load not in SUPPORT_LOAD_RANGE:
+        limit = _word_end_beyond(load, SUPPORT_LOAD_RANGE, word_force)
         yield f"the weight on each support is {word_force(load)}, {limit}: is mass in kg?"
     if len(scene.bodies) == 1:
         return
-    with np.errstate(divide="ignore"):  # a mass in which all others vanish has an infinite share
+    with np.errstate(divide="ignore"):  # the share of a mass in which all others vanish is infinite
         shares = scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)
     place = int(np.argmax(np.abs(np.log(shares))))
-    if (share := float(shares[place])) not in MASS_SHARE:
-        limit = _word_end_beyond(share, MASS_SHARE, lambda value: f"{value:g}")
+    if (share := float(shares[place])) not in MASS_RATIO_RANGE:
+        limit = _word_end_beyond(share, MASS_RATIO_RANGE, lambda value: f"{value:g}")
         mass = f"the mass of {_name_body(scene, place)} is {scene.masses[place]:.4g} kg"
         yield f"{mass}, {share:.2g} times the mean of the others, {limit}: kg in one place and t in another?"
 
 
 def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
-    """Yield the lines for the rate of friction, and for places of supports and heights of bodies."""
+    """Iterate over the lines for an implausible rate of friction, positions of supports, and heights of bodies."""
     law = scene.dry_friction
-    if not scene.lubricated and law.varies and law.rate < LEAST_RATE:
-        yield f"the rate of friction is {law.rate:.4g} s/m, below {LEAST_RATE:g} s/m: s/mm?"
+    if not scene.lubricated and law.varies and law.rate < MIN_FRICTION_RATE:
+        yield f"the rate of friction is {law.rate:.4g} s/m, below {MIN_FRICTION_RATE:g} s/m: s/mm?"
     if building.support_extent is not None:
         extent, size = float(building.support_extent.max()), scene.bodies[0].size
-        if extent > LARGEST_EXTENT:
-            yield f"the supports stand {extent:.4g} m apart, above {LARGEST_EXTENT:g} m: mm?"
-        elif size is not None and extent > EXTENT_OVER_SIZE * max(size[:2]):
+        if extent > MAX_SUPPORT_EXTENT:
+            yield f"the supports stand {extent:.4g} m apart, above {MAX_SUPPORT_EXTENT:g} m: mm?"
+        elif size is not None and extent > MAX_EXTENT_OVER_SIZE * max(size[:2]):
             largest = f"more than twice the platform of {max(size[:2]):.4g} m"
             yield f"the supports stand {extent:.4g} m apart, {largest}: are places and size both in m?"
     yield from _unequal_loads(scene, building)
@@ -168,7 +172,7 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
 def _unequal_loads(scene: Scene, building: Building) -> Iterator[str]:
     """Yield the line for dead loads of supports that are far from equal."""
     loads, places = building.support_loads, scene.support_places
-    if loads is None or places is None or loads.max() <= UNEQUAL_LOADS * loads.min():
+    if loads is None or places is None or loads.max() <= MAX_LOAD_RATIO * loads.min():
         return
     ends = (
         f"{word_force(loads[place])} on support {place + 1} at [{places[place][0]:.4g}, {places[place][1]:.4g}] m"
@@ -183,10 +187,10 @@ def _unequal_loads(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _name_body(scene: Scene, place: int) -> str:
-    """Return a body in words: its floor where the scene names it, or its number."""
+    """Return the words for a body: its floor if the scene names it, or its number."""
     return f'"{floor}"' if (floor := scene.bodies[place].floor) else f"body {place + 1}"
 
 
 def _word_end_beyond(value: float, allowed: Range, word: Callable[[float], str]) -> str:
-    """Return which end of a range a value lies beyond."""
+    """Return the end of a range that a value lies beyond, as text."""
     return f"below {word(allowed.lowest)}" if value < allowed.lowest else f"above {word(allowed.highest)}"

@@ -17,8 +17,8 @@ from reference.problem import GRAVITY, Amplification, Outcome, Scene, exponents,
 from reference.problem.phases import flat_phases
 from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
 from reference.problem.readings import describe_law, reading_of
-from reference.problem.reductions import in_plane, linear, planar
-from reference.problem.scene import takes_scene
+from reference.problem.reductions import is_linear, is_planar, turn_loading_to_x
+from reference.problem.scene import require_scene
 from reference.solver.error_estimate import NOT_MET, RunPeaks, peaks_with_error
 from reference.solver.system import (
     OPEN,
@@ -45,18 +45,18 @@ OUTCOMES = {
     STEP_LIMIT: Outcome.STEP_LIMIT,
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
-STEPS_PER_PERIOD = 1000  # a run in trouble ends after these steps per loading period, and BASE_STEPS more
-STEPS_PER_KNOT = 10  # further steps for each knot of a record
-# Further steps for each of the chain's fastest vibrations, and the most that these add
+STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and BASE_STEPS more
+STEPS_PER_KNOT = 10  # further steps per knot of a record
+# Further steps per period of the chain's fastest vibration, and the largest number that these add
 STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
-# Vibrations of the chain during which forces hardly change: stiff links follow without swinging
+# Periods of the chain's fastest vibration in which forces hardly change, so that stiff links follow without vibrating
 VIBRATIONS_PER_TIME_SCALE = 10.0
 BASE_STEPS = 20_000
 MAX_STEPS = 3_000_000  # hard limit of steps per run; about 30 s for two bodies
-PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that none waits long for another
+PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that no thread waits long for another
 
 
-@takes_scene
+@require_scene
 def amplification(
     scene: Scene,
     phases: ArrayLike,
@@ -125,9 +125,9 @@ def amplification(
     True
     """
     pairs, shape = flat_phases(phases)
-    # (4.6) as printed knows directions; friction that yields is solved along both axes
-    flat = not full and rest_condition == "consistent" and planar(scene).allowed and not scene.dry_friction.elastic
-    moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
+    # (4.6) as printed distinguishes directions; friction that yields is solved along both axes
+    flat = not full and rest_condition == "consistent" and is_planar(scene).allowed and not scene.dry_friction.elastic
+    moving, axes = (turn_loading_to_x(scene), 1) if flat else (scene, 2)
     system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     basis: dict[str, Any] = {
         "scene_name": scene.name,
@@ -138,7 +138,7 @@ def amplification(
     found = _PointAnswers.without_any(len(pairs), len(scene.bodies))
     cost = 0.0
     if loads_are_finite(system):
-        summed = system.small and not full and linear(scene).allowed
+        summed = system.small and not full and is_linear(scene).allowed
 
         def solve(part: slice) -> float:
             return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
@@ -151,7 +151,7 @@ def amplification(
 
 
 class _PointAnswers(NamedTuple):
-    """Answers of M phase pairs and N bodies, to be filled in."""
+    """Answers at M phase pairs for N bodies, which the runs fill in."""
 
     mu: Array  # (M, N)
     error: Array  # (M, N)
@@ -161,7 +161,7 @@ class _PointAnswers(NamedTuple):
 
     @staticmethod
     def without_any(points: int, bodies: int) -> _PointAnswers:
-        """Return the answers where the loads are not finite."""
+        """Return NaN at all points, with the status of a load that is not finite."""
         status = np.full(points, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
         nothing = np.full((points, bodies), np.nan)
         return _PointAnswers(nothing, nothing.copy(), status, np.zeros(points), np.full(points, np.nan))
@@ -178,7 +178,7 @@ def _solve_points(
     summed: bool,
     full: bool,
 ) -> float:
-    """Solve a slice of the phase pairs (M, 2), rad, and fill in what is found; return the time it took, s."""
+    """Solve a slice of the phase pairs (M, 2), rad, and write the answers into `found`; return the time it took, s."""
     begin = time.thread_time()
     ground = ground_peak(scene, pairs[part])
     shaken = ground >= LEAST_ACCELERATION
@@ -205,18 +205,18 @@ def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) 
     threads = numba.get_num_threads()
     if alone or threads == 1 or count < 2:
         return solve(slice(0, count))
-    solve(slice(0, 1))  # compiled once, before the threads need it
+    solve(slice(0, 1))  # the first run compiles the code before the threads need it
     with ThreadPoolExecutor(threads) as pool:
         return sum(pool.map(solve, split_points(count, PARTS_PER_THREAD * threads)))
 
 
 def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
-    """Return the peaks of a linear scene from one motion per harmonic; run only where it may reach its end (4.1)."""
+    """Return the peaks of a linear scene from one motion per harmonic; make a run only where it may end early (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
     peaks = RunPeaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
-    if ends.any():  # only a run tells whether it does, and when
+    if ends.any():  # only a run tells whether and when the motion ends
         for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
             whole[ends] = ran
     return peaks
@@ -250,7 +250,7 @@ def prepare_run(
     system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
     period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
     vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MAX_VIBRATION_STEPS)
-    with np.errstate(over="ignore"):  # refused by loads_are_finite
+    with np.errstate(over="ignore"):  # loads_are_finite refuses infinite loads
         unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))
         unit += float(np.sqrt((system.record[:, 1:] ** 2).sum(axis=1)).max(initial=0.0))
     return system, RunSettings(
@@ -264,7 +264,7 @@ def prepare_run(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """Return the time in which forces change, s: the shortest of periods, decay and the way across the cap."""
+    """Return the time in which forces change, s: the shortest of periods, decay times and the way across the cap."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()

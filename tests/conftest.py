@@ -26,8 +26,12 @@ try:
 except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
-# Files to begin with: two compile a variant of the solver each, the third does not need it and takes as long.
-FIRST = ("test_docstrings.py", "test_like_for_like.py", "test_page_in_a_browser.py")
+# Files to begin with: two compile a variant of the solver each, the third does not need it and takes as long; the rest
+# have few tests that take long.
+FIRST = (
+    *("test_docstrings.py", "test_like_for_like.py", "test_page_in_a_browser.py", "test_features.py"),
+    *("test_recorded_report.py", "test_print.py", "test_friction_springs.py", "test_heated_friction.py"),
+)
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)

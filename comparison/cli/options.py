@@ -103,7 +103,7 @@ def _refuse_unusable_folder(out: Path) -> None:
 def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str]) -> None:
     """Refuse limits of an engine that this study does not have. Raises SceneError."""
     for scene in scenes:
-        for name, limits in scene.acceptance.of_engines.items():
+        for name, limits in scene.acceptance.user_engine_limits.items():
             if name not in engines:
                 near = get_close_matches(name, [*engines, *Acceptance.model_fields], n=1, cutoff=0.5)
                 hint = f"did you mean {near[0]}?" if near else f"--model {name}=module:function enters it"

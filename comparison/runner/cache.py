@@ -29,7 +29,7 @@ from numpy.lib import format as npy
 from pydantic import ConfigDict, TypeAdapter
 
 from reference.problem import SceneError
-from reference.support.files import TEMPORARY, read_file, write_atomically
+from reference.support.files import TEMPORARY_PREFIX, read_file, write_atomically
 
 MAGIC = b"phase-resonance result 1\n"
 DIGEST = 32  # bytes of a checksum
@@ -183,7 +183,7 @@ def _is_result(entry: os.DirEntry[str]) -> bool:
         return False
     with suppress(OSError), open(entry.path, "rb") as stream:
         begin = stream.read(len(MAGIC))
-        return begin == MAGIC or (entry.name.startswith(TEMPORARY) and begin == b"")
+        return begin == MAGIC or (entry.name.startswith(TEMPORARY_PREFIX) and begin == b"")
     return False
 
 
@@ -192,7 +192,7 @@ def _size_of_group(group: Path) -> int:
     total = 0
     for entry in os.scandir(group):
         state = entry.stat(follow_symlinks=False)
-        if entry.name.startswith(TEMPORARY) and time.time() - state.st_mtime > STALE and _is_result(entry):
+        if entry.name.startswith(TEMPORARY_PREFIX) and time.time() - state.st_mtime > STALE and _is_result(entry):
             with suppress(OSError):
                 os.unlink(entry.path)
         else:

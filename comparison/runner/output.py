@@ -33,7 +33,7 @@ from comparison.runner.manifest import (
 from reference.problem import SceneError
 from reference.support.files import (
     NEW,
-    TEMPORARY,
+    TEMPORARY_PREFIX,
     clear_staging,
     find_abandoned_staging,
     hold_lock,
@@ -129,7 +129,7 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
     """Raise SceneError, one line, if nothing can be made in `folder`, or where it will be."""
     try:
         existing = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
-        tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY).cleanup()
+        tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY_PREFIX).cleanup()
         locate_store(out.absolute()).exists()
     except OSError as error:
         raise SceneError("command line", option, str(out), f"cannot be written: {error.strerror}") from None

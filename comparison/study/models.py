@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
-from reference.problem.reductions import mirror_symmetric
+from reference.problem.reductions import is_mirror_symmetric
 
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
@@ -20,8 +20,13 @@ SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
 
 def has_dry_friction(scene: Scene) -> bool:
-    """Return whether there is dry friction, which may be regularized."""
+    """Return whether there is rigid dry friction, which may be regularized."""
     return scene.has_dry_friction
+
+
+def has_yielding_friction(scene: Scene) -> bool:
+    """Return whether dry friction yields elastically before it slides."""
+    return scene.dry_friction.elastic
 
 
 def any_scene(scene: Scene) -> bool:
@@ -30,7 +35,7 @@ def any_scene(scene: Scene) -> bool:
 
 
 def has_smooth_friction(scene: Scene) -> bool:
-    """Return whether no friction is dry, so that both readings of (5.1) are the same."""
+    """Return whether no friction is dry and rigid, so that both readings of (5.1) are the same."""
     return not has_dry_friction(scene)
 
 
@@ -92,7 +97,8 @@ class Model:
     trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
     time of one call, s. `reading`: of (5.1), where friction is dry. `in_chain`: whether the scene's chain of models has
     it, in which each adds one effect to the one before and all read (5.1) as integrated. `seconds`: rough processor
-    time of a phase pair of the scene that costs.py is for.
+    time of a phase pair of the scene that costs.py is for. `rigid`: whether friction is rigid in it where the scene's
+    yields.
     """
 
     key: str
@@ -114,6 +120,7 @@ class Model:
     reading: str = AS_INTEGRATED
     in_chain: Callable[[Scene], bool] = field(default=any_scene)
     seconds: float = 1.0
+    rigid: bool = False
 
     @property
     def is_spatial(self) -> bool:
@@ -124,6 +131,10 @@ class Model:
     def motion_settings(self) -> dict[str, object]:
         """Keyword arguments of its trajectory; a cutoff is a way to read a motion, not to move."""
         return {key: value for key, value in self.settings.items() if key != "cutoff"}
+
+    def scene_of(self, scene: Scene) -> Scene:
+        """Return the scene that the model moves in place of a scene of the study."""
+        return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
         """Keyword arguments of its amplification in a study of this tolerance."""
@@ -154,8 +165,13 @@ class Pair:
 
 def label_of(model: Model, scene: Scene) -> str:
     """Return the title of a model with the reading of (5.1) that its mu has; without it where both are the same."""
-    title = model.title.removesuffix(f", {model.reading}")
-    return title if has_smooth_friction(scene) else f"{title}, {model.reading}"
+    title, readings = model.title.removesuffix(f", {model.reading}"), readings_of([model], scene)
+    return f"{title}, {model.reading}" if readings else title
+
+
+def readings_of(models: Sequence[Model], scene: Scene) -> list[str]:
+    """Return the readings of (5.1) that models of a scene have, each once; none where both are the same."""
+    return [*dict.fromkeys(each.reading for each in models if not has_smooth_friction(each.scene_of(scene)))]
 
 
 def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
@@ -391,7 +407,7 @@ SPATIAL = _model_after(
     batch=1,
     applies=has_spatial_data,
     most=16,
-    symmetric=mirror_symmetric,
+    symmetric=is_mirror_symmetric,
     seconds=0.22,
 )
 
@@ -424,9 +440,43 @@ SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, with_unloaded_bars)
 SOFTENED_SPATIAL = _soften_model(SPATIAL, with_unloaded_bars_in_space)
 
 
-def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
-    """The hierarchy with the step that softens bars at its end, where a scene has bars without it."""
+RIGID = _model_after(
+    SMALL_RESOLVED,
+    {"friction": "set-valued Coulomb, rigid before it slides, where the scene's yields"},
+    key="rigid",
+    title=f"small equations, rigid friction, {AS_INTEGRATED}",
+    adds="The printed equations with friction that is rigid before it slides, in a scene whose friction yields; read "
+    f"at rest and while sliding faster than v_c = {V_C_TEXT}.",
+    applies=has_yielding_friction,
+    rigid=True,
+)
+_YIELDS = "elastic up to mu N before it slides, mu constant or of the slip velocity"
+
+
+def _tell_of_yielding(model: Model, only: bool) -> Model:
+    """Return a model with the words that scenes need whose friction yields; only: whether that of every scene does."""
+    if model.applies is has_dry_friction:  # that is rigid
+        return model
+    friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"
+    told = _model_after(model, {"friction": friction} | ({"mu_i": _PEAK} if only else {}))
+    told = replace(told, title=model.title.removesuffix(f", {LITERAL_SUPREMUM}")) if only else told
+    if model.key != SMALL.key:
+        return told
+    yields = "Friction that yields elastically before it slides never sticks: then no acceleration jumps."
+    adds = f"The paper's small-vibration equations (4.3)-(4.4). {yields}" if only else f"{model.adds} {yields}"
+    return replace(told, effect="yielding friction", adds=adds)
+
+
+def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
+    """
+    Return the hierarchy with the steps that only some scenes have.
+
+    Those are the one that softens bars, at the end, and friction that yields, which the first model is without.
+    """
     functions = {model.amplification for model in hierarchy}
     steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)
     added = (model for model in steps if model.amplification in functions and any(map(model.applies, scenes)))
+    yields = [has_yielding_friction(scene) for scene in scenes]
+    if RIGID.amplification in functions and any(yields):
+        hierarchy = (RIGID, *(_tell_of_yielding(model, all(yields)) for model in hierarchy))
     return (*hierarchy, *added)

@@ -8,20 +8,20 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.reductions import (
     body_cannot_tilt,
-    half_turn,
-    linear,
-    no_friction,
-    own_axes,
-    planar,
-    planar_chain,
-    unused_harmonics,
+    find_unused_harmonics,
+    has_half_turn_symmetry,
+    has_no_friction_law,
+    has_one_axis_per_harmonic,
+    has_planar_chain,
+    is_linear,
+    is_planar,
 )
 
 # what the models with one of these values of a setting leave out, where the scene allows it
 LEFT_OUT = (
-    ("every run but one per harmonic", linear, "equations", ("small",)),
-    ("motion across its plane", planar, "equations", ("small", "exact")),
-    ("motion across its plane, of the bodies", planar_chain, "model", ("translational",)),
+    ("every run but one per harmonic", is_linear, "equations", ("small",)),
+    ("motion across its plane", is_planar, "equations", ("small", "exact")),
+    ("motion across its plane, of the bodies", has_planar_chain, "model", ("translational",)),
     ("rotations, all supports but one", body_cannot_tilt, "model", ("spatial",)),
 )
 
@@ -50,11 +50,11 @@ def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, 
     for share in sorted(set(shares) - {1.0}, reverse=True):
         concerned = [model for model, own in zip(models, shares) if own == share]
         yield f"mirrored phases, all but 1/{share:.3g}", _titles_of_models(concerned, models), _word_mirror(scene)
-    if no_friction(scene):
+    if has_no_friction_law(scene):
         others = [model for model in study.hierarchy if model not in models]
         laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
         if laws:
-            yield "laws of friction", _titles_of_models(laws, study.hierarchy), no_friction(scene).reason
+            yield "laws of friction", _titles_of_models(laws, study.hierarchy), has_no_friction_law(scene).reason
     for what, decided, setting, values in LEFT_OUT:
         concerned = [model for model in models if model.settings.get(setting) in values]
         if concerned and (reduction := decided(scene)):
@@ -62,9 +62,9 @@ def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, 
 
 
 def _word_mirror(scene: Scene) -> str:
-    if unused_harmonics(scene):
+    if find_unused_harmonics(scene):
         return "a harmonic without amplitude: its phase changes nothing"
-    return (own_axes(scene) or half_turn(scene)).reason
+    return (has_one_axis_per_harmonic(scene) or has_half_turn_symmetry(scene)).reason
 
 
 def _titles_of_models(concerned: Sequence[Model], models: Sequence[Model]) -> str:

@@ -173,7 +173,7 @@ class Study:
         ]
 
     def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
-        phases = phase_grid(self.grid)
+        phases, moved = phase_grid(self.grid), model.scene_of(scene)
         settings = model.arguments(self.tolerance, self.full)
         group = model.key if model.side == "user" else ""  # engines of the user share no worker with anything else
         batches, first = [], 0
@@ -181,6 +181,6 @@ class Study:
             for start in range(0, len(places), model.batch):
                 part = phases[places[start : start + model.batch]]
                 about = first + start, part
-                batches.append(Batch(scene, model.key, model.amplification, settings, *about, model.timeout, group))
+                batches.append(Batch(moved, model.key, model.amplification, settings, *about, model.timeout, group))
             first += len(places)
         return batches

@@ -54,7 +54,7 @@ class Limit:
 
 def pairs_without_limit(study: Study, scene: Scene) -> list[str]:
     """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
-    stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.differences()]
+    stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.list_limited_differences()]
     limited = {_name_of_same_pair(study, scene, pair) for pair, _ in stated} | set(
         _engines_without_limits(study, scene)
     )
@@ -63,7 +63,7 @@ def pairs_without_limit(study: Study, scene: Scene) -> list[str]:
 
 def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
     """Keys of the engines of the user of which the scene states no limit: they must agree with their like."""
-    stated = {pair for _, pair, _, _ in scene.acceptance.differences()}
+    stated = {pair for _, pair, _, _ in scene.acceptance.list_limited_differences()}
     models = models_of(scene, study.hierarchy)
     return [model.key for model in models if model.side == "user" and model.key not in stated]
 
@@ -84,7 +84,7 @@ def _check_differences(bodies: Sequence[BodyComparison], gaps: Sequence[MissingV
     stated, rows = scene.acceptance, [row for body in bodies for row in body.rows.values()]
     engines = _engines_without_limits(study, scene)
     defaults = [(f"{key}.ratio", key, "ratio", AGREEMENT) for key in engines]
-    for key, pair, measure, allowed in (*stated.differences(), *defaults):
+    for key, pair, measure, allowed in (*stated.list_limited_differences(), *defaults):
         compared = [row for row in rows if row.pair == _name_of_same_pair(study, scene, pair)]
         if any(row.asked > row.unanswered for row in compared):
             missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
@@ -97,15 +97,19 @@ def _check_differences(bodies: Sequence[BodyComparison], gaps: Sequence[MissingV
 def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValues]) -> Iterator[Limit]:
     """The limit on points without an answer; an engine of the user may lack none by default."""
     stated, engines = scene.acceptance, _engines_without_limits(study, scene)
-    allowed_points = 0 if engines and stated.failures is None else stated.failures
+    allowed_points = 0 if engines and stated.allowed_failures is None else stated.allowed_failures
     if allowed_points is not None:
-        counted = [gap for gap in gaps if stated.failures is not None or gap.model in engines]
+        counted = [gap for gap in gaps if stated.allowed_failures is not None or gap.model in engines]
         lacks = {gap: gap.points + gap.unusable for gap in counted}
         count = sum(lacks.values())
         models = ", ".join(f"{gap.title} {points} of {gap.asked}" for gap, points in lacks.items())
         excess = Breach(0, count, f"{count} points without an answer ({models})")
         yield Limit(
-            scene.name, "failed", allowed_points, (excess,) if count > allowed_points else (), stated.failures is None
+            scene.name,
+            "failed",
+            allowed_points,
+            (excess,) if count > allowed_points else (),
+            stated.allowed_failures is None,
         )
 
 
@@ -131,7 +135,7 @@ def _name_of_same_pair(study: Study, scene: Scene, pair: str) -> str:
 def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[MissingValues]) -> str:
     """Why a pair of models is not compared."""
     wanted = next((known for known in pairs_of(scene, study.hierarchy) if known.key == pair), None)
-    if wanted is None and pair in scene.acceptance.of_engines:
+    if wanted is None and pair in scene.acceptance.user_engine_limits:
         return f"no engine {pair} in this study: --model {pair}=module:function enters it"
     if wanted is None:
         return "no engine in this study"

@@ -81,7 +81,7 @@ class BodyComparison:
         both = (pair.first, pair.second, pair.base), (pair.second, pair.first, pair.base)
         outcomes = [values_of(self.surfaces, "status", self.scene.name, *each) != Outcome.OK.value for each in both]
         not_ok = int(np.any(outcomes, axis=0).sum())
-        return difference_row(self.scene.name, replace(difference, pair=pair), independent, not_ok)
+        return difference_row(self.scene, replace(difference, pair=pair), independent, not_ok)
 
 
 def compare_bodies(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[BodyComparison]:

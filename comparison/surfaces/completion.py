@@ -143,7 +143,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
                 lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
                 if lacks and _finer_model(study, scene, model):
                     phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
-                    about = scene, model, model.arguments(study.tolerance, study.full)
+                    about = model.scene_of(scene), model, model.arguments(study.tolerance, study.full)
                     parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
                     arguments = [(*about, part) for part in parts]
                     yield scene, model, [Task(compute_held_out, each, self.stage, about=scene) for each in arguments]

@@ -6,10 +6,13 @@ from typing import Annotated, Any
 import numpy as np
 
 from comparison.result_types import Number, Phases, Text, result
+from comparison.study.models import readings_of
 from comparison.study.study import nested_grids
 from comparison.surfaces.model_difference import RESOLVED, ModelDifference
 from comparison.surfaces.sampling import mean_of_known, sampling_error
 from reference.measures.distribution import fractile
+from reference.problem import Scene
+from reference.problem.readings import BOTH_READINGS
 
 AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond it one of their errors is false
 
@@ -110,19 +113,18 @@ def difference_statistics(scene: str, difference: ModelDifference) -> dict[str, 
     }
 
 
-def difference_row(scene: str, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
+def difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
     """Return the row of a difference; independent, not_ok: see the fields of `Difference`."""
     pair, size, known = difference.pair, difference.size, difference.known
     grid = len(size)
     stated = known & np.isfinite(difference.uncertainty)
     nan = float("nan")
     ends = difference.place_of(-size), difference.place_of(size)
-    readings = dict.fromkeys((pair.first.reading, pair.second.reading))
     return Difference(
-        **difference_statistics(scene, difference),
+        **difference_statistics(scene.name, difference),
         pair=pair.key,
         effect=pair.effect,
-        reading=" to ".join(readings),
+        reading=" to ".join(readings_of((pair.first, pair.second), scene)) or BOTH_READINGS,
         mean=mean_of_known(size),
         numerical_error=float(difference.uncertainty[known].mean()) if known.any() else nan,
         sampling_error=0.0 if difference.recorded else sampling_error(size, independent),

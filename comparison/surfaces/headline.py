@@ -6,13 +6,12 @@ from dataclasses import replace
 from typing import Annotated
 
 from comparison.result_types import Number, Phases, Text, result
-from comparison.study.models import Model, chain_of, has_smooth_friction, models_of, partner_of
+from comparison.study.models import Model, chain_of, models_of, partner_of
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.differences import Difference
 from comparison.surfaces.statements import name_engine, word_engine, word_engine_without_values, word_headline
 from comparison.surfaces.surfaces import outcome_counts
 from comparison.surfaces.waterfall import NAN, Waterfall
-from reference.problem.readings import BOTH_READINGS
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
 # the same effect in another order: key of the pair in the chain; of the other pair, and what is different there
@@ -128,7 +127,7 @@ def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         scene=scene.name,
         body=comparison.body,
         name="platform" if comparison.body == 1 else f"body {comparison.body}",
-        reading=BOTH_READINGS if has_smooth_friction(scene) else total.reading,
+        reading=total.reading,
         first=pair.first.key,
         first_name=_name_in_words(pair.first, chain_of(scene, comparison.study.hierarchy)),
         second=pair.second.key,

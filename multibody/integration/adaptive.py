@@ -1,5 +1,5 @@
 """
-Adaptive integration: one run of the engine in chunks, each with the step that the motion needs there.
+Run of the engine with adaptive steps, in chunks, each with the step that the motion needs there.
 
 The engine's own control of the step answers to failed Newton iterations, not to wrong results. Here a chunk is accepted
 up to the first step that is larger than `step_control` allows. The run starts again from the stored state there with a
@@ -40,39 +40,39 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-# Divisions of the largest step by `STEP_RATIO` in the first chunk, in which the contact settles.
+# Number of divisions of the largest step by `STEP_RATIO` in the first chunk, in which the contact force settles.
 FIRST_DIVISIONS = 2
 
-# Largest factor from one chunk at the largest step to the next, in their numbers of steps.
-CHUNK_GROWTH = 2
+# Largest ratio of the numbers of steps in two successive chunks at the largest step: a chunk never grows faster.
+MAX_CHUNK_GROWTH = 2
 
-# Iterations of Newton's method in a step that are no extra work: further ones count as steps.
-FREE_ITERATIONS = 2
+# Newton iterations that count as one step of work: a step with more of them counts as several.
+ITERATIONS_PER_STEP_OF_WORK = 2
 
-# Rows at the end of a chunk that decide whether the step may grow.
+# Number of rows at the end of a chunk whose step ratios decide whether the next step may be larger.
 RECENT_ROWS = 8
 
-# Divisions of the largest step from which on contacts rest where a step from sliding fails, and with which they go on:
-# the shorter the step, the larger is the slip that noise of the contact force makes.
+# Number of divisions of the largest step from which on a failed step from sliding puts all contacts to rest, and number
+# with which the run then goes on: in shorter steps, noise of the contact force makes a larger slip.
 DIVISIONS_BEFORE_REST, DIVISIONS_AT_REST = 3, 1
 
-# Number of the largest steps in the first chunk after a contact began or ended to slide: the next may follow soon.
-STEPS_BEHIND_CHANGE = 4
+# Number of steps in the first chunk after a contact begins or ends to slide: another contact may change soon after it.
+STEPS_AFTER_SLIDING_CHANGE = 4
 
-# Least share of a step that is made on its own before a contact begins or ends to slide.
-SHORTEST_SHARE = 1e-4
+# Smallest share of a step that is integrated before a contact begins or ends to slide: a shorter one is left out.
+MIN_STEP_SHARE = 1e-4
 
-# Rounding of the instant at which a run has reached its end, relative.
+# Relative rounding of time: a run that is within this share of its end has reached it.
 TIME_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class Integration:
     """
-    Everything that the steps of a run depend on.
+    Solver, ground motion, duration, level of accuracy and step budget of one run.
 
-    ground: acceleration of the plate. end: of the motion, in units of time. budget: steps left to all runs of the
-    point. keep: whether the run keeps its motion.
+    ground: acceleration of the plate. end: duration of the motion, in units of time. budget: steps left to all runs of
+    the phase pair. keep: whether the run keeps its motion.
     """
 
     solver: EngineSolver
@@ -86,10 +86,11 @@ class Integration:
 @dataclass
 class Checkpoint:
     """
-    The place from which a run goes on.
+    State and step size from which a run continues.
 
-    time: in units of time. divisions: of the largest step by `STEP_RATIO`. next_count: steps of the next chunk at the
-    largest step. rested_at: the instant at which all contacts were last put to rest where a step failed.
+    time: instant, in units of time. divisions: number of divisions of the largest step by `STEP_RATIO`. next_count:
+    number of steps in the next chunk at the largest step. rested_at: the instant at which a failed step last put all
+    contacts to rest.
     """
 
     state: EngineState
@@ -100,9 +101,9 @@ class Checkpoint:
 
 
 def run_adaptively(integration: Integration, start: EngineState, stop: float = math.inf) -> EngineRun:
-    """Run from `start` at time 0 to the end of the motion, not beyond `stop`."""
+    """Run the engine with adaptive steps from the state `start` at time 0 to the end of the motion or to `stop`."""
     run = begin_run(integration.solver.model, stop)
-    if not integration.budget.allows(min(integration.end, stop), integration.level):
+    if not integration.budget.has_work_left_for(min(integration.end, stop), integration.level):
         return run.terminate(Outcome.STEP_LIMIT, 0.0)
     continue_run(integration, run, Checkpoint(start))
     return run
@@ -114,8 +115,8 @@ def continue_run(
     checkpoint: Checkpoint,
     pause: Callable[[float], bool] = lambda time: False,
 ) -> Checkpoint:
-    """Continue a run from a checkpoint to its end, or to where `pause` asks for it; return the place reached."""
-    progress = _Progress(integration, run, replace(checkpoint))
+    """Continue a run from a checkpoint to its end, or until `pause` of the time is true; return the last checkpoint."""
+    progress = _AdaptiveRun(integration, run, replace(checkpoint))
     end = min(integration.end, run.stop) * (1.0 - TIME_ROUNDING)
     while progress.at.time < end and not pause(progress.at.time):
         if not progress.advance():
@@ -123,15 +124,16 @@ def continue_run(
     return progress.at
 
 
-class _Progress:
-    """A run under way: one chunk of steps after the other is made, judged and accepted as far as it is accurate."""
+class _AdaptiveRun:
+    """Run under way, which integrates chunks of steps and accepts the accurate rows of each."""
 
-    # A chunk can end in four ways. The engine cannot solve a step: the chunk is made again in smaller steps. A step is
-    # larger than the motion allows: the rows before it are accepted, and the run goes on in smaller steps from there,
-    # with a contact force that the gap alone carries. A support opens or closes: the rows before it are accepted, the
-    # event is located, and the run goes on behind it. Otherwise all rows are accepted, and the step may grow by one
-    # division if the last rows would have allowed that. Every step size is the largest one over a power of STEP_RATIO,
-    # so that runs of successive levels take comparable steps at the same instants, which their error estimate needs.
+    # A chunk can end in four ways. If the engine cannot solve a step, the chunk is repeated in smaller steps. If a step
+    # is larger than the motion allows, the rows before it are accepted, and the run continues there in smaller steps,
+    # with the contact force set by the gap alone. If a support opens or closes, the rows before the event are accepted,
+    # the event is located, and the run continues behind it. Otherwise all rows are accepted, and the step may grow by
+    # one division if the last rows would have allowed that. Every step size is the largest one over a power of
+    # STEP_RATIO, so that runs of successive levels take comparable steps at the same instants, which their error
+    # estimate needs.
 
     def __init__(self, integration: Integration, run: EngineRun, at: Checkpoint) -> None:
         self.integration, self.run, self.at = integration, run, at
@@ -142,7 +144,7 @@ class _Progress:
         self.openings = None if impact is None else Openings(solver, impact, level.penetration)
 
     def advance(self) -> bool:
-        """Make one chunk of steps and accept what is accurate; return whether the run goes on."""
+        """Integrate one chunk of steps and accept its accurate rows; return whether the run goes on."""
         at, level, springs = self.at, self.level, self.model.springs
         asked, step, count = self._choose_steps()
         motion = self._integrate(step, count)
@@ -150,17 +152,17 @@ class _Progress:
             return self._divide_after_failure()
         size = absolute_accelerations(self.model, motion, self.integration.ground)
         step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step, at.state)
-        last, failing, event, change = self._find_end(motion, step_ratio)
+        last, failing, event, change = self._find_last_accurate_row(motion, step_ratio)
         before, settle = at.state, failing is not None or change is not None
         if last > 0 and not self._accept_steps(motion.cut_at(last), size[: last + 1], settle=settle):
             return False
         if event is not None:
             return self._pass_event(event, step)
         if springs is not None:
-            rates = self._rates_of_limits(springs, motion, last)
-            at.state = springs.settle(at.state, before, motion.accelerations[last], rates, level.slide_end)
+            rates = self._fit_rates_of_limits(springs, motion, last)
+            at.state = springs.restart_state(at.state, before, motion.accelerations[last], rates, level.slide_end)
             if change is not None:
-                return self._pass_change(springs, change, step, rates)
+                return self._pass_sliding_change(springs, change, step, rates)
         if failing is not None:
             at.divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             at.divisions = min(at.divisions, level.max_divisions)
@@ -168,10 +170,10 @@ class _Progress:
             self._enlarge_steps(motion, step_ratio, asked)
         return True
 
-    def _find_end(
+    def _find_last_accurate_row(
         self, motion: EngineMotion, step_ratio: Array
     ) -> tuple[int, int | None, Event | None, ContactChange | None]:
-        """Find the last row that holds, and what is behind it: a step that is too large, an event or a change."""
+        """Find the last accurate row, and the too large step, the event or the sliding change behind it."""
         failing, last = find_first_row(step_ratio > 1.0), len(motion.time) - 1
         if self.at.divisions >= self.level.max_divisions or failing > last:
             too_large = None
@@ -181,11 +183,11 @@ class _Progress:
         event = None if self.openings is None else self.openings.find_first_event(rows)
         if event is not None:
             return event.row, None, event, None
-        change = self._find_change(rows)
+        change = self._find_sliding_change(rows)
         return (last, too_large, None, None) if change is None else (change.row, None, None, change)
 
     def _choose_steps(self) -> tuple[int, float, int]:
-        """Choose the next chunk: the number of steps wanted, and length and number of those that end at knots."""
+        """Choose the number of steps wanted in the next chunk, and length and number of those up to the next knots."""
         at, level, end, ground = self.at, self.level, self.integration.end, self.model.ground
         at.divisions = max(at.divisions, level.min_divisions(at.time))
         step = level.step / STEP_RATIO**at.divisions
@@ -197,13 +199,13 @@ class _Progress:
         return asked, *align_steps(ground.knots, ground.near, at.time, longest, asked)
 
     def _integrate(self, step: float, count: int) -> EngineMotion | None:
-        """Let the engine make the steps, and count their work; None where it cannot or the budget is exceeded."""
+        """Integrate `count` steps and count their work; return None if the engine fails or the budget is exceeded."""
         solver, budget = self.integration.solver, self.integration.budget
         motion = solver.run(self.at.state, self.at.time, step, count)
-        work = max(count, solver.newton_iterations / FREE_ITERATIONS)
+        work = max(count, solver.newton_iterations / ITERATIONS_PER_STEP_OF_WORK)
         self.run.work += work
-        budget.left -= work
-        if budget.left < 0.0:
+        budget.steps_left -= work
+        if budget.steps_left < 0.0:
             self.run.terminate(Outcome.STEP_LIMIT, self.at.time)
             return None
         if motion is None or not np.isfinite(motion.accelerations).all():
@@ -215,10 +217,10 @@ class _Progress:
         if self.run.outcome != Outcome.OK:
             return False
         if self.at.divisions >= DIVISIONS_BEFORE_REST and any(self.at.state.sliding):
-            # Newton's iteration finds no sliding where a slide ends within any step: it may go on from rest
+            # Newton's iteration fails where a slide ends within a step of any length, so the run continues from rest
             springs, state = self.model.springs, self.at.state
             assert springs is not None
-            self.at.state = springs.rest(state)
+            self.at.state = springs.state_at_rest(state)
             self.at.rested_at, self.at.divisions = self.at.time, DIVISIONS_AT_REST
             return True
         if self.at.divisions == self.level.max_divisions:
@@ -228,7 +230,7 @@ class _Progress:
         return True
 
     def _accept_steps(self, motion: EngineMotion, size: Array, *, settle: bool = False, read: bool = True) -> bool:
-        """Accept steps up to where the model's validity ends, and move on; return whether the run goes on."""
+        """Accept steps up to the end of the model's validity, advance the checkpoint; return if the run goes on."""
         outcome, row, instant = find_termination(motion, self.model)
         if self.integration.keep:
             self.run.chunks.append(motion.cut_at(row))
@@ -242,74 +244,75 @@ class _Progress:
         return True
 
     def _pass_event(self, event: Event, step: float) -> bool:
-        """Pass an opening or closing of supports, which lies within the next step; return whether the run goes on."""
+        """Integrate up to an opening or closing within the next step, and apply it; return whether the run goes on."""
         at, run, openings = self.at, self.run, self.openings
         assert openings is not None
         motion = openings.locate_event(at.state, at.time, step, event)
-        self.integration.budget.left -= 1.0
+        self.integration.budget.steps_left -= 1.0
         if motion is not None:
             size = absolute_accelerations(self.model, motion, self.integration.ground)
             if event.closes:
-                motion = openings.close_contacts(motion, event.which)
+                motion = openings.close_contacts(motion, event.contacts)
             else:
                 motion = openings.fill_gaps_of_open_contacts(motion)
-            # so short a step tells nothing about a peak that may lie in it: forces have not settled at its end
+            # no peak is read in so short a step, because contact forces have not settled at its end
             if not self._accept_steps(motion, size, read=False):
                 return False
         if event.closes:
             if at.time > run.peaks_count_from:
                 run.peaks.read_until(at.time)
-            at.state = openings.apply_impact(at.state, at.time, event.which)
+            at.state = openings.apply_impact(at.state, at.time, event.contacts)
             run.peaks_count_from, run.impacts = openings.settled_at, openings.impacts
             run.peaks.restart()
-            at.divisions = max(at.divisions, self.control.divisions_behind_impact())
+            at.divisions = max(at.divisions, self.control.count_divisions_behind_impact())
         else:
             openings.open_contacts(event)
         at.next_count = MIN_CHUNK_STEPS
         return True
 
-    def _find_change(self, motion: EngineMotion) -> ContactChange | None:
-        """Find the first contact that begins or ends to slide, where friction yields."""
+    def _find_sliding_change(self, motion: EngineMotion) -> ContactChange | None:
+        """Find the first contact that begins or ends to slide; return None if there is none or friction is rigid."""
         springs = self.model.springs
         if springs is None:
             return None
         end = math.inf if self.at.rested_at == self.at.time else self.level.slide_end
-        return springs.find_change(motion, self.at.state, self.level.slide_end, end)
+        return springs.find_sliding_change(motion, self.at.state, self.level.slide_end, end)
 
-    def _rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
-        """Rates (K,) of the elastic displacements at which contacts slide, at a row."""
+    def _fit_rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
+        """Return the rates of change (K,), at `row`, of the elastic displacements at which the contacts slide."""
         near = motion.cut_at(max(row, 1))
         recent = EngineMotion(*[column[-RECENT_ROWS:] for column in near])
         slope: Array = np.polyfit(recent.time - recent.time[-1], springs.limits(recent), 1)[0]
         return slope
 
-    def _pass_change(self, springs: FrictionSprings, change: ContactChange, step: float, rates: Array) -> bool:
-        """Let a contact begin or end to slide, a part of the next step ahead; return whether the run goes on."""
+    def _pass_sliding_change(self, springs: FrictionSprings, change: ContactChange, step: float, rates: Array) -> bool:
+        """Integrate up to the instant at which a contact begins or ends to slide; return whether the run goes on."""
         at, solver, before = self.at, self.integration.solver, self.at.state
-        self.integration.budget.left -= 1.0
-        length = change.share * step
-        motion = solver.run(before, at.time, length, 1) if length > SHORTEST_SHARE * step else None
+        self.integration.budget.steps_left -= 1.0
+        length = change.step_share * step
+        motion = solver.run(before, at.time, length, 1) if length > MIN_STEP_SHARE * step else None
         if motion is not None and np.isfinite(motion.accelerations).all():
-            # nothing is read here: the next chunk reads the place of the kink from its side
+            # no peak is read in this step: the next chunk reads the acceleration at the kink from its side
             size = absolute_accelerations(self.model, motion, self.integration.ground)
             if not self._accept_steps(motion, size, settle=True, read=False):
                 return False
-            at.state = springs.settle(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
+            at.state = springs.restart_state(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
             if change.slides:
                 change = change._replace(limits=springs.limits(motion)[-1])
-        assert at.state.accelerations is not None  # settled
-        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, self.level.slide_end, change)
+        reached = at.state
+        assert reached.accelerations is not None  # restart_state or the previous change has set them
+        at.state = springs.restart_state(reached, reached, reached.accelerations, rates, self.level.slide_end, change)
         self.run.peaks.restart()
-        at.next_count = STEPS_BEHIND_CHANGE
+        at.next_count = STEPS_AFTER_SLIDING_CHANGE
         return True
 
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:
-        """Enlarge the step, or the number of largest steps, as far as the last rows allow; asked: steps wanted now."""
-        # The number wanted counts, not what a knot left of it: restarts cost accuracy, and a chunk of one step up to a
-        # knot would make the next ones as short.
+        """Enlarge the step, or the number of largest steps, as the last rows of a chunk of `asked` steps allow."""
+        # The next number of steps grows from the number asked for, not from the smaller one up to a knot: restarts cost
+        # accuracy, and a chunk of one step up to a knot would make the next chunks as short.
         at = self.at
         before = asked if at.divisions == 0 else min(asked, MIN_CHUNK_STEPS)
         if at.divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             at.divisions -= 1
         if at.divisions == 0 or self.model.springs is not None:
-            at.next_count = min(self.control.count_largest_steps(motion), CHUNK_GROWTH * before)
+            at.next_count = min(self.control.count_largest_steps(motion), MAX_CHUNK_GROWTH * before)

@@ -1,15 +1,15 @@
 """
-The start of a model whose bodies turn: at rest in the static equilibrium of its weight, its stiff parts in balance.
+Initial state of a model whose bodies turn: at rest in static equilibrium under its weight, with stiff parts balanced.
 
-Supports that start with equal shares are out of balance by the overturning moment. They would swing for a few of the
-contact's own periods, with an acceleration that no stiffness makes smaller. An eccentric building on elastic supports
-tilts, and as it tilts it shifts, so that every depression stays on its sphere. So the engine's forces are solved
-for zero by Newton's method, first under the weight alone and for all coordinates. Then the loading's first value joins
-it. Contacts, springs of spheres and stiff links give way to it until no force accelerates their deformation. The slow
-motions, which deform none of them, start from where they were. A support that would have to pull carries nothing. A
-loading that is gone before a contact swings is nothing they could give way to.
+Supports that start with equal shares of the weight are out of balance by the overturning moment. They would oscillate
+for a few periods of the contact, with an acceleration that does not depend on its stiffness. An eccentric building on
+elastic supports tilts, and as it tilts it shifts, so that every depression stays on its sphere. So Newton's method
+finds the coordinates at which the engine's forces are zero, first under the weight alone and for all coordinates, then
+also under the initial loading. Contacts, springs of spheres and stiff links deform under this loading until no force
+accelerates their deformation. Slow motions, which deform none of these parts, start from the first equilibrium. A
+support that would have to pull carries no force. A loading that decays faster than a contact oscillates is left out.
 
-Friction is zero at rest. On a plane nothing else holds the platform, which keeps its place there.
+Friction is zero at rest. On a plane no other force holds the platform, so that its position stays as it is.
 """
 
 from __future__ import annotations
@@ -31,30 +31,30 @@ from multibody.models.system import EngineModel
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Largest number of iterations of Newton's method.
+# Largest number of iterations of Newton's method: after them the equilibrium counts as not found.
 MAX_ITERATIONS = 50
 
-# Largest residual of the forces, in weights, to which their rounding is added with a safety factor for many contacts
-# and stiff links.
+# Largest residual of the forces, in weights, at which Newton's iteration may end. The rounding of the forces is added
+# to it, times a safety factor for many contacts and stiff links.
 MAX_RESIDUAL = 1e-9
 SAFETY_OF_RESIDUAL = 100.0
 
-CURRENT = exudyn.ConfigurationType.Current
+CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current
 
 
 def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """Find the equilibrium near `start` under the plate's acceleration (3,); `start` if none is needed, else None."""
+    """Find the equilibrium near `start` under the plate's acceleration (3,); `start` if no body turns, else None."""
     if model.kinematics is None:
         return start
-    pressed = model.bearing_penetration or penetration
-    balance = _Balance(model, model.kinematics, start, acceleration, pressed, penetration)
+    static_penetration = model.bearing_penetration or penetration
+    balance = _EquilibriumSolver(model, model.kinematics, start, acceleration, static_penetration, penetration)
     coordinates, closed = balance.solve_under_weight(), np.ones(len(model.kinematics.depressions.ring), dtype=bool)
-    lasts = model.ground.decay_rate * math.sqrt(pressed) <= 1.0
+    lasts = model.ground.decay_rate * math.sqrt(static_penetration) <= 1.0
     while coordinates is not None and lasts and acceleration.any():
         loaded = balance.solve_under_loading(coordinates, closed)
-        opens = False if loaded is None else closed & (balance.gaps(loaded) > OPENING_GAP * pressed)
+        opens = False if loaded is None else closed & (balance.gaps(loaded) > OPENING_GAP * static_penetration)
         if not np.any(opens):
             coordinates = loaded
             break
@@ -62,23 +62,24 @@ def find_balanced_start(
     if coordinates is None:
         return None
     gaps, contact = balance.gaps(coordinates), start.contact.copy()
-    contact[0::4] = np.where(closed, np.minimum(gaps, -GAP_TOLERANCE * pressed), np.maximum(gaps, 0.0))
+    contact[0::4] = np.where(closed, np.minimum(gaps, -GAP_TOLERANCE * static_penetration), np.maximum(gaps, 0.0))
     return EngineState(coordinates, start.velocities, contact)
 
 
 @dataclass
-class _Balance:
+class _EquilibriumSolver:
     """
-    The engine's forces on a model at rest, and the coordinates at which they balance.
+    Solver for the coordinates at which the engine's forces on a model at rest balance.
 
-    acceleration: of the plate, (3,). pressed: penetration of the contacts under the weight. penetration: of the level.
+    acceleration: initial acceleration of the plate, (3,). static_penetration: penetration of the contacts under the
+    weight. penetration: penetration of the level of accuracy.
     """
 
     model: EngineModel
     kinematics: ImpactLaw
     start: EngineState
     acceleration: Array
-    pressed: float
+    static_penetration: float
     penetration: float
 
     def __post_init__(self) -> None:
@@ -96,44 +97,44 @@ class _Balance:
         self._limit = MAX_RESIDUAL + SAFETY_OF_RESIDUAL * rounding
 
     def gaps(self, coordinates: Array) -> Array:
-        """Gaps (K,) of the contacts at coordinates (n,)."""
-        clear: Array = self.kinematics.depressions.clearance(coordinates[None])[0] - self.pressed
+        """Return the gaps (K,) of the contacts at coordinates (n,)."""
+        clear: Array = self.kinematics.depressions.clearance(coordinates[None])[0] - self.static_penetration
         return clear
 
     def solve_under_weight(self) -> Array | None:
-        """Solve for the coordinates (n,) of the static equilibrium; None without one."""
+        """Solve for the coordinates (n,) of the static equilibrium under the weight; return None if there is none."""
         held = np.eye(self._size)[:, self._neutral_coordinates()]
         closed = np.ones(len(self.kinematics.depressions.ring), dtype=bool)
         return self._solve_balance(self.start.coordinates, null_space(held.T), held, closed, 0.0)
 
     def solve_under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
-        """Solve for the coordinates (n,) at which the loading deforms what is stiff, with closed contacts (K,)."""
+        """Solve for the coordinates (n,) at which the loading deforms the stiff links and the closed contacts (K,)."""
         mass = self._compute_mass_matrix(equilibrium)
-        stiff = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
+        stiff = self.kinematics.stiff_deformation_rates(equilibrium, np.ones_like(closed))
         spheres = self._size - stiff.shape[1]
         deformed = np.asarray(np.linalg.solve(mass, block_diag(stiff, np.eye(spheres)).T), dtype=float)
-        slow_of_bodies = null_space(self.kinematics.stiff_rates(equilibrium, closed))
+        slow_of_bodies = null_space(self.kinematics.stiff_deformation_rates(equilibrium, closed))
         slow = np.vstack([slow_of_bodies, np.zeros((spheres, slow_of_bodies.shape[1]))])
         return self._solve_balance(equilibrium, deformed, mass @ slow, closed, 1.0)
 
     def _neutral_coordinates(self) -> list[int]:
-        """Coordinates that nothing but friction holds: place and yaw of a platform on a plane."""
+        """Return the coordinates that friction alone holds: x, y and yaw of a platform on a plane."""
         first = int(self.model.bodies[0, 0])
         return [first, first + 1, first + 5] if self.model.rim == math.inf else []
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
-        """Solve for coordinates, from `begin` along `moved` (n, s), at which only forces `held` (n, t) are missing."""
-        # Newton's method on the engine's own forces and their derivative, in the coordinates that may move and the
-        # forces that may be left over, which hold the slow motions. Open contacts add the equations that they just
-        # touch, so that a contact that would have to pull carries nothing. The matrix may be singular where friction
-        # alone holds a platform on a plane, hence least squares. Iterations go on behind the bound of the residual
-        # until they no longer halve it: rounding is reached then.
+        """Solve for coordinates, from `begin` along `moved` (n, s), at which the residual lies in `held` (n, t)."""
+        # Newton's method on the engine's own forces and their Jacobian. The unknowns are displacements along `moved`
+        # and forces along `held`, which hold the slow motions in place. The gap of every open contact must be zero, so
+        # that a contact that would have to pull carries no force. The matrix may be singular where friction alone holds
+        # a platform on a plane, hence least squares. Iterations continue below the bound of the residual until they no
+        # longer halve it, because of rounding.
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf
         for _ in range(MAX_ITERATIONS):
             forces, stiffness = self._compute_forces(coordinates, closed, loading)
-            touching = self.gaps(coordinates)[~closed] / self.pressed
+            touching = self.gaps(coordinates)[~closed] / self.static_penetration
             residual = np.append(forces - held @ missing, touching)
             worst = float(np.abs(residual).max())
             if not math.isfinite(worst):
@@ -141,7 +142,7 @@ class _Balance:
             if worst <= self._limit and worst > 0.5 * before:
                 return coordinates
             before = worst
-            rates = self.kinematics.gap_rates(coordinates)[~closed] / self.pressed
+            rates = self.kinematics.gap_rates(coordinates)[~closed] / self.static_penetration
             matrix = np.block([[stiffness @ moved, -held], [rates @ moved, np.zeros((len(rates), len(missing)))]])
             change = np.linalg.lstsq(matrix, -residual, rcond=None)[0]
             coordinates = coordinates + moved @ change[: moved.shape[1]]
@@ -155,14 +156,14 @@ class _Balance:
         return np.array(self._solver.GetSystemMassMatrix())
 
     def _compute_forces(self, coordinates: Array, closed: Mask, loading: float) -> tuple[Array, Array]:
-        """Compute forces (n,) under the weight and a share of the loading's first value, and their Jacobian (n, n)."""
+        """Compute forces (n,) under the weight and `loading` times the initial loading, and their Jacobian (n, n)."""
         shaken = self._compute_mass_matrix(coordinates) @ self._carried
         contact = np.zeros_like(self.start.contact)
         a_gap_of_a_closed_contact = -1.0
         contact[0::4] = np.where(closed, a_gap_of_a_closed_contact, 0.0)
         self._set_coordinates(coordinates)
         mbs = self.model.mbs
-        mbs.systemData.SetDataCoordinates(contact, configuration=CURRENT)
+        mbs.systemData.SetDataCoordinates(contact, configuration=CURRENT_CONFIGURATION)
         self._solver.ComputeODE2RHS(mbs)
         forces = np.array(self._solver.GetSystemResidual())
         self._solver.ComputeJacobianODE2RHS(mbs, 1.0, 0.0, 0.0)
@@ -170,4 +171,4 @@ class _Balance:
         return forces - (loading - already_loads) * shaken, np.array(self._solver.GetSystemJacobian())
 
     def _set_coordinates(self, coordinates: Array) -> None:
-        self.model.mbs.systemData.SetODE2Coordinates(coordinates, configuration=CURRENT)
+        self.model.mbs.systemData.SetODE2Coordinates(coordinates, configuration=CURRENT_CONFIGURATION)

@@ -1,4 +1,4 @@
-"""The answer of one level of accuracy, with all that its error is made of."""
+"""Candidate answer for one phase pair from one level of accuracy, with the parts of its error."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Candidate:
     """
-    The answer of one level, in units of the model.
+    Peaks of one level of accuracy with the parts of their error, in units of the model.
 
     Attributes:
-    - shares_contact: Whether the level before has the same contact, and so does not show the error that its compliance
-      leaves.
-    - level_errors: Errors that other levels and the springs of supports show, (N,).
+    - shares_contact: Whether the level before has the same contact stiffness, and so does not show the error of the
+      contact's compliance.
+    - level_errors: Errors from the differences to other levels and to other springs of the supports, (N,).
     - rounding: Errors that rounding of the contact forces leaves, (N,).
-    - least: Errors that the noise of the contact force leaves, however well runs agree, (N,).
+    - noise_errors: Errors that the noise of the contact force leaves, however well runs agree, (N,).
     - compliance: Errors that the contact's compliance leaves where `shares_contact`; None until a run has shown them,
       (N,).
-    - coarser: Other runs, and the share of their difference to this one that is an error.
+    - coarser: Other runs, each with the share of its difference to this run that is an error.
     - confirmed: Whether the runs that confirm the answer ended: on springs of real bearings, after level 0.
     - floor: Lower bound of the relative error of any number of the run.
     """
@@ -45,7 +45,7 @@ class Candidate:
     shares_contact: bool
     level_errors: Array
     rounding: Array
-    least: Array
+    noise_errors: Array
     compliance: Array | None
     coarser: tuple[tuple[EngineRun, float], ...]
     confirmed: bool
@@ -53,9 +53,9 @@ class Candidate:
 
     @property
     def errors(self) -> Array:
-        """Errors (N,)."""
+        """Estimated errors (N,) of the peaks, with all parts that are known."""
         shown = widen_without_convergence(self.level_errors + self.rounding, self.run)
-        return np.maximum(shown if self.compliance is None else shown + self.compliance, self.least)
+        return np.maximum(shown if self.compliance is None else shown + self.compliance, self.noise_errors)
 
     @property
     def misses_compliance_error(self) -> bool:
@@ -69,29 +69,29 @@ class Candidate:
 
     @property
     def relative_error(self) -> float:
-        """The largest error of any body over its peak."""
+        """Largest ratio of a body's error to its peak."""
         return float((self.errors / self.run.peaks.value).max())
 
     def meets(self, tolerance: float) -> bool:
-        """Return whether every body's relative error is at most `tolerance`; no unconfirmed answer claims that."""
+        """Return whether the answer is confirmed and every body's relative error is at most `tolerance`."""
         return self.confirmed and bool((self.errors <= tolerance * self.run.peaks.value).all())
 
     def may_meet(self, tolerance: float) -> bool:
-        """Return whether it meets the tolerance if a softer contact shows that rounding does nothing."""
+        """Return whether the answer would meet the tolerance without the error of rounding."""
         return self.confirmed and bool((self.level_errors <= tolerance * self.run.peaks.value).all())
 
-    def rounds_beyond(self, tolerance: float) -> bool:
-        """Return whether rounding may exceed the tolerance and what the next level would leave of the error."""
+    def is_limited_by_rounding(self, tolerance: float) -> bool:
+        """Return whether rounding may exceed both the tolerance and the error that the next level would leave."""
         left = np.maximum(tolerance * self.run.peaks.value, self.errors / COMPLIANCE_RATIO)
         return bool((self.level.rounding > left).any())
 
-    def rounds_more_than(self, best: Candidate) -> bool:
-        """Return whether its error is larger than that of a coarser level, and rounding here than that error."""
+    def is_worse_by_rounding(self, best: Candidate) -> bool:
+        """Return whether this error exceeds that of the coarser level `best`, and rounding may exceed it as well."""
         larger = not self.relative_error < best.relative_error
         return larger and bool((self.level.rounding > best.errors).any())
 
     def add_compliance_error(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
-        """Return it with the error that the compliance leaves, from a run in which only the contact is softer."""
+        """Return the answer with the error of the contact's compliance, from a run in which only that is larger."""
         if not self.misses_compliance_error:
             return self
         level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)

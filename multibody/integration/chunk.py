@@ -1,5 +1,5 @@
 """
-Compiled readings of a chunk of steps: chunks are short, and a dozen array operations would cost more than they.
+Compiled loops over the rows of a chunk of steps: chunks are short, and array operations would take longer.
 
 The arrays are those of a `EngineMotion`: accelerations and coordinates (T, n), contact (T, 4 K).
 """
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @cache_on_disk(__file__, nogil=True)
 def absolute_acceleration_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array) -> Array:
-    """Sizes (T, N) of the accelerations of the coordinates `bodies` (N, 3) with that of the plate (T, 3)."""
+    """Return sizes (T, N) of absolute accelerations: those of coordinates `bodies` (N, 3) plus the plate's (T, 3)."""
     steps, count = len(accelerations), len(bodies)
     size = np.empty((steps, count))
     for row in range(steps):
@@ -31,8 +31,8 @@ def absolute_acceleration_sizes(accelerations: Array, bodies: NDArray[np.int_], 
 
 
 @cache_on_disk(__file__, nogil=True)
-def slowest_loaded_slip(contact: Array, row: int) -> float:
-    """Smallest slip speed of the contacts that carry load in a row; inf where none does."""
+def smallest_loaded_slip(contact: Array, row: int) -> float:
+    """Return the smallest slip speed of the contacts that carry load in a row; inf if no contact carries load."""
     slip = math.inf
     for place in range(0, contact.shape[1], 4):
         if contact[row, place] < 0.0:
@@ -41,27 +41,27 @@ def slowest_loaded_slip(contact: Array, row: int) -> float:
 
 
 @cache_on_disk(__file__, nogil=True)
-def slip_changes(
+def slip_change_ratios(
     accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
 ) -> Array:
-    """Change of the slip velocity in one step over what is allowed, (T,), by the slowest contact that carries load."""
+    """Return the ratio (T,) of the slowest loaded contact's change of slip velocity in a step to the allowed one."""
     step_ratio = np.empty(len(accelerations))
     before_x = before_y = before_z = 0.0
     for row in range(len(accelerations)):
         x, y, z = accelerations[row, platform[0]], accelerations[row, platform[1]], accelerations[row, platform[2]]
         size = math.sqrt(x * x + y * y + z * z)
         if row > 0:
-            # an acceleration that changes within a step counts twice: it says more about the steps that follow
+            # the change of an acceleration within a step counts twice, because the next steps change by as much
             dx, dy, dz = x - before_x, y - before_y, z - before_z
             size = max(size, 2.0 * math.sqrt(dx * dx + dy * dy + dz * dz))
-        step_ratio[row] = per_change * size / max(slowest_loaded_slip(contact, row), corner)
+        step_ratio[row] = per_change * size / max(smallest_loaded_slip(contact, row), corner)
         before_x, before_y, before_z = x, y, z
     return step_ratio
 
 
 @cache_on_disk(__file__, nogil=True)
-def find_first_ends(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
-    """Find the first rows at which the coordinate `height` reaches `rim` and at which no contact is closed; else T."""
+def find_rim_exit_rows(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
+    """Find the first row with the coordinate `height` at `rim`, and the first with all contacts open; T if none."""
     steps = len(coordinates)
     beyond, lost = steps, steps
     for row in range(steps):
@@ -77,8 +77,8 @@ def find_first_ends(coordinates: Array, height: int, rim: float, contact: Array)
 
 
 @cache_on_disk(__file__, nogil=True)
-def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
-    """Length (T,) of the vector of two coordinates, those of `axes`."""
+def vector_lengths(coordinates: Array, axes: NDArray[np.int_]) -> Array:
+    """Return the lengths (T,) of the vectors of the two coordinates `axes`."""
     length = np.empty(len(coordinates))
     for row in range(len(coordinates)):
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
@@ -88,7 +88,7 @@ def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
 
 @cache_on_disk(__file__, nogil=True)
 def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
-    """Largest length of that vector, also between the instants (T,), as `reference.measures.largest_displacement`."""
+    """Return the largest length of the vector of two coordinates `axes`, also between the instants (T,) of the rows."""
     largest = before_square = before = 0.0
     for row in range(len(time)):
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
@@ -102,8 +102,8 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
 
 
 @cache_on_disk(__file__, nogil=True)
-def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
-    """Find the last row at which `size` (T, N) reaches `sizes` (N,) anywhere, or `distance` (T,) `far`; else -1."""
+def find_last_row_near_peak(size: Array, sizes: Array, distance: Array, far: float) -> int:
+    """Find the last row in which any `size` (T, N) reaches `sizes` (N,), or `distance` (T,) `far`; -1 if none."""
     for row in range(len(size) - 1, -1, -1):
         if distance[row] >= far:
             return row
@@ -114,8 +114,8 @@ def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> in
 
 
 @cache_on_disk(__file__, nogil=True)
-def any_larger(size: Array, first: int, least: Array) -> bool:
-    """Return whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from row `first` on."""
+def has_larger_entry(size: Array, first: int, least: Array) -> bool:
+    """Return whether any `size` (T, N) from row `first` on is larger than the entry of `least` (N,) of its column."""
     for row in range(first, len(size)):
         for body in range(size.shape[1]):
             if size[row, body] > least[body]:

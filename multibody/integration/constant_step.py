@@ -1,4 +1,4 @@
-"""One run of the engine between two instants at constant step, from a stored state, quiet on the terminal."""
+"""Run of the engine at a constant step from a stored state, without output on the terminal."""
 
 from __future__ import annotations
 
@@ -16,28 +16,29 @@ from multibody.models.system import EngineModel
 
 Array = NDArray[np.float64]
 
-# Spectral radius of generalized alpha at infinite frequency (Chung and Hulbert 1993): the contact must not ring, and
-# the rest must not be damped.
+# Spectral radius of generalized alpha at infinite frequency (Chung and Hulbert 1993): it damps the ringing of the
+# contact and hardly damps slower motions.
 SPECTRAL_RADIUS = 0.8
 
-# Largest reduction of a step that the engine cannot solve: contacts touch, friction turns.
+# Largest factor by which the engine may reduce a step that it cannot solve, as where contacts close or slip reverses.
 MAX_STEP_REDUCTION = 1e4
 
-# Largest contractivity of modified Newton, above which the Jacobian is renewed: least time (measured).
+# Contractivity of modified Newton above which the engine computes the Jacobian anew: runs take least time (measured).
 MAX_CONTRACTIVITY = 0.2
 
-# Explicit integrators, and their names in the engine.
-EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}
-INITIAL = exudyn.ConfigurationType.Initial
-INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
+# Names of the explicit integrators here, and in the engine.
+EXPLICIT_INTEGRATORS = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}
+INITIAL_CONFIGURATION = exudyn.ConfigurationType.Initial
+INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT_INTEGRATORS)
 
 
 class EngineMotion(NamedTuple):
     """
-    Steps of one run in units of the model, relative to the plate, the first row being its start.
+    Rows of one run, one for each step, in units of the model and relative to the plate; the first row is the start.
 
-    time: (T,). coordinates, velocities, accelerations: (T, n). contact: gap, slip speed and two unused entries of each
-    contact, (T, 4 K). force: force vector and normal of each contact, (T, 6 K), or (T, 0) unless recorded.
+    time: instants, (T,). coordinates, velocities, accelerations: values of all coordinates, (T, n). contact: gap, slip
+    speed and two unused entries of each contact, (T, 4 K). force: force vector and normal of each contact, (T, 6 K), or
+    (T, 0) unless recorded.
     """
 
     time: Array
@@ -49,7 +50,7 @@ class EngineMotion(NamedTuple):
 
     @property
     def gap(self) -> Array:
-        """Gap of each contact, (T, K), negative where it presses."""
+        """Gap of each contact, (T, K), negative where the contact is closed."""
         return self.contact[:, 0::4]
 
     @property
@@ -67,12 +68,12 @@ class EngineMotion(NamedTuple):
         return load
 
     def cut_at(self, row: int) -> EngineMotion:
-        """Return the rows up to and including `row`."""
+        """Return the motion up to and including `row`."""
         return self if row == len(self.time) - 1 else EngineMotion(*[column[: row + 1] for column in self])
 
     @staticmethod
     def concatenate(chunks: list[EngineMotion]) -> EngineMotion:
-        """Join chunks, each of which starts with the last row of the one before."""
+        """Join chunks of a motion, each of which starts with the last row of the chunk before."""
         whole, *rest = chunks
         columns = zip(whole, *(tuple(column[1:] for column in chunk) for chunk in rest))
         return EngineMotion(*map(np.concatenate, columns))
@@ -85,7 +86,7 @@ class EngineMotion(NamedTuple):
         return EngineMotion(np.empty(0), *(np.empty((0, width)) for width in widths))
 
     def state_at(self, row: int) -> EngineState:
-        """State of the engine at an instant, with the rates of slip and load since the instant before."""
+        """Return the state of the engine at `row`, with the rates of slip and load since the row before."""
         row = range(len(self.time))[row]
         near = EngineMotion(*[column[max(row - 1, 0) : row + 1] for column in self])
         slip, load = near.slip, near.load
@@ -101,7 +102,7 @@ class EngineMotion(NamedTuple):
 
 @contextmanager
 def silence_engine() -> Iterator[None]:
-    """Keep the engine from writing on the terminal: a failed step is reported by status, not by print."""
+    """Keep the engine from writing on the terminal: the status of a run reports failed steps."""
     before = exudyn.config.printToConsole
     exudyn.config.printToConsole = False
     try:
@@ -111,22 +112,22 @@ def silence_engine() -> Iterator[None]:
 
 
 def set_initial_state(model: EngineModel, state: EngineState) -> None:
-    """Make `state` the one that the engine's next run starts from."""
+    """Set `state` as the initial state of the engine's next run."""
     data = model.mbs.systemData
     if state.accelerations is not None:
-        data.SetODE2Coordinates_tt(state.accelerations, configuration=INITIAL)
-    data.SetODE2Coordinates(state.coordinates, configuration=INITIAL)
-    data.SetODE2Coordinates_t(state.velocities, configuration=INITIAL)
-    data.SetDataCoordinates(state.contact, configuration=INITIAL)
+        data.SetODE2Coordinates_tt(state.accelerations, configuration=INITIAL_CONFIGURATION)
+    data.SetODE2Coordinates(state.coordinates, configuration=INITIAL_CONFIGURATION)
+    data.SetODE2Coordinates_t(state.velocities, configuration=INITIAL_CONFIGURATION)
+    data.SetDataCoordinates(state.contact, configuration=INITIAL_CONFIGURATION)
 
 
 class EngineSolver:
     """
-    The engine's solver of one model.
+    Solver of the engine for one model.
 
-    newton: tolerance of a step's equations, relative to their first residual. residual: smallest residual asked for,
-    in units of force. integrator: one of INTEGRATORS. discontinuous: tolerance of the iteration over contacts that open
-    or turn within a step; that of Newton's iteration without.
+    newton: tolerance of a step's equations, relative to their first residual. residual: absolute tolerance of these
+    equations, in units of force. integrator: one of INTEGRATORS. discontinuous: tolerance of the iteration over
+    contacts that open or reverse their slip within a step; None takes that of Newton's iteration.
     """
 
     def __init__(
@@ -143,10 +144,10 @@ class EngineSolver:
             self.settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         if discontinuous is not None:
             self.settings.timeIntegration.discontinuous.iterationTolerance = discontinuous
-        # where contacts may open, a step in which one opens or turns is solved again: shortening it may never end
+        # where contacts may open, the engine must not shorten a step in which one opens or reverses: it might never end
         self.settings.timeIntegration.discontinuous.useRecommendedStepSize = not model.allows_liftoff
         self.settings.timeIntegration.generalizedAlpha.useNewmark = integrator == "trapezoidal"
-        self.explicit = EXPLICIT.get(integrator)
+        self.explicit = EXPLICIT_INTEGRATORS.get(integrator)
         if self.explicit:
             kind = getattr(exudyn.DynamicSolverType, self.explicit)
             self.settings.timeIntegration.solverType = kind
@@ -159,9 +160,9 @@ class EngineSolver:
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> EngineMotion | None:
         """
-        Make `count` steps from `state` at time `begin`; None if the engine could not solve one of them.
+        Integrate `count` steps from `state` at time `begin`; return None if the engine could not solve one of them.
 
-        Where friction yields a step that it cannot solve ends the run, which has `stopped`, and is not reduced.
+        Where friction yields, the engine reduces no step: the first step that it cannot solve ends the run (`stopped`).
         """
         springs = self.model.springs
         set_initial_state(self.model, state)
@@ -170,7 +171,7 @@ class EngineSolver:
             springs.begin(state)
         if self.model.friction is not None:
             if springs is not None:
-                self.model.friction.factors = springs.factors(state)
+                self.model.friction.coefficient_ratios = springs.coefficient_ratios(state)
             self.model.friction.begin(self.model.mbs, state, begin)
         integration = self.integration
         integration.startTime = begin
@@ -190,7 +191,7 @@ class EngineSolver:
         return motion if len(motion.time) > 1 else None
 
     def _read_sensors(self) -> EngineMotion:
-        """Read the last run from the sensors, at the engine's own instants: it halves steps that it cannot solve."""
+        """Return the recorded motion at the engine's own instants: the engine halves steps that it cannot solve."""
         stored = self.model.mbs.GetSensorStoredData
         tables = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]
         time = tables[0][0][:, 0]
@@ -200,14 +201,14 @@ class EngineSolver:
 
 
 def _join_tables(tables: list[Array]) -> Array:
-    """Join the values of tables (T, 1 + C), which begin with the time. A single table is not copied."""
+    """Join the value columns of tables (T, 1 + C) whose first column is the time. A single table is not copied."""
     if len(tables) == 1:
         return tables[0][:, 1:]
     return np.concatenate([tables[0], *[table[:, 1:] for table in tables[1:]]], axis=1)[:, 1:]
 
 
 def _solver_settings(newton: float, residual: float) -> Any:
-    """Settings of the implicit solver for tolerances of Newton's iteration, relative and absolute."""
+    """Return settings of the implicit solver: `newton` is its relative tolerance, `residual` the absolute one."""
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     every_step = 0.0

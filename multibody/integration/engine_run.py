@@ -1,4 +1,4 @@
-"""The result of one run of the engine, and how accepted steps enter it."""
+"""Result of one run of the engine, and the entry of accepted steps into it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.chunk import absolute_acceleration_sizes, distances, find_last_near, largest_distance
+from multibody.integration.chunk import (
+    absolute_acceleration_sizes,
+    find_last_row_near_peak,
+    largest_distance,
+    vector_lengths,
+)
 from multibody.integration.constant_step import EngineMotion
 from multibody.integration.level import Level
 from multibody.integration.peak import CANDIDATE_FRACTION, PeakReader
@@ -21,28 +26,28 @@ Array = NDArray[np.float64]
 # Acceleration (T, 3) of the plate as a function of times (T,), in units of the model.
 Ground = Callable[[Array], Array]
 
-# Share of a largest value: later values below it do not reach the largest one in a run of another level either.
+# Share of a largest value: where later values of a run stay below it, they exceed the largest at no other level either.
 SETTLED_FRACTION = 0.9
 
-# Time until warping of the supports has relaxed, in square roots of the warping compliance.
+# Time within which warping of the supports dies out after they close, over the square root of the warping compliance.
 WARPING_RELAXATION = 20.0
 
 
 @dataclass
 class Budget:
-    """Steps of the engine left to all runs of one point: the answer does not depend on the machine."""
+    """Number of engine steps that all runs of one phase pair may still take; unlike time, it depends on no machine."""
 
-    left: float
+    steps_left: float
 
-    def allows(self, span: float, level: Level) -> bool:
-        """Return whether enough is left for `span` at the largest step of a level."""
-        return span / level.step <= self.left
+    def has_work_left_for(self, span: float, level: Level) -> bool:
+        """Return whether enough steps are left to integrate a time `span` at the largest step of a level."""
+        return span / level.step <= self.steps_left
 
 
 @dataclass
 class EngineRun:
     """
-    The result of one run from the start of the loading to its end, or to where the run terminates.
+    Result of one run from the start of the loading to its end, or to the instant at which the run terminates.
 
     All values are in units of the model.
 
@@ -52,15 +57,15 @@ class EngineRun:
     - outcome, instant: How the run ended, and when it terminated.
     - work: Steps as the budget counts them.
     - warping_load: Largest load that warping of the supports takes so far, in shares of the weight.
-    - last_open: The latest instant at which a support carried no load.
+    - last_open_at: The latest instant at which a support carried no load.
     - max_displacement: Largest horizontal displacement of the platform.
-    - max_vertical: Largest vertical acceleration of any body, relative to the plate.
-    - last_large: The last instant at which an acceleration or the displacement of the platform came within
+    - max_vertical: Largest vertical acceleration of the platform, relative to the plate.
+    - last_large_at: The last instant at which an acceleration or the displacement of the platform came within
       `SETTLED_FRACTION` of its largest value.
     - peaks_count_from: Instant at which contact forces have settled after the last impact: peaks are read from here on.
     - impacts: Number of times that supports closed again.
     - min_load: Smallest contact force in weights, of a model that ends where the contact opens.
-    - opened: Whether any contact carried no load.
+    - has_opened: Whether any contact carried no load.
     - scanned_from: Instant from which the motion was only scanned in larger steps.
     - chunks: The motion, if it is kept.
     """
@@ -71,21 +76,21 @@ class EngineRun:
     instant: float = math.nan
     work: float = 0.0
     warping_load: float = 0.0
-    last_open: float = -math.inf
+    last_open_at: float = -math.inf
     max_displacement: float = 0.0
     max_vertical: float = 0.0
-    last_large: float = 0.0
+    last_large_at: float = 0.0
     peaks_count_from: float = -math.inf
     impacts: int = 0
     min_load: float = math.inf
-    opened: bool = False
+    has_opened: bool = False
     scanned_from: float = math.inf
     chunks: list[EngineMotion] = field(default_factory=list)
 
     @property
     def lifts_off(self) -> bool:
-        """True if a support of those that share the load opened."""
-        return self.last_open > -math.inf
+        """True if any of the supports that share the load opened."""
+        return self.last_open_at > -math.inf
 
     def terminate(self, outcome: Outcome, instant: float) -> EngineRun:
         """End this run with `outcome` at `instant`, and return it."""
@@ -100,7 +105,7 @@ def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
 
 
 def absolute_accelerations(model: EngineModel, motion: EngineMotion, ground: Ground) -> Array:
-    """Sizes of the bodies' accelerations with that of the plate, (T, N), in units of the model."""
+    """Return the sizes (T, N) of the bodies' absolute accelerations, in units of the model."""
     sizes: Array = absolute_acceleration_sizes(motion.accelerations, model.bodies, ground(motion.time))
     return sizes
 
@@ -108,29 +113,29 @@ def absolute_accelerations(model: EngineModel, motion: EngineMotion, ground: Gro
 def record_steps(
     run: EngineRun, motion: EngineMotion, size: Array, model: EngineModel, level: Level, read: bool = True
 ) -> None:
-    """Enter accepted steps with accelerations `size` (T, N) in the result of a run; read: for peaks, too."""
+    """Enter accepted steps with accelerations `size` (T, N) in the result of a run; read: whether peaks count."""
     _record_warping(run, motion, model, level)
     axes = model.bodies[0, :2]
-    distance = distances(motion.coordinates, axes)
+    distance = vector_lengths(motion.coordinates, axes)
     if distance.max() > CANDIDATE_FRACTION * run.max_displacement:
         displacement = largest_distance(motion.time, motion.coordinates, motion.velocities, axes)
         run.max_displacement = max(run.max_displacement, displacement)
     time, slip = motion.time, motion.slip
     if run.peaks_count_from > time[0]:
-        time, slip, size, distance = _rows_from(run.peaks_count_from, time, slip, size, distance)
-    vertical = float(np.abs(motion.accelerations[:, model.bodies[:, 2]]).max())
+        time, slip, size, distance = _cut_rows_before(run.peaks_count_from, time, slip, size, distance)
+    vertical = float(np.abs(motion.accelerations[:, model.bodies[0, 2]]).max())
     run.max_vertical = max(run.max_vertical, vertical)
     if read and len(time):
         run.peaks.add(time, size, slip)
         _record_last_large(run, time, size, distance)
     gap = float(motion.gap.max())
-    run.opened |= gap >= 0.0
+    run.has_opened |= gap >= 0.0
     if not model.allows_liftoff:
         run.min_load = min(run.min_load, -gap / level.penetration)
 
 
-def _rows_from(instant: float, time: Array, *columns: Array) -> list[Array]:
-    """Times (T,) and columns from `instant` on, interpolated there: it is later than the first row."""
+def _cut_rows_before(instant: float, time: Array, *columns: Array) -> list[Array]:
+    """Return times (T,) and columns from `instant` on, which lies behind the first row, with an interpolated row."""
     first = int(np.searchsorted(time, instant, side="right"))
     if first == len(time):
         return [time[first:], *(column[first:] for column in columns)]
@@ -141,21 +146,21 @@ def _rows_from(instant: float, time: Array, *columns: Array) -> list[Array]:
 
 
 def _record_last_large(run: EngineRun, time: Array, size: Array, displacement: Array) -> None:
-    """Record when an acceleration or the displacement last came near its largest value so far."""
+    """Record the last instant at which an acceleration or the displacement came near its largest value so far."""
     large, far = SETTLED_FRACTION * run.peaks.value, SETTLED_FRACTION * run.max_displacement
-    row = find_last_near(size, large, displacement, far)
+    row = find_last_row_near_peak(size, large, displacement, far)
     if row >= 0:
-        run.last_large = float(time[row])
+        run.last_large_at = float(time[row])
 
 
 def _record_warping(run: EngineRun, motion: EngineMotion, model: EngineModel, level: Level) -> None:
-    """Record the largest load that warping takes while all contacts are closed: elastic supports would take none."""
+    """Record the largest warping load while all contacts are closed, an error: elastic supports would carry none."""
     if model.warping_displacement is None:
         return
     displacement = model.warping_displacement(motion.coordinates)
     if run.lifts_off or motion.gap.max() >= 0.0:
         is_open = (motion.gap >= 0.0).any(axis=1)
-        last_open = np.maximum.accumulate(np.where(is_open, motion.time, run.last_open))
+        last_open = np.maximum.accumulate(np.where(is_open, motion.time, run.last_open_at))
         displacement = displacement[motion.time - last_open > WARPING_RELAXATION * math.sqrt(level.warping_compliance)]
-        run.last_open = float(last_open[-1])
+        run.last_open_at = float(last_open[-1])
     run.warping_load = max(run.warping_load, float(displacement.max(initial=0.0)) / level.warping_compliance)

@@ -1,5 +1,5 @@
 """
-Error of a run's peaks, from the same run at coarser levels.
+Error estimates of a run's peaks, from runs at coarser levels or on a softer contact.
 
 Peaks in smooth motion converge by a factor of four from level to level. Those at stops converge by two to four. Where
 the contact is slower than friction relaxes (see `level`) a level removes at most 1 / (2 + x) of the error, x being that
@@ -27,68 +27,70 @@ from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
 
-# Safety factors on the error that two levels show, and on that of three or more. Roache's are 3 and 1.25. Two levels
-# count at the lowest rate that occurs here and not at the formal one. How often stated errors hold with 1.5 is recorded
-# in docs/records/multibody.md.
+# Safety factors on the error from the difference of two levels, and from three or more (Roache: 3 and 1.25). Two levels
+# count at the lowest rate of convergence that occurs here, not at the formal one; docs/records/multibody.md records how
+# often stated errors hold with 1.5.
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25
 
-# Safety factor on what a softer contact shows of rounding at the same step: its own compliance may act against that
-# (measured: 2 is 1.2 times too little, once in 48).
+# Safety factor on the rounding error from the difference to a softer contact at the same step: the change of compliance
+# may partly cancel it (measured: 2 is 1.2 times too little, once in 48).
 SAFETY_OF_ROUNDING = 3.0
 
-# Noise of the contact force over the bound of its rounding: in translation (measured: up to 0.27), and of a platform
-# that turns (measured: up to 0.10).
+# Noise of the contact force over the bound of its rounding error, in translation (measured: up to 0.27) and of a
+# platform that turns (measured: up to 0.10).
 NOISE_OF_ROUNDING = 0.5
 NOISE_OF_TURNING = 0.2
 
-# Force on the platform of a flat slider, over Newton's residual, from which on that does not act in full (measured:
+# Force on the platform of a flat slider, over Newton's residual, above which the residual acts only in part (measured:
 # 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
-# Safety factor on what springs of real bearings change at a coarser level.
+# Safety factor on the change of peaks by springs of real bearings, if it is known from a coarser level only.
 SAFETY_OF_BEARINGS = 2.0
 
-# Time from the start in which stiff links swing, in square roots of the penetration (measured: peaks at 1.7).
+# Time from the start, over the square root of the penetration, within which stiff links oscillate (measured: peaks at
+# 1.7).
 STARTING_TIME = 4.0
 
-# Factor by which a level reduces the error: at stops, in smooth motion. A larger one than the last is accidental.
+# Factor by which one level reduces the error: smallest, at stops, and largest, in smooth motion. A factor above
+# MAX_CREDIBLE_RATE counts as accidental.
 MIN_RATE, MAX_RATE = 2.0, 4.0
 MAX_CREDIBLE_RATE = 5.0
 
-# Relative change of a peak over the largest load that warping takes while all supports are closed (measured: up to
-# 0.22, where supports come to v_reg one by one).
+# Relative error of a peak over the largest warping load while all supports are closed (measured: up to 0.22, where
+# supports reach the slip speed v_reg one by one).
 ERROR_PER_WARPING_LOAD = 0.25
 
-# Relative error of the first level of a motion with impacts, halved by every level on the same springs: the order of
-# impacts among the supports is decided by rounding, and two levels agree better by chance (measured: 1.1e-3 between
+# Smallest relative error at the first level of a motion with impacts, halved by every level on the same springs:
+# rounding decides in which order supports close, and two levels may agree better by chance (measured: 1.1e-3 between
 # levels 1 to 4).
 MIN_ERROR_WITH_IMPACTS = 4e-3
 
-# Error that a level typically has where friction yields, over that of rigid friction (measured: 2.3 at u_y = 0.1 mm).
+# Error that a level typically has where friction yields, over that of rigid friction (measured at level 2: 2.0).
 FLOOR_OF_SPRINGS = 3.0
 
-# Smallest relative error of a peak: smaller ones are not measured.
+# Smallest relative error that any peak is given: no smaller one has been verified.
 SMALLEST_MEASURED_ERROR = 1e-6
 
-# Relative error beyond which successive levels are different motions.
+# Relative error beyond which successive levels count as different motions, which do not converge.
 MAX_CONVERGED_ERROR = 0.3
 
-# Least change, which keeps a rate of convergence finite.
+# Smallest change of a peak by which an earlier change is divided, so that the rate of convergence stays finite.
 SMALLEST_CHANGE = 1e-290
 
 
 def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: EngineModel) -> Array:
     """
-    Estimate the error (N,) of the last of peaks at two or three consecutive levels, without rounding of the contact.
+    Estimate the error (N,) of the last of two or three sets of peaks at successive levels, without contact rounding.
 
     The estimate is Richardson's, with Roache's safety factors.
     """
-    # With an error that a level divides by `rate`, the change between two levels is (rate - 1) times the error that is
-    # left. Two levels show no rate, nor do two changes of opposite sign: the lowest one that occurs, at stops, is
-    # assumed. A rate above that of smooth motion means that two errors cancel at one level: the earlier change then
-    # counts, at the lowest rate. A contact that is slower than friction relaxes (`contact_lag`, x) leaves more, by 1 +
-    # x. No agreement takes the error below the floor that the level typically has, nor below what Newton's iteration
-    # leaves. On a plane that is added, since friction alone accelerates the platform there.
+    # If every level divides the error by `rate`, the change between two levels is (rate - 1) times the error of the
+    # finer one. Two levels show no rate, nor do two changes of opposite sign, so that the lowest rate that occurs, at
+    # stops, is assumed. A rate above that of smooth motion means that two errors cancel at one level; then the earlier
+    # change counts, at the lowest rate. A slow contact enlarges the error by 1 + x, where x is `contact_lag`. The error
+    # is never below the typical one of the level, nor below the tolerance of Newton's iteration. On a plane the latter
+    # is added, since friction alone accelerates the platform there.
     last, before = peaks[-1].value, peaks[-2].value
     change = np.abs(last - before)
     safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)
@@ -104,23 +106,23 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
     level_error: Array = np.maximum(change, floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
     starting = _error_of_starting_links(peaks[-1], levels[-1], model)
-    return level_error + peaks[-1].sampling + starting + SMALLEST_MEASURED_ERROR * last
+    return level_error + peaks[-1].sampling_error + starting + SMALLEST_MEASURED_ERROR * last
 
 
 def _error_of_starting_links(peaks: PeakReader, level: Level, model: EngineModel) -> Array:
-    """Error (N,) by links that swing at the start: what they add to the first sample, unless the peak is larger."""
-    if model.depressions is None or peaks.first is None:
+    """Return the error (N,) by stiff links that oscillate at the start: an early peak minus the first sample."""
+    if model.depressions is None or peaks.first_sample is None:
         return np.zeros_like(peaks.value)
     starting = peaks.instant < STARTING_TIME * math.sqrt(level.penetration)
-    swings = starting & (peaks.value <= 2.0 * peaks.first)
-    added: Array = np.where(swings, np.abs(peaks.value - peaks.first), 0.0)
+    swings = starting & (peaks.value <= 2.0 * peaks.first_sample)
+    added: Array = np.where(swings, np.abs(peaks.value - peaks.first_sample), 0.0)
     return added
 
 
 def rounding_error(
     peaks: PeakReader, level: Level, other: PeakReader, softer: Level, safety: float = SAFETY_TWO_LEVELS
 ) -> Array:
-    """Error (N,) by rounding of contact forces, from a run on a softer contact: x and 4 x differ by 3 x."""
+    """Return the error (N,) by rounding of contact forces, from the difference to a run on a softer contact."""
     stiffer = softer.penetration / level.penetration
     if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
         return np.full_like(peaks.value, level.rounding)
@@ -131,19 +133,19 @@ def rounding_error(
 
 def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: EngineModel) -> Array:
     """
-    Least error (N,) of a run, which the noise of the contact force leaves whatever other runs show.
+    Return the smallest error (N,) of a run, which the noise of the contact force causes however well runs agree.
 
-    A platform that hardly moves is at the same place in all runs, and they round alike. The noise accelerates all
-    bodies along the vertical, where it adds to the other components as a square. On a plane steps in which the force on
-    the platform changes by less than Newton's residual are taken without an iteration. All runs then leave it. A
-    platform that turns is nowhere at rest: levels round differently and show it, but for peaks that are noise.
+    A platform that hardly moves has the same position in all runs, which round alike. The noise accelerates all bodies
+    along the vertical, where it adds to the other components as a square. On a plane the engine takes a step without an
+    iteration if the force on the platform changes by less than Newton's residual, so that this force is missing in all
+    runs. Where the platform turns, levels round differently and show the error, unless the peak itself is noise.
     """
     peaks, shares = run.peaks.value, scene.masses / scene.total_mass
     if model.depressions is not None:
         noise = NOISE_OF_TURNING * level.rounding
         return np.where(peaks <= noise, noise, 0.0)
     noise = NOISE_OF_ROUNDING * level.rounding
-    vertical = peaks if model.ground.shakes(2) else np.minimum(run.max_vertical, peaks)
+    vertical = peaks if model.ground.accelerates(2) else np.minimum(run.max_vertical, peaks)
     gain = (2.0 * vertical + noise) * noise
     error = np.minimum(noise, gain / np.maximum(peaks + np.sqrt(np.maximum(peaks**2 - gain, 0.0)), SMALLEST_CHANGE))
     if scene.flat:
@@ -153,12 +155,12 @@ def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: Engin
 
 
 def impact_error_floor(before: int) -> float:
-    """Least relative error of a motion with impacts; before: number of coarser levels on the same springs."""
+    """Return the smallest relative error of a motion with impacts; before: number of coarser levels on its springs."""
     return MIN_ERROR_WITH_IMPACTS / 2.0**before
 
 
 def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
-    """Widen errors (N,) of a motion with impacts to a share of the peaks, and to the spread of levels that scatter."""
+    """Return errors (N,) of a motion with impacts, at least a share of the peaks and the spread of scattered levels."""
     if not run.impacts:
         return errors
     widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)
@@ -171,7 +173,7 @@ def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, bef
 
 
 def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
-    """Widen errors (N,) to the peaks where any shows no convergence: levels with impacts agree by chance."""
+    """Return errors (N,), at least as large as the peaks if any of them shows that levels do not converge."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
         return errors
@@ -179,13 +181,13 @@ def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
 
 
 def load_sharing_error(run: EngineRun) -> Array:
-    """Error (N,) of a run whose supports stay closed and do not quite share the load as elastic ones do."""
+    """Return the error (N,) of a run with closed supports that do not share the load exactly as elastic ones do."""
     error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
     return error
 
 
 def compliance_error(stiff: PeakReader, soft: EngineRun, level: Level, model: EngineModel) -> Array:
-    """Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; at least its share of rho."""
+    """Return the error (N,) by the contact's compliance in the peaks `stiff`, from a run `soft` on a softer contact."""
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
     change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + contact_lag(level, model))
@@ -193,10 +195,10 @@ def compliance_error(stiff: PeakReader, soft: EngineRun, level: Level, model: En
 
 
 def error_share_of_change(other: Level, model: EngineModel) -> float:
-    """Share of the difference to a run at a coarser or softer level that counts as error, at the lowest rate."""
+    """Return the ratio of the error to the difference from a run at a coarser or softer level, at the lowest rate."""
     return SAFETY_TWO_LEVELS * (1.0 + contact_lag(other, model)) / (MIN_RATE - 1.0)
 
 
 def contact_lag(level: Level, model: EngineModel) -> float:
-    """Response time of the contact over the relaxation time of friction, x."""
+    """Return the contact lag x, the response time of the contact over the relaxation time of friction."""
     return math.sqrt(level.penetration) / model.relaxation

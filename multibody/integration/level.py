@@ -4,9 +4,9 @@ Levels of accuracy: from one level to the next everything that the answer depend
 The step and the change of the slip velocity in one step fall by two. The compliance of the contact and the tolerance
 of Newton's iteration fall by four. The contact follows a change of the force that it must carry within
 sqrt(penetration) units of time. At a stop that force changes within the time in which regularized friction relaxes,
-share * v_reg / mu with the platform's share of the mass. A slower contact would give the friction limit of a moment
-ago. Then its error at the corner of the law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation: the
-answer of a first-order lag to an exponential.
+share * v_reg / mu with the platform's share of the mass. A slower contact would apply the friction limit of an earlier
+instant. Then its error at the corner of the law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation:
+the response of a first-order lag to an exponential.
 """
 
 from __future__ import annotations
@@ -22,79 +22,82 @@ from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Scene
 from reference.problem.ranges import TOLERANCE
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
 MAX_LEVELS = 8
 
-# Tolerance from which on a record has a level before level 0 (measured: docs/records/multibody.md).
-LOOSE = 1e-2
+# Smallest tolerance at which a record has a level before level 0 (measured: docs/records/multibody.md).
+MIN_LOOSE_TOLERANCE = 1e-2
 
-# Relative error of a peak that level 0 typically has: closer agreement of two levels is treated as accidental.
+# Relative error of a peak that level 0 typically has: a closer agreement of two levels counts as accidental.
 ERROR_FLOOR_OF_LEVEL_0 = 8e-4
 
-# Allowed change of the slip velocity in one step at level 0, as its fraction.
+# Largest relative change of the slip velocity in one step at level 0: larger steps are divided.
 MAX_SLIP_CHANGE = 0.14
 
-# Largest penetration of the contact at level 0, in units of rho.
+# Largest penetration of the contact under the weight at level 0, in units of rho.
 MAX_PENETRATION = 1e-6
 
-# Largest x at level 0 where rounding allows: from there on a level halves the contact's error (measured).
+# Largest contact lag x (response time of the contact over the relaxation time of friction) at level 0 where rounding
+# allows: below it each level halves the contact's error (measured).
 MAX_CONTACT_LAG = 0.3
 
-# Largest time in which the contact follows at level 0, over the inverse of the largest angular frequency that matters.
-# On the slope of the sphere a slower contact takes part in the motion of stiff links, and its damper ends that motion
-# at every level. Where bodies turn, links press the supports by their height, too, and the time is shorter.
-MAX_CONTACT_TIME = 0.25
-MAX_CONTACT_TIME_OF_ROCKING = 0.04
+# Largest response time of the contact at level 0, times the largest angular frequency of the motion. On the slope of
+# the sphere a slower contact takes part in the motion of stiff links, and its damper ends that motion at every level.
+# Where bodies turn, links also press the supports by their height, so that the time is shorter.
+MAX_CONTACT_RESPONSE_TIME = 0.25
+MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04
 
-# Largest time in which the contact follows where its force changes, over the duration: a slower contact has not
-# followed when the motion ends, and a softer one would not show it.
-MAX_CONTACT_TIME_OF_MOTION = 0.05
+# Largest response time of the contact over the duration, where the contact force changes: a slower contact has not
+# followed the change when the motion ends, and a run on a softer contact would not show that error.
+MAX_CONTACT_RESPONSE_TIME_OVER_DURATION = 0.05
 
-# Largest change of that force, over a peak, that needs no contact that follows: it adds as a square.
-MAX_CHANGE_WITHOUT_CONTACT = 0.03
+# Largest change of the contact force, over the peak, at which the contact need not follow: the change is vertical and
+# adds to the horizontal acceleration as a square.
+MAX_NEGLIGIBLE_FORCE_CHANGE = 0.03
 
-# Relative tolerance of the forces in Newton's iteration at level 0, and the rounding of the residuals, below which no
-# level goes.
+# Relative tolerance of the forces in Newton's iteration at level 0, and the smallest one of any level, which is the
+# rounding of the residuals.
 NEWTON_TOLERANCE = 1e-5
 MIN_NEWTON_TOLERANCE = 1e-12
 
-# Share of that tolerance where friction yields: what a spring misses of its limit is a slip within one small step.
-PRECISION_OF_SPRINGS = 1e-3
+# Factor on Newton's tolerance where friction yields: the error of a spring force at its limit is a slip in one step.
+NEWTON_TOLERANCE_RATIO_OF_SPRINGS = 1e-3
 
-# Squared step over the penetration up to which that tolerance is enough: it is relative to a step's first residual,
-# which is what the prediction of the step misses, pressed on the contact.
-MAX_SQUARED_STEP = 1e3
+# Largest squared step over the penetration at which Newton's tolerance is not reduced: the tolerance is relative to the
+# first residual of a step, which is the error of the predicted position times the contact stiffness.
+MAX_SQUARED_STEP_OVER_PENETRATION = 1e3
 
-# Share of the tolerance that rounding of the forces may take at a peak of MIN_PEAK, in units of g.
+# Largest share of the tolerance that rounding of the forces may take, and the peak, in units of g, that it refers to.
 MAX_ROUNDING_SHARE = 0.25
 MIN_PEAK = 0.2
 
-# Tolerance from which on a looser one permits no more rounding, which at a stop may grow a hundredfold.
-LOOSEST_FOR_ROUNDING = 1e-3
+# Largest tolerance that counts for rounding: a looser one permits no more, since rounding may grow a hundredfold at a
+# stop.
+MAX_TOLERANCE_FOR_ROUNDING = 1e-3
 
-# Loading in units of g below which it is itself the peak that rounding is compared with, and the largest penetration
-# under it, in units of rho: the contact force hardly changes.
+# Loading, in units of g, below which rounding is compared with the loading and not with MIN_PEAK, and the largest
+# penetration under such a loading, in units of rho: the contact force hardly changes.
 WEAK_LOADING = 1e-4
 MAX_WEAK_PENETRATION = 4e-4
 
-# Least peak in units of g, which keeps the softer contact finite.
-WEAKEST_PEAK = 1e-300
+# Smallest peak, in units of g, by which the penetration is divided, so that it stays finite.
+MIN_PEAK_AS_DIVISOR = 1e-300
 
-# Compliance against warping in units of rho under the weight: that of real bearings, to which answers with open
-# supports refer, and that of supports none of which opens, where spheres only follow the platform's misfit.
+# Compliance of the supports against warping, in units of rho under the weight: of real bearings, to which answers with
+# open supports refer, and of supports that all stay closed, whose spheres only follow the platform's misfit.
 REAL_WARPING_COMPLIANCE = 4e-4
-COMPLIANCE_OF_CLOSED = 1e4
+COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4
 
-# Ratio of the penetrations of two successive levels.
+# Ratio of the penetrations, and so of the contact compliances, of two successive levels.
 COMPLIANCE_RATIO = 4.0
 
-# Ratios of steps and of Newton's tolerance of a scan that looks ahead over those of the level.
+# Steps and Newton's tolerance of a scan, which looks ahead for large values, over those of its level.
 SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0
 
-# Ratio of neighboring step sizes, least number of step sizes below the largest step, and smallest step over the step
-# that is allowed at a stop.
+# Ratio of neighboring step sizes, smallest number of step sizes below the largest step, and smallest step over the step
+# that the slip velocity allows at a stop.
 STEP_RATIO = 4
 MIN_DIVISIONS = 7
 MIN_STEP_AT_STOP = 0.05
@@ -103,7 +106,7 @@ MIN_STEP_AT_STOP = 0.05
 @dataclass(frozen=True)
 class Level:
     """
-    One level of accuracy, in the units of the engine's model: total mass, rho and sqrt(rho / g).
+    Step, contact and tolerances of one level of accuracy, in units of total mass, rho and sqrt(rho / g).
 
     A level with another step or contact is made by `dataclasses.replace`.
 
@@ -112,7 +115,7 @@ class Level:
     step : float
         The largest step, in units of time.
     slip_change : float
-        Allowed change of the slip velocity in one step, as its fraction.
+        Largest relative change of the slip velocity in one step.
     penetration : float
         Penetration of the contact under the weight, in units of rho: the inverse of its stiffness.
     newton : float
@@ -122,22 +125,22 @@ class Level:
     max_divisions : int
         Largest number of divisions of the largest step by `STEP_RATIO`.
     error_floor : float
-        Relative error that the level typically has: closer agreement is treated as accidental.
+        Relative error that the level typically has: closer agreement counts as accidental.
     warping_compliance : float
         Compliance of the supports against warping under the weight, in units of rho.
     decays : tuple of (float, float)
-        For everything that dies faster than the largest step resolves: the instant until which it lasts, and its step.
+        For every brief motion that decays faster than the largest step resolves: its end, and the largest step before.
     strength : float
         Strength of a weak loading, in units of g; one for any other. The residual is compared with it.
     load : float
         The loading, in units of g; zero for bodies that turn on a sphere. What accelerates the bodies may be a small
         difference of it and of other forces, which Newton's iteration solves to its tolerance.
     flat : bool
-        Whether on a plane, where friction alone accelerates the platform.
+        Whether the platform lies on a plane, where friction alone accelerates it.
     softest : float
         Largest penetration with which the contact follows a change of its force within the motion.
     force_change : float
-        A bound of that change, in weights.
+        Bound of the change of the contact force within the motion, in weights.
     slide_end : float
         Slip speed at which a slide ends where friction yields, in units of velocity: in place of v_reg, which follows.
 
@@ -167,17 +170,17 @@ class Level:
 
     @property
     def rounding(self) -> float:
-        """Rounding of a contact force, in weights."""
+        """Rounding error of a contact force, in weights."""
         return self.rounding_moment / self.penetration
 
     @property
     def residual(self) -> float:
-        """Smallest residual that Newton's iteration is asked for, in weights."""
+        """Absolute tolerance of the residual in Newton's iteration, in weights."""
         return max(1e-3 * self.newton * self.strength, self.rounding)
 
     @property
     def precedes_level_0(self) -> bool:
-        """True if it comes before level 0."""
+        """True if the level comes before level 0, as a record at a loose tolerance has one."""
         return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:
@@ -191,14 +194,14 @@ class Level:
         )
 
     def min_divisions(self, time: float) -> int:
-        """Least number of divisions of the largest step at `time`, for the decay of the loading."""
+        """Return the smallest number of divisions of the largest step at `time` that resolves the brief motions."""
         if not self.decays:
             return 0
         allowed = min((step for until, step in self.decays if time < until), default=self.step)
         return min(math.ceil(math.log(self.step / allowed, STEP_RATIO) - 1e-9), self.max_divisions)
 
 
-@takes_scene
+@require_scene
 def levels(
     scene: Scene,
     model: str = "translational",
@@ -240,20 +243,20 @@ def levels(
 
 
 def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
-    """Plan all levels for a relative error of `tolerance`."""
+    """Return all levels of accuracy of a model for a relative error of `tolerance`."""
     # Step and change of the slip velocity follow from the level's number alone. The penetration falls by
-    # COMPLIANCE_RATIO as often as there is room between its bounds, and then the levels share it: `refine` adds a run
-    # on a softer contact in place of what they cannot show.
+    # COMPLIANCE_RATIO from level to level until it reaches its lower bound. Further levels share it, so that they do
+    # not show the error of the contact's compliance, for which `refine` adds a run on a softer contact.
     period = shortest_period(scene, model)
     step = largest_step(period, model)
-    # a tower tilts on soft contacts, so that its contact stays stiff under a weak loading
-    strength = 1.0 if model.allows_liftoff else weak_strength(scene)
-    followed = MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time
-    force_change = largest_contact_change(scene, model)
+    # a platform that can rotate would tilt on soft contacts, so that its contact stays stiff under a weak loading
+    strength = 1.0 if model.allows_liftoff else loading_strength(scene)
+    followed = MAX_CONTACT_RESPONSE_TIME_OVER_DURATION * scene.duration / model.units.time
+    force_change = bound_contact_force_change(scene, model)
     slowest = followed if force_change == math.inf else 1.0
     softest, stiffest = _bound_penetration(model, tolerance, strength, period, slowest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
-    first = -1 if scene.recorded and tolerance >= LOOSE else 0
+    first = -1 if scene.recorded and tolerance >= MIN_LOOSE_TOLERANCE else 0
     numbers = range(first, first + MAX_LEVELS)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in numbers]
     brief = list_brief_motions(scene, model, step)
@@ -263,7 +266,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
         max_divisions = max(MIN_DIVISIONS, math.ceil(math.log(step / smallest, STEP_RATIO)))
     precision, slide_end = 1.0, 0.0
     if model.springs is not None:
-        precision, slide_end = PRECISION_OF_SPRINGS, model.springs.slide_end
+        precision, slide_end = NEWTON_TOLERANCE_RATIO_OF_SPRINGS, model.springs.slide_end
     return [
         Level(
             step=step / 2.0**level,
@@ -289,46 +292,46 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return the softest and the stiffest contact that a model may have; slowest: time in which it must follow."""
-    # A softer contact than the softest would lag behind friction at a stop, join in the motion of stiff links, or not
-    # have followed by the end. A stiffer one than the stiffest would round its force, a position over a penetration, by
-    # more than a share of the tolerance. A weak loading is compared with its own strength, and its contact may be
-    # softer.
+    """Return the penetrations of the softest and the stiffest contact; slowest: its largest response time."""
+    # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
+    # not follow a force before the end. A stiffer contact than the stiffest would have a rounding error of its force,
+    # a position over the penetration, above a share of the tolerance. Under a weak loading that error is compared with
+    # the loading, and the contact may be softer.
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     most = min(most, COMPLIANCE_RATIO * slowest**2)
-    rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, LOOSEST_FOR_ROUNDING)
+    rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, MAX_TOLERANCE_FOR_ROUNDING)
     stiffest = min(model.rounding / rounding, most / COMPLIANCE_RATIO)
-    share = MAX_CONTACT_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_TIME
+    share = MAX_CONTACT_RESPONSE_TIME_OF_ROCKING if model.allows_liftoff else MAX_CONTACT_RESPONSE_TIME
     slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), slowest)
     return max(min(slowest**2, MAX_PENETRATION), stiffest), stiffest
 
 
 def newton_tolerance(number: int, step: float, penetration: float) -> float:
-    """Relative tolerance of Newton's iteration at level `number`."""
-    stiff = min(1.0, MAX_SQUARED_STEP * penetration / step**2)
+    """Return the relative tolerance of Newton's iteration at level `number`."""
+    stiff = min(1.0, MAX_SQUARED_STEP_OVER_PENETRATION * penetration / step**2)
     return max(NEWTON_TOLERANCE / 4.0**number * stiff, MIN_NEWTON_TOLERANCE)
 
 
 def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
-    """Soften the contact and reduce the residual of a level as the smallest peak of a run, in units of g, asks for."""
+    """Return a level with a contact as soft and a residual as small as the `smallest` peak, in units of g, needs."""
     if smallest >= WEAK_LOADING:
         return level
-    wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, WEAKEST_PEAK))
-    follows = level.force_change > MAX_CHANGE_WITHOUT_CONTACT * smallest
+    wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, MIN_PEAK_AS_DIVISOR))
+    follows = level.force_change > MAX_NEGLIGIBLE_FORCE_CHANGE * smallest
     softest = min(MAX_WEAK_PENETRATION / COMPLIANCE_RATIO, level.softest if follows else math.inf)
     penetration = max(level.penetration, min(wanted, softest))
     return replace(level, penetration=penetration, strength=min(level.strength, smallest))
 
 
-def largest_contact_change(scene: Scene, model: EngineModel) -> float:
-    """Largest change of the contact's force within a brief motion from rest, in weights, by speed and way."""
-    if model.ground.shakes(2):
+def bound_contact_force_change(scene: Scene, model: EngineModel) -> float:
+    """Return a bound, in weights, of the contact force's change in a motion from rest, from its speed and path."""
+    if model.ground.accelerates(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
     return 1.5 * speed**2
 
 
-def weak_strength(scene: Scene) -> float:
-    """The largest acceleration of a weak loading along any axis, in units of g; one for any other."""
+def loading_strength(scene: Scene) -> float:
+    """Return the largest acceleration of a weak loading along any axis, in units of g; 1 for any other loading."""
     strength = scene.largest_acceleration / GRAVITY
     return strength if 0.0 < strength < WEAK_LOADING else 1.0

@@ -1,12 +1,12 @@
 """
-The runs of one phase pair at successive levels: how far each goes, and on which springs its supports stand.
+Runs of one phase pair at successive levels of accuracy: how far each run goes, and on which springs its supports stand.
 
-The first run shows when the last large value comes (`look_ahead`). Runs at further levels stop soon after it, as long
-as they differ from the run before by much less than what separates later values from the largest.
+The first run gives the instant of the last large value (`look_ahead`). Runs at further levels stop soon after that
+instant, if they differ from the run before by much less than later values differ from the largest.
 
-While all supports are closed, their springs against warping give way so far that they take no load. Where one
-opens the springs of real bearings are part of the model. Stiffer ones remain where those change no peak beyond the
-tolerance; the change is an error then.
+While all supports are closed, their springs against warping are so soft that they carry no load. Once a support opens,
+the springs of real bearings are part of the model. Stiffer springs remain if springs of real bearings change no peak by
+more than the tolerance; the change is then a part of the error.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from multibody.integration.estimate import (
     widen_by_impacts,
 )
 from multibody.integration.level import (
-    COMPLIANCE_OF_CLOSED,
+    COMPLIANCE_OF_CLOSED_SUPPORTS,
     REAL_WARPING_COMPLIANCE,
     Level,
     soften_for_small_peaks,
@@ -43,83 +43,85 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
+UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 
-# Share of the tolerance that the load of warped supports may take as an error before one opens.
+# Largest share of the tolerance that the warping load of closed supports may cause as an error.
 MAX_WARPING_ERROR_SHARE = 0.2
 
-# Share of the work of a point that its first run may take where supports may rattle.
-MAX_FIRST_SHARE = 0.2
+# Largest share of the work of a phase pair that its first run may take where supports may rattle.
+MAX_WORK_SHARE_OF_TRIAL = 0.2
 
-# Work of a level over that of the level before.
+# Largest work of a level over that of the level before, for the prediction of work: steps are half as long.
 MAX_WORK_GROWTH = 2.0
 
-# Number of largest steps from the last large value of a run to the end of the next.
+# Number of largest steps from the last large value of a run to the early stop of the next run.
 STEPS_AFTER_SETTLING = 20.0
 
-# Change between two levels, over what separates later values from the largest, beyond which a run goes to the end.
-MAX_EARLY_CHANGE = 0.2
+# Largest change of a peak between two levels, over its distance from later values, at which a run may stop early.
+MAX_CHANGE_FOR_EARLY_STOP = 0.2
 
-# Distance of the first run from the rim, in rho, from the end of its travel, relative, and from the opening of the
-# contact, in weights: where it comes closer, all runs go to the end.
+# Smallest distance of the first run from the rim or the end of its travel, relative, and from the opening of the
+# contact, in weights, at which later runs may stop early: where it comes closer, all runs go to the end.
 MIN_END_MARGIN = 0.1
 
 
 @dataclass
 class LevelRuns:
     """
-    The runs of one phase pair so far, and its levels, which adapt to what the runs show.
+    Runs of one phase pair so far, and its levels of accuracy, which adapt to the results of the runs.
 
     Attributes:
-    - tolerance: Relative error that is asked for.
+    - tolerance: Largest relative error that the answer may have.
     - budget: Steps left to all runs.
-    - levels: Those of the runs so far, and those to come.
-    - softens: Whether small peaks may soften the contact of the levels to come.
+    - levels: Levels of the runs so far, and the levels to come.
+    - may_soften_contact: Whether small peaks may soften the contact of the levels to come.
     - keep: Whether the motions of the last two runs are kept; every run then goes to the end.
     - stop: Time at which the next run stops, where nothing later can matter.
-    - softest: Largest compliance against warping that supports may have.
-    - on_real: The last run on springs of real bearings that ended, and the change of the peaks on them, once supports
-      opened on stiffer ones, (EngineRun, (N,).
+    - max_warping_compliance: Largest compliance against warping that supports may have.
+    - real_bearings_run: The last run on springs of real bearings that ended, and the change (N,) of the peaks on them,
+      once supports opened on stiffer springs.
     """
 
     pair: PhasePair
     tolerance: float
     budget: Budget
     levels: list[Level]
-    softens: bool
+    may_soften_contact: bool
     keep: bool
     runs: list[EngineRun] = field(default_factory=list)
     stop: float = math.inf
-    softest: float = COMPLIANCE_OF_CLOSED
-    on_real: tuple[EngineRun, Array] | None = None
+    max_warping_compliance: float = COMPLIANCE_OF_CLOSED_SUPPORTS
+    real_bearings_run: tuple[EngineRun, Array] | None = None
 
     @property
-    def whole(self) -> bool:
-        """True if every run goes to the end."""
-        return self.keep or self.pair.whole
+    def runs_to_end(self) -> bool:
+        """True if every run goes to the end of the motion in accurate steps."""
+        return self.keep or self.pair.in_full
 
     def can_run_next(self) -> bool:
-        """Return whether there is another level, and work for it."""
+        """Return whether there is another level, and enough work left for its runs."""
         number = len(self.runs)
         if number == len(self.levels):
             return False
-        # a run more completes the error of a contact that stays the same, another one that of stiff springs
-        runs = 1.0 + self.shares_contact(number) + (self.on_real is not None)
-        # one level alone has no error and is no answer: a second one is tried even if it may not end
+        # a shared contact needs one more run for its compliance error, and stiff springs another one on real bearings
+        runs = 1.0 + self.shares_contact(number) + (self.real_bearings_run is not None)
+        # one level alone has no error estimate, so that a second level is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
-        return not self.runs or self.budget.left >= runs * growth * _work_until(self.runs[-1], self.stop, self.pair.end)
+        return not self.runs or self.budget.steps_left >= runs * growth * _compute_work_until(
+            self.runs[-1], self.stop, self.pair.end
+        )
 
     def shares_contact(self, number: int) -> bool:
-        """Return whether the contact of a level is no stiffer than that of the level before."""
+        """Return whether the contact of level `number` is no stiffer than that of the level before."""
         return number > 0 and self.levels[number].penetration >= self.levels[number - 1].penetration
 
     def run_next_level(self) -> EngineRun:
-        """Make the run at the next level, and adapt the levels to come to it."""
-        # Three things may replace the plain run at the level. The first run of supports that may rattle is a trial with
-        # a share of the work: rattling on stiff springs would use up all of it. A run that stops early holds only if
-        # its largest values confirm those of the run before: nothing later can then be larger, and otherwise the level
-        # is run to the end. And where a support opens, the springs of real bearings are tried, since the platform of
-        # rigid supports is lifted off by its misfit alone (docs/records/multibody.md, supports).
+        """Run the next level, and adapt the levels to come to its result."""
+        # The run at the level may be replaced in three cases. If supports may rattle, the first run is a trial with a
+        # share of the work, because rattling on stiff springs would use up all work. A run that stops early counts only
+        # if its largest values confirm those of the run before, so that no later value can be larger; otherwise the
+        # level is run to the end. If a support opens, the springs of real bearings are tried, because the misfit of a
+        # platform alone lifts it off rigid supports (docs/records/multibody.md, supports).
         number, level = len(self.runs), self.levels[len(self.runs)]
         trial = number == 0 and self.pair.model.warping_displacement is not None
         run = self._run_trial(level) if trial else self._run_level(level, self.stop)
@@ -130,16 +132,16 @@ class LevelRuns:
         if rattles or run.lifts_off:
             run = self._choose_springs_for_opening(run)
         if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
-            self.on_real = None
+            self.real_bearings_run = None
         self.runs.append(run)
-        if run.outcome == Outcome.OK and run.stop == math.inf and not self.whole:
+        if run.outcome == Outcome.OK and run.stop == math.inf and not self.runs_to_end:
             self.stop = _choose_early_stop(run, self.pair.model, self.levels[0].step)
-        if run.outcome not in UNFINISHED:
+        if run.outcome not in UNFINISHED_OUTCOMES:
             self._adapt_levels(run)
         return run
 
     def make_candidate(self) -> Candidate | None:
-        """Make the answer of the last level with its error; None where it has none on springs of real bearings."""
+        """Return the answer of the last level with its error; None if its run on springs of real bearings has none."""
         # The error is a sum of parts that different comparisons show: step, iteration and contact from the levels
         # before, rounding of contact forces from the stiffness of two levels, load sharing from what warping takes, and
         # the springs of real bearings from a run on them. Two rules keep the parts from hiding each other. Levels on
@@ -161,19 +163,19 @@ class LevelRuns:
         if not run.lifts_off:
             errors = errors + load_sharing_error(run)
         confirmed = True
-        if self.on_real is not None:
-            _, change = self.on_real
+        if self.real_bearings_run is not None:
+            _, change = self.real_bearings_run
             if (errors + change <= self.tolerance * run.peaks.value).all():
                 change, confirmed = self._repeat_on_real_bearings(change)
                 level, run = self.levels[number], self.runs[-1]
             if run.outcome != Outcome.OK:
                 return None
             errors = widen_by_impacts(errors + change, [], run, self._count_levels_on_same_springs())
-        # Behind impacts the forces of a level before level 0 differ: such a level confirms none
+        # after impacts a level before level 0 has other contact forces, so that it confirms no answer
         confirmed = confirmed and not (run.impacts and before.precedes_level_0)
         coarser = [(self.runs[-2], error_share_of_change(before, model))]
-        if self.on_real is not None:
-            coarser.append((self.on_real[0], 1.0))
+        if self.real_bearings_run is not None:
+            coarser.append((self.real_bearings_run[0], 1.0))
         noise = contact_noise_error(run, level, self.pair.scene, model)
         floor = max(level.error_floor, impact_error_floor(self._count_levels_on_same_springs()) if run.impacts else 0.0)
         floor = max(floor, 0.0 if run.lifts_off else run.warping_load)
@@ -183,7 +185,7 @@ class LevelRuns:
             shares_contact=self.shares_contact(number),
             level_errors=errors,
             rounding=rounding,
-            least=noise,
+            noise_errors=noise,
             compliance=None,
             coarser=tuple(coarser),
             confirmed=confirmed,
@@ -191,7 +193,7 @@ class LevelRuns:
         )
 
     def _count_levels_on_same_springs(self) -> int:
-        """Count the levels from level 0 to the last with the springs of the last: others confirm nothing."""
+        """Return the number of earlier levels from level 0 on that have the warping compliance of the last level."""
         *before, last = self.levels[: len(self.runs)]
         springs = last.warping_compliance
         return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
@@ -200,81 +202,85 @@ class LevelRuns:
         return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
     def _run_trial(self, level: Level) -> EngineRun:
-        """Make the first run of a model whose supports may rattle, with a share of the work."""
-        trial = Budget(MAX_FIRST_SHARE * self.budget.left)
-        self.budget.left -= trial.left
+        """Run the first level of a model whose supports may rattle, with a share of the work."""
+        trial = Budget(MAX_WORK_SHARE_OF_TRIAL * self.budget.steps_left)
+        self.budget.steps_left -= trial.steps_left
         run = self.pair.run_level(level, trial, keep=self.keep)
-        self.budget.left += trial.left
+        self.budget.steps_left += trial.steps_left
         return run
 
     def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
-        """Return the last level's run where a support opens in `run`: that, or one on springs of real bearings."""
-        # A support that opens on stiff springs may have been lifted off by the misfit of the platform alone, which real
-        # bearings take up. So the level is repeated on the springs of real bearings. If a support opens there, too, and
+        """Return `run`, in which a support opens, or in its place a run on springs of real bearings."""
+        # A support on stiff springs may open only because of the misfit of the platform, which real bearings
+        # compensate. So the level is repeated on the springs of real bearings. If a support opens in this run, too, and
         # no peak changes by more than the tolerance, the stiff run stays the answer and the change becomes a part of
-        # its error. Otherwise real bearings are part of the model, and all levels from here on have their springs.
+        # its error. Otherwise real bearings are part of the model, and this level and all later ones have their
+        # springs.
         number = len(self.runs)
         level = self.levels[number]
         if level.warping_compliance == REAL_WARPING_COMPLIANCE:
             return self._run_level(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
-        if self.on_real is not None:
+        if self.real_bearings_run is not None:
             return run
         real, change = self._run_on_real_bearings(level, run)
         stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
-            self.on_real = real, change
+            self.real_bearings_run = real, change
             return run
-        self.softest = self.softest if stiff else REAL_WARPING_COMPLIANCE
-        self._take_real_bearings(number)
+        self.max_warping_compliance = self.max_warping_compliance if stiff else REAL_WARPING_COMPLIANCE
+        self._use_real_bearings(number)
         return real
 
     def _run_on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
-        """Run a level on springs of real bearings; return it and the differences (N,) of its peaks from `run`."""
-        real = self._run_level(_give_real_bearings(level))
-        if real.outcome in UNFINISHED or real.outcome != run.outcome:
+        """Run a level on springs of real bearings; return this run and the differences (N,) of its peaks from `run`."""
+        real = self._run_level(_with_real_bearings(level))
+        if real.outcome in UNFINISHED_OUTCOMES or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
 
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
-        """Repeat the last level on springs of real bearings; return the change (N,) of its peaks, and if it ended."""
+        """Repeat the last level on springs of real bearings; return the change (N,) of peaks, and if the run ended."""
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._run_on_real_bearings(self.levels[number], run)
-        if real.outcome in UNFINISHED:
+        if real.outcome in UNFINISHED_OUTCOMES:
             # the peaks of a run that did not end may still grow
             return np.fmax(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
         change = np.maximum(earlier, change)
         if (change <= self.tolerance * run.peaks.value).all():
-            self.on_real = real, change
+            self.real_bearings_run = real, change
         else:
             self.runs[-1] = real
-            self._take_real_bearings(number)
+            self._use_real_bearings(number)
         return change, True
 
-    def _take_real_bearings(self, number: int) -> None:
-        """Give all levels from `number` on the springs of real bearings."""
-        self.levels[number:] = [_give_real_bearings(level) for level in self.levels[number:]]
-        self.stop, self.on_real = math.inf, None
+    def _use_real_bearings(self, number: int) -> None:
+        """Set the springs of real bearings for all levels from `number` on."""
+        self.levels[number:] = [_with_real_bearings(level) for level in self.levels[number:]]
+        self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
-        """Soften the supports and the contact of the levels to come as far as `run` asks for."""
+        """Soften supports and contact of the levels to come as the warping load and the peaks of `run` require."""
         done = len(self.runs)
         if run.lifts_off:
-            self.softest = REAL_WARPING_COMPLIANCE
-        coming = [_adapt_warping_compliance(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
-        # a softer contact would let a platform that turns tilt
-        if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
+            self.max_warping_compliance = REAL_WARPING_COMPLIANCE
+        coming = [
+            _adapt_warping_compliance(level, run, self.tolerance, self.max_warping_compliance)
+            for level in self.levels[done:]
+        ]
+        # a softer contact would tilt a platform that can rotate
+        if self.may_soften_contact and run.outcome == Outcome.OK and self.pair.model.depressions is None:
             smallest = float(run.peaks.value.min())
             coming = [soften_for_small_peaks(level, smallest, self.tolerance) for level in coming]
         self.levels[done:] = coming
 
 
-def _give_real_bearings(level: Level) -> Level:
-    """Return a level whose supports give way against warping as real bearings do."""
+def _with_real_bearings(level: Level) -> Level:
+    """Return `level` with the warping compliance of real bearings."""
     return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
-    """Return a level whose supports give way enough against warping, which took a load in `run` before."""
+    """Return `level` with a warping compliance that keeps the error of the warping load of `run` within tolerance."""
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)
@@ -283,25 +289,25 @@ def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, so
     return replace(level, warping_compliance=min(wanted, softest))
 
 
-def _work_until(run: EngineRun, stop: float, end: float) -> float:
-    """Work of `run`, had it stopped at `stop`; both scan what comes later."""
+def _compute_work_until(run: EngineRun, stop: float, end: float) -> float:
+    """Return the work that `run` would have taken up to `stop`, without the scan of later motion."""
     own = min(run.scanned_from, end)
     shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return shorter * run.work
 
 
 def _choose_early_stop(run: EngineRun, model: EngineModel, step: float) -> float:
-    """Time at which runs at further levels may stop, after one to the end; step: the largest of any level."""
+    """Return the time at which runs at further levels may stop; `run` went to the end, `step` is the largest step."""
     limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
     if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:
         return math.inf
-    return run.last_large + STEPS_AFTER_SETTLING * step
+    return run.last_large_at + STEPS_AFTER_SETTLING * step
 
 
 def _confirms_early_stop(run: EngineRun, before: EngineRun) -> bool:
-    """Return whether a run that stopped early agrees so well with the one before that nothing later can matter."""
+    """Return whether a run that stopped early agrees so well with `before` that no later value can be larger."""
     if run.outcome != Outcome.OK:
         return False
     largest = np.array([*run.peaks.value, run.max_displacement])
     change = np.abs(largest - [*before.peaks.value, before.max_displacement])
-    return bool((change <= MAX_EARLY_CHANGE * (1.0 - SETTLED_FRACTION) * largest).all())
+    return bool((change <= MAX_CHANGE_FOR_EARLY_STOP * (1.0 - SETTLED_FRACTION) * largest).all())

@@ -1,10 +1,11 @@
 """
-A run to the end of the motion that integrates in full only as long as anything large can come.
+Run to the end of the motion that takes accurate steps only as long as large accelerations can come.
 
-Once nothing came near a largest value for a while, the rest of the motion is scanned in steps four times as large, from
-the state that the run has reached. If nothing comes near a largest value there either, the rest is left out. Otherwise
-the run goes on from where it was, for a while beyond the instant that was found, and looks ahead again. Where a contact
-opens, motions of different steps are different motions: such a run goes to the end in full.
+If no value came near its largest for a period of the pendulum, the later motion is scanned in steps four times as
+large, from the state that the run has reached. If no value comes near its largest in the scan either, the later motion
+is left out. Otherwise the run continues from its own state up to a period beyond the large value, and scans the motion
+again. If a contact opens, runs with different steps are different motions, so that the run goes to the end in accurate
+steps.
 """
 
 from __future__ import annotations
@@ -23,18 +24,18 @@ from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
-# Share of a largest value: in larger steps later values below it are no larger ones of the run either.
-NEAR_FRACTION = 0.8
+# Share of a largest value: where values of a scan stay below it, the accurate run has no larger value there either.
+NEAR_PEAK_FRACTION = 0.8
 
-# Share of the weight: with less on the contact in larger steps it might open in the run.
-NEAR_LOAD = 0.2
+# Contact force, in weights: where it falls below this value in a scan, the contact might open in the accurate run.
+NEAR_OPENING_FORCE = 0.2
 
-# Time from the last large value to a look ahead, in units of time: a period of the pendulum.
-WAIT = 2.0 * math.pi
+# Time from the last large value to the scan of the later motion, in units of time: one period of the pendulum.
+QUIET_TIME_BEFORE_SCAN = 2.0 * math.pi
 
 
 def can_look_ahead(model: EngineModel, level: Level) -> bool:
-    """Return whether larger steps save work: they end at knots of a record in any case, and heat remembers one run."""
+    """Return whether a scan in larger steps saves work and is possible, as it is not with heat or a dense record."""
     return (
         not (model.friction is not None and model.friction.law.heat)
         and float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
@@ -42,29 +43,29 @@ def can_look_ahead(model: EngineModel, level: Level) -> bool:
 
 
 def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
-    """Return the level of the longest steps in a run; whole: it takes its own steps to the end of the motion."""
+    """Return the level with the longest steps in a run; whole: whether the run takes its own steps to the end."""
     return level.coarsen() if can_look_ahead(model, level) and not whole else level
 
 
 def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineRun:
-    """Run as `run_adaptively` does, without the steps of a part in which nothing comes near a largest value."""
-    # The maximum in (5.1) needs no accurate motion where the accelerations are small. A scan costs a quarter of the
-    # steps, and its error hides no large value: values count as near from NEAR_FRACTION of the largest on, and the
-    # largest values of scans fell to 0.96 of those of the level's own steps at worst (measured on 200 random scenes:
-    # docs/records/multibody.md). The scan has a result of its own, which starts with that fraction, so that whatever it
-    # changes came near. It stops where something large comes, opens or fails. The run then goes on from its own
-    # checkpoint, up to a period of the pendulum behind that instant, and the question is put again.
+    """Run the engine with adaptive steps, but leave out late motion in which no value comes near its largest."""
+    # The maximum in (5.1) needs no accurate motion where the accelerations are small. A scan takes a quarter of the
+    # steps, and its error hides no large value: a value counts as near the largest above NEAR_PEAK_FRACTION of it,
+    # while the largest values of scans were 0.96 of those in accurate steps at worst (measured on 200 random scenes:
+    # docs/records/multibody.md). The scan has a result of its own, which starts with that fraction of the largest
+    # values, so that every change of it is a value near the largest. The scan stops at a large value, an opening or a
+    # failure. The run then continues from its own checkpoint to a period of the pendulum beyond that instant.
     model, end = integration.solver.model, integration.end
     run, checkpoint = begin_run(model), Checkpoint(start)
     coarse = integration.level.coarsen()
-    if not integration.budget.allows(end, coarse):
+    if not integration.budget.has_work_left_for(end, coarse):
         return run.terminate(Outcome.STEP_LIMIT, 0.0)
     scan = replace(integration, solver=EngineSolver(model, coarse.newton, coarse.residual), level=coarse)
     large_at = 0.0
 
     def is_quiet(time: float) -> bool:
-        """Return whether nothing large came for a while, in the run or in a scan."""
-        return time >= max(large_at, run.last_large) + WAIT and not run.opened
+        """Return whether no large value came for a period of the pendulum before `time`, in the run or in a scan."""
+        return time >= max(large_at, run.last_large_at) + QUIET_TIME_BEFORE_SCAN and not run.has_opened
 
     while True:
         checkpoint = continue_run(integration, run, checkpoint, pause=is_quiet)
@@ -82,18 +83,18 @@ def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineR
 
 
 def _begin_scan(run: EngineRun, model: EngineModel) -> EngineRun:
-    """Return a run that starts with what is nearly as large as in `run`: what it changes came near that."""
+    """Return a scan whose largest values begin at a share of those of `run`, so that any larger value came near."""
     ahead = begin_run(model)
-    ahead.peaks.value[:] = NEAR_FRACTION * run.peaks.value
-    ahead.max_displacement = NEAR_FRACTION * run.max_displacement
+    ahead.peaks.value[:] = NEAR_PEAK_FRACTION * run.peaks.value
+    ahead.max_displacement = NEAR_PEAK_FRACTION * run.max_displacement
     return ahead
 
 
 def _comes_near_largest(ahead: EngineRun, run: EngineRun, time: float) -> bool:
-    """Return whether a run ahead, at `time`, came near a largest value of `run`, or near the opening of a contact."""
+    """Return whether the scan `ahead` came near a largest value of `run`, or near the opening of a contact."""
     return bool(
-        (ahead.peaks.value > NEAR_FRACTION * run.peaks.value).any()
-        or ahead.max_displacement > NEAR_FRACTION * run.max_displacement
-        or ahead.opened
-        or ahead.min_load < NEAR_LOAD
+        (ahead.peaks.value > NEAR_PEAK_FRACTION * run.peaks.value).any()
+        or ahead.max_displacement > NEAR_PEAK_FRACTION * run.max_displacement
+        or ahead.has_opened
+        or ahead.min_load < NEAR_OPENING_FORCE
     )

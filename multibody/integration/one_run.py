@@ -30,31 +30,31 @@ class PhasePair:
     """
     One phase pair (2,), rad, of a scene on an assembled model.
 
-    initial: state from which the motion starts, at rest without. whole: whether every run without a stop takes its own
-    steps to the end of the motion.
+    initial: state from which the motion starts; None is at rest. in_full: whether every run without an early stop takes
+    accurate steps to the end of the motion.
     """
 
     scene: Scene
     model: EngineModel
     phase: Array
     initial: State | None = None
-    whole: bool = False
+    in_full: bool = False
 
     @property
     def end(self) -> float:
-        """Duration, in units of time."""
+        """Duration of the motion, in units of time."""
         return self.scene.duration / self.model.units.time
 
     @cached_property
     def ground(self) -> Ground:
-        """Acceleration of the plate in units of the model."""
+        """Acceleration of the plate as a function of time, in units of the model."""
         units, acceleration = self.model.units, acceleration_of_ground(self.scene, self.phase)
         return lambda time: acceleration(time * units.time) / units.acceleration
 
     def run_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
     ) -> EngineRun:
-        """Run with the steps of `level`, up to `stop` or, unless kept, to where nothing large comes any more."""
+        """Run the model at a level of accuracy, up to `stop` or, unless `keep`, until no large value can come."""
         solver = EngineSolver(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         if self.model.springs is not None:
@@ -63,7 +63,7 @@ class PhasePair:
         if start is None:
             return begin_run(self.model, stop).terminate(Outcome.SOLVER_FAILED, 0.0)
         integration = Integration(solver, self.ground, self.end, level, budget, keep)
-        if stop == math.inf and not (keep or self.whole) and can_look_ahead(self.model, level):
+        if stop == math.inf and not (keep or self.in_full) and can_look_ahead(self.model, level):
             return run_with_look_ahead(integration, start)
         return run_adaptively(integration, start, stop)
 
@@ -76,7 +76,7 @@ class PhasePair:
         integrator: str,
         discontinuous: float | None,
     ) -> EngineRun:
-        """Run in `count` equal steps, without control of their error; the motion is kept."""
+        """Run the model in `count` equal steps without error control, and keep the motion."""
         model, solver = self.model, EngineSolver(self.model, newton, residual, integrator, discontinuous)
         model.set_contact(penetration)
         start = self._find_start(penetration)
@@ -91,7 +91,7 @@ class PhasePair:
         return result if outcome == Outcome.OK else result.terminate(outcome, instant)
 
     def _find_start(self, penetration: float) -> EngineState | None:
-        """Find the state at time zero, in balance where the motion starts at rest; None where no balance is found."""
+        """Find the state at time zero, in balance if the motion starts at rest; None if no balance is found."""
         self.model.ground.set_phase(self.phase)
         acceleration = ground_acceleration(self.scene, self.phase, [0.0])[0]
         start = self.model.start(self.initial, acceleration, penetration)

@@ -1,10 +1,10 @@
 """
-Supports that open and close in a run: every closing is an impact, located between two steps of the engine.
+Openings and closings of supports in a run: every closing is an impact, located between two steps of the engine.
 
-A contact whose gap has opened is taken out of the engine, so that every stretch of a run is smooth. The gap is watched
-from the positions. Where it closes, the last step is made again with the length at which the gap is zero, velocities
-jump by `ImpactLaw`, and the run goes on from there. Slow closings, and what is left of the normal motion behind an
-impact, are damped by the contact itself within a time in proportion to the square root of its penetration.
+A contact whose gap has opened is taken out of the engine, so that every part of a run is smooth. Its gap then follows
+from the positions. When the gap closes, the last step is repeated with the length at which the gap is zero, velocities
+jump by `ImpactLaw`, and the run continues from that instant. The contact itself damps slow closings and the remaining
+normal motion after an impact, within a time in proportion to the square root of its penetration.
 """
 
 from __future__ import annotations
@@ -23,51 +23,51 @@ from multibody.models.state import EngineState
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Bound of the gap at a located closing, in penetrations.
+# Largest gap at a closing, over the penetration, at which the closing counts as located.
 GAP_TOLERANCE = 1e-4
 
-# Gap beyond which a contact is open, in penetrations. It is larger than the bound of a located closing, so that a
+# Gap, over the penetration, beyond which a contact is open. It is larger than the gap of a located closing, so that a
 # contact that has just closed stays closed.
 OPENING_GAP = 2.0 * GAP_TOLERANCE
 
-# Span, in units of time, within which contacts that close are hit at once.
-SIMULTANEOUS = 1e-7
+# Time, in units of the model, within which contacts that close share one impact.
+SIMULTANEOUS_CLOSING_TIME = 1e-7
 
-# Gap, in penetrations, up to which open contacts are hit together with one that closes: a platform leaves contacts with
-# uneven loads at a tilt that rigid ones would not give it.
-MAX_GAP_OF_COMPLIANCE = 1.0
+# Gap, over the penetration, up to which open contacts share the impact of one that closes: a platform leaves compliant
+# contacts with uneven loads at a tilt, which rigid contacts would not cause.
+MAX_GAP_OF_JOINT_IMPACT = 1.0
 
-# Speed of approach, in units of velocity, below which a closing is left to the contact's damper.
+# Speed of approach, in units of velocity, below which a closing makes no impact: the contact's damper stops it.
 MIN_IMPACT_SPEED = 1e-5
 
-# Force of that damper, in weights, beyond which accelerations do not count until contact forces have settled.
+# Force of the contact's damper at a closing, in weights, beyond which no peak counts until contact forces have settled.
 MAX_QUIET_FORCE = 1e-3
 
-# Time of settling behind a closing: the longer one of a time of the contact, in square roots of the penetration, and of
-# one that real bearings, which give way by 4e-4 rho, take to spring back, in units of time.
-SETTLING_TIME = 40.0
-IMPACT_TIME = 0.04
+# Time after a closing in which contact forces settle and no peak is read: the longer of a time of the contact, over the
+# square root of the penetration, and of the time, in units of the model, in which real bearings spring back.
+CONTACT_SETTLING_TIME = 40.0
+BEARING_SETTLING_TIME = 0.04
 
-# Shares of a step at which a flight within it is looked for.
-SHARES_OF_A_FLIGHT = 2.0 ** np.arange(1, 8)
+# Numbers by which a step is divided in the search for a flight that begins and ends within the step.
+FLIGHT_SEARCH_DIVISORS = 2.0 ** np.arange(1, 8)
 
-# First step behind an impact, in square roots of the penetration, the response time of the contact.
+# First step after an impact over the response time of the contact, which is the square root of the penetration.
 FIRST_STEP_OVER_RESPONSE = 0.25
 
 
 @dataclass(frozen=True)
 class Event:
-    """The first opening or closing in a chunk: the last row before it, and the contacts (K,) that open or close."""
+    """First opening or closing in a chunk: the last row before it, and a mask (K,) of the contacts that change."""
 
     row: int
     closes: bool
-    which: Mask
+    contacts: Mask
 
 
 @dataclass
 class Openings:
     """
-    The contacts (K,) that are open, and the impacts so far.
+    Contacts (K,) that are open, and number of impacts so far.
 
     settled_at: instant at which contact forces have settled after the last impact, in units of time.
     """
@@ -83,18 +83,18 @@ class Openings:
         self._mark_open(np.zeros(len(self.law.depressions.ring), bool))
 
     def _mark_open(self, is_open: Mask) -> None:
-        """Take the open contacts out of the engine's system, and put the others in."""
+        """Take the open contacts out of the engine's system, and put the closed ones in."""
         self.is_open = is_open
         take_out_open_contacts = self.solver.model.take_out_open_contacts
         assert take_out_open_contacts is not None
         take_out_open_contacts(is_open, self.penetration)
 
     def gaps(self, coordinates: Array) -> Array:
-        """Gap (T, K) of every contact for coordinates (T, n)."""
+        """Return the gaps (T, K) of all contacts for coordinates (T, n)."""
         return self.law.depressions.clearance(coordinates) - self.penetration
 
     def fill_gaps_of_open_contacts(self, motion: EngineMotion) -> EngineMotion:
-        """Return `motion` with the gaps of open contacts, which the engine takes for whole hollow spheres."""
+        """Return `motion` with the gaps of open contacts computed here: the engine's contact sphere has no rim."""
         if not self.is_open.any():
             return motion
         contact = motion.contact.copy()
@@ -102,7 +102,7 @@ class Openings:
         return motion._replace(contact=contact)
 
     def find_first_event(self, motion: EngineMotion) -> Event | None:
-        """Find the first opening or closing in the rows of `motion` behind its first one."""
+        """Find the first opening or closing behind the first row of `motion`; return None if there is none."""
         opens = (motion.gap[1:] > OPENING_GAP * self.penetration) & ~self.is_open
         closes = np.zeros_like(opens)
         if self.is_open.any():
@@ -117,66 +117,71 @@ class Openings:
 
     def open_contacts(self, event: Event) -> None:
         """Take the contacts that have opened out of the engine."""
-        self._mark_open(self.is_open | event.which)
+        self._mark_open(self.is_open | event.contacts)
 
     def locate_event(self, state: EngineState, time: float, step: float, event: Event) -> EngineMotion | None:
         """
-        Make the step from `state`, of length `step` or less, that ends where the first contact of the event changes.
+        Integrate one step from `state`, of length `step` or less, to the instant at which the first contact changes.
 
-        Returns None if that step has no length.
+        Returns None if the event lies at the start of the step.
         """
-        # The engine knows no events, so the length of the step is the unknown: steps of trial lengths are made from the
-        # same state until the smallest gap of the event's contacts is zero (Brent's method). Two things make this less
-        # than plain root finding. A contact that touches within the tolerance at the start has no sign change behind
-        # it, unless the platform leaves and comes back within the step: such a flight is looked for at ever shorter
-        # steps. And an event whose margin is still positive at the whole step, which rounding permits, ends with it.
+        # The engine has no events, so the length of the step is the unknown: steps of trial lengths are made from the
+        # same state until the smallest gap of the event's contacts is zero (Brent's method). There are two special
+        # cases. A contact that touches within the tolerance at the start has no later change of sign, unless the
+        # platform leaves it and comes back within the step; such a flight is searched for in shorter and shorter steps.
+        # And because of rounding that gap may still be positive after the whole step; then the event lies at the end
+        # of that step.
         sign = 1.0 if event.closes else -1.0
         done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}
 
-        def margin(length: float) -> float:
-            """Gap that is left before a closing, or closure before an opening, after a step: positive before it."""
+        def gap_before_event(length: float) -> float:
+            """Return the smallest gap, or for an opening minus the largest one, after a step of a `length`."""
             if length not in values:
                 done[length] = motion = self.solver.run(state, time, length, 1)
-                gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.which]
+                gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.contacts]
                 values[length] = -self.penetration if gaps is None else float((sign * gaps).min())
             return values[length]
 
         tolerance = GAP_TOLERANCE * self.penetration
-        first, begin = 0.0, float((sign * self.gaps(state.coordinates[None])[0, event.which]).min())
+        first, begin = 0.0, float((sign * self.gaps(state.coordinates[None])[0, event.contacts]).min())
         values[first] = begin
         if begin <= tolerance:
             if not event.closes:
                 return None
-            first = next((length for length in step / SHARES_OF_A_FLIGHT if margin(length) > tolerance), 0.0)
+            first = next(
+                (length for length in step / FLIGHT_SEARCH_DIVISORS if gap_before_event(length) > tolerance), 0.0
+            )
             if first == 0.0:
                 return None
             begin = values[first]
-        end = margin(step)
+        end = gap_before_event(step)
         if end >= 0.0:
             return done[step]
-        length = float(brentq(margin, first, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15))
-        margin(length)
+        length = float(
+            brentq(gap_before_event, first, step, xtol=max(tolerance * step / (begin - end), 1e-300), rtol=1e-15)
+        )
+        gap_before_event(length)
         return done.get(length)
 
     def close_contacts(self, motion: EngineMotion, which: Mask) -> EngineMotion:
-        """Return `motion` with contacts that touch at its end closed there."""
+        """Return `motion` with those contacts of `which` closed in its last row that touch there."""
         motion = self.fill_gaps_of_open_contacts(motion)
         touched = which & (self.gaps(motion.coordinates[-1:])[0] <= GAP_TOLERANCE * self.penetration)
         motion.contact[-1, 0::4][touched] = -GAP_TOLERANCE * self.penetration
         return motion
 
     def apply_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
-        """Return the state behind the impact of `which`, and of contacts that are hit at once with them."""
-        # Contacts that close within SIMULTANEOUS, or whose gap the compliance of the others explains, are hit together:
-        # impacts one after the other, in an order that rounding decides, would leave other velocities. A contact that
-        # is hardly pressed closes without a jump, for its own damper ends so slow an approach, and only the light
-        # spheres follow the platform. Otherwise velocities jump by the impact law, and with them the stretch at which
-        # no bar pushes for its damper's sake. Forces behind the jump are those of the contact's stiffness until they
-        # have settled, so that no acceleration counts before `settled_at`.
+        """Return the state after the impact of the contacts `which` and of others that close at the same time."""
+        # Contacts that close within SIMULTANEOUS_CLOSING_TIME, or whose gap is within MAX_GAP_OF_JOINT_IMPACT, share
+        # one impact: successive impacts, in an order that rounding decides, would end with other velocities. A contact
+        # with a slow approach closes without a jump of velocities, because its damper stops it, and only the light
+        # spheres follow the platform. Otherwise velocities jump by the impact law, and the elongation of the bars
+        # changes so that their dampers exert no force. Until contact forces have settled, they depend on the contact's
+        # stiffness, so that no acceleration counts before `settled_at`.
         gaps = self.gaps(state.coordinates[None])[0]
         leaving, relative = self.law.normal_speeds(state.coordinates, state.velocities)
-        at_once = np.maximum(SIMULTANEOUS * -relative, MAX_GAP_OF_COMPLIANCE * self.penetration)
+        at_once = np.maximum(SIMULTANEOUS_CLOSING_TIME * -relative, MAX_GAP_OF_JOINT_IMPACT * self.penetration)
         hit = which & (gaps <= 2.0 * GAP_TOLERANCE * self.penetration)
         hit |= self.is_open & (gaps <= np.where(relative < 0.0, at_once, 0.0))
         if not hit.any():
@@ -185,18 +190,18 @@ class Openings:
         contact[0::4][hit] = -GAP_TOLERANCE * self.penetration
         response = math.sqrt(self.penetration)
         if -2.0 * relative[hit].min() > MAX_QUIET_FORCE * response:
-            self.settled_at = time + max(SETTLING_TIME * response, IMPACT_TIME)
+            self.settled_at = time + max(CONTACT_SETTLING_TIME * response, BEARING_SETTLING_TIME)
         if -leaving[hit].min() < MIN_IMPACT_SPEED:
             self._mark_open(self.is_open & ~hit)
             velocities = self.law.carry_spheres_along(state.coordinates, state.velocities, hit)
             return replace(state, velocities=velocities, contact=contact)
-        velocities, is_open = self.law.velocities_after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
+        velocities, is_open = self.law.solve_impact(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
         self._mark_open(is_open)
         self.impacts += 1
-        bar_lags = self.solver.model.bar_lags
-        assert bar_lags is not None
-        lags = bar_lags(self.penetration)
-        coordinates = self.law.relax_bars(state.coordinates, state.velocities, velocities, lags)
+        bar_damping_times = self.solver.model.bar_damping_times
+        assert bar_damping_times is not None
+        damping_times = bar_damping_times(self.penetration)
+        coordinates = self.law.unload_bar_dampers(state.coordinates, state.velocities, velocities, damping_times)
         return replace(
             state, coordinates=coordinates, velocities=velocities, contact=contact, slip_rate=None, load=None
         )

@@ -1,5 +1,5 @@
 """
-Largest absolute acceleration of each body between recorded instants, with the error of reading it.
+Largest absolute acceleration of each body, also between recorded instants, with the error of the interpolation.
 
 The regularized law has a corner where the slip speed passes v_reg: accelerations are continuous there and their slopes
 jump. The largest acceleration of a platform that comes to a stop is often that corner, between two samples, so it is
@@ -16,35 +16,35 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.chunk import any_larger
+from multibody.integration.chunk import has_larger_entry
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 
-# Number of samples carried over to the next chunk: what the readings from both sides of an instant need.
+# Number of samples carried over to the next chunk: as many as the extrapolations from both sides of an instant need.
 CARRIED_SAMPLES = 6
 
-# Largest ratio of neighboring steps across which a parabola is laid: more than the run itself changes its steps by.
+# Largest ratio of neighboring steps across which a parabola is fitted: step control alone makes no larger ratio.
 MAX_STEP_CHANGE = 20.0
 
-# Largest distance, in steps, from the last sample to an instant that is read from the samples before it.
-MAX_STEPS_BEYOND = 1.5
+# Largest distance, in steps, from the last sample to an instant to which samples before it are extrapolated.
+MAX_STEPS_EXTRAPOLATED = 1.5
 
-# Number of samples behind a corner from which it is read.
+# Number of samples behind a corner of the friction law that are needed to extrapolate the acceleration back to it.
 SAMPLES_BEHIND_CORNER = 3
 
-# Ratio of a step to the one before from which on it is the longer one of two.
-LONGER_STEP = 1.5
+# Ratio of the last step to the one before beyond which the samples do not count as equally spaced.
+MIN_LONGER_STEP_RATIO = 1.5
 
-# Share of the peak: samples below it cannot be raised above it by interpolation at a resolved step.
+# Share of the peak: interpolation at a resolved step raises no sample below this share above the peak.
 CANDIDATE_FRACTION = 0.97
 
 
 class _AccelerationSamples(NamedTuple):
     """
-    Samples of an acceleration of each body, and where their slopes jump.
+    Samples of the absolute acceleration of each body, and the rows at which their slopes jump.
 
     time: (T,). size: (T, N). slip: speeds (T, K). corners: rows behind which a slip speed passes the threshold. bends:
     rows on kinks of the loading, and between steps one of which is much longer. ready: corners to read now.
@@ -60,7 +60,7 @@ class _AccelerationSamples(NamedTuple):
 
 class PeakReader:
     """
-    Running maximum over t of |absolute acceleration| per body, fed chunk by chunk; nothing else is kept.
+    Running maximum over time of the absolute acceleration of each body, updated with every chunk of a motion.
 
     Parameters:
     - bodies: Number N of bodies.
@@ -68,16 +68,16 @@ class PeakReader:
     - knots: Rising instants at which the loading has a kink, each a sample within `near`, (K,).
 
     Attributes:
-    - value, sampling, instant: Largest value, estimated error of the reading between samples, and instant of each body,
+    - value, sampling_error, instant: Largest value of each body, estimated error of its interpolation, and instant,
       (N,).
-    - first: Values of the first sample, (N,).
+    - first_sample: Values of the first sample, (N,).
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
         self.value = np.zeros(bodies)
-        self.sampling = np.zeros(bodies)
+        self.sampling_error = np.zeros(bodies)
         self.instant = np.zeros(bodies)
-        self.first: Array | None = None
+        self.first_sample: Array | None = None
         self._threshold, self._knots, self._near = threshold, knots, near
         self._last_read_corner = -np.inf
         self._time = np.empty(0)
@@ -85,12 +85,12 @@ class PeakReader:
         self._slip = np.empty((0, 0))
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
-        """Add sizes (T, N) and slip speeds (T, K) at times (T,); the first row repeats the last one before."""
-        if self.first is None:
-            self.first = size[0]
+        """Add acceleration sizes (T, N) and slip speeds (T, K) at times (T,); the first row repeats the last sample."""
+        if self.first_sample is None:
+            self.first_sample = size[0]
         carried = len(self._time)
         least = CANDIDATE_FRACTION * self.value
-        candidate = any_larger(size, 1 if carried else 0, least) or any_larger(self._size, 0, least)
+        candidate = has_larger_entry(size, 1 if carried else 0, least) or has_larger_entry(self._size, 0, least)
         if carried and (candidate or len(time) <= CARRIED_SAMPLES):
             time = np.concatenate([self._time, time[1:]])
             size = np.concatenate([self._size, size[1:]])
@@ -100,13 +100,14 @@ class PeakReader:
         self._time, self._size, self._slip = time[-CARRIED_SAMPLES:], size[-CARRIED_SAMPLES:], slip[-CARRIED_SAMPLES:]
 
     def _read_between(self, time: Array, size: Array, slip: Array) -> None:
-        """Read the samples, and what lies between them."""
-        # The largest acceleration lies between two samples. In smooth motion a parabola through the highest sample and
-        # its neighbors is of fourth order at the top. Nothing smooth may be laid across three kinds of rows: where the
-        # slip speed passes v_reg, the corner of the friction law, the slope of the acceleration jumps within the step;
-        # at kinks of a recorded loading and at steps much longer than their neighbor it changes at the sample. A corner
-        # is often the peak itself, at a stop. It is read from each side by itself, at the instant at which the slip
-        # speed of that side passes v_reg, once, as soon as there are samples behind it.
+        """Update the largest values from the samples, and from interpolation between them."""
+        # The largest acceleration lies between two samples. In smooth motion the maximum of a parabola through the
+        # highest sample and its neighbors is of fourth order. No parabola may be fitted across three kinds of rows.
+        # Where the slip speed passes v_reg, the corner of the friction law, the slope of the acceleration jumps within
+        # the step. At kinks of a recorded loading, and at steps much longer than their neighbor, it jumps at the
+        # sample. At a stop the corner itself is often the peak. Its acceleration is extrapolated from each side alone,
+        # to the instant at which the slip speed of that side passes v_reg, once, as soon as there are samples behind
+        # the corner.
         corners = self._find_corners(slip)
         ready = [
             left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._last_read_corner
@@ -125,73 +126,73 @@ class PeakReader:
         return rows
 
     def read_until(self, instant: float) -> None:
-        """Read on from the last samples to `instant`, where velocities jump, unless they do not resolve the motion."""
+        """Extrapolate the last samples to `instant`, at which velocities jump, if the samples resolve the motion."""
         time, size, last = self._time, self._size, len(self._time) - 1
-        if last < 2 or instant - time[-1] > MAX_STEPS_BEYOND * np.diff(time[-3:]).min():
+        if last < 2 or instant - time[-1] > MAX_STEPS_EXTRAPOLATED * np.diff(time[-3:]).min():
             return
         corners = self._find_corners(self._slip)
         bends: list[int] = find_kinks(time, self._knots, self._near).tolist()
-        if max(_smooth_side(last, len(time), corners)[0], *bends, 0) > last - 2:
+        if max(_find_smooth_side(last, len(time), corners)[0], *bends, 0) > last - 2:
             return
         for body, values in enumerate(size.T):
             linear, curved = (_extrapolate(time[-count:], values[-count:], instant) for count in (2, 3))
             if abs(curved - linear) < abs(linear - values[-1]):
-                self._offer(body, curved, abs(curved - linear), instant)
+                self._update_largest(body, curved, abs(curved - linear), instant)
 
     def restart(self) -> None:
-        """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""
+        """Forget the samples, so that no value is interpolated across this instant, at which velocities jump."""
         self._time, self._size, self._slip = self._time[:0], self._size[:0], self._slip[:0]
 
     def _scan_body(self, body: int, samples: _AccelerationSamples) -> None:
-        """Read the largest values of one body from the samples."""
+        """Update the largest value of one body from the samples."""
         time, slip, corners = samples.time, samples.slip, samples.corners
         size = samples.size[:, body]
         row = int(size.argmax())
         if size[row] <= CANDIDATE_FRACTION * self.value[body]:
             return
         unresolved = _error_of_lone_sample(time, size, row, corners)
-        for stretch in _smooth_stretches(row, len(size), corners, samples.bends):
-            value, error, instant = _read_smooth_top(time, size, row, *stretch)
-            self._offer(body, value, max(error, unresolved), instant)
+        for stretch in _list_smooth_stretches(row, len(size), corners, samples.bends):
+            value, error, instant = _read_parabola_maximum(time, size, row, *stretch)
+            self._update_largest(body, value, max(error, unresolved), instant)
         for left in samples.ready:
             if max(size[left], size[left + 1]) > CANDIDATE_FRACTION * self.value[body]:
-                self._offer(body, *_read_corner(time, size, slip, left, self._threshold, corners))
+                self._update_largest(body, *_read_corner(time, size, slip, left, self._threshold, corners))
 
-    def _offer(self, body: int, value: float, error: float, instant: float) -> None:
-        """Take a reading if it is the largest so far; what an earlier one leaves possible stays part of the error."""
-        possible = max(value + error, self.value[body] + self.sampling[body])
+    def _update_largest(self, body: int, value: float, error: float, instant: float) -> None:
+        """Keep a value if it is the largest so far; the error covers every larger value that earlier errors allow."""
+        possible = max(value + error, self.value[body] + self.sampling_error[body])
         if value > self.value[body]:
             self.value[body], self.instant[body] = value, instant
-            self.sampling[body] = max(error, possible - value)
+            self.sampling_error[body] = max(error, possible - value)
         else:
-            self.sampling[body] = possible - self.value[body]
+            self.sampling_error[body] = possible - self.value[body]
 
 
 def find_kinks(time: Array, knots: Array, near: float) -> Rows:
-    """Find the rows of `time` that lie on one of the knots, both rising."""
+    """Find the rows of `time` that lie within `near` of one of the knots; both arrays rise."""
     if not len(knots):
         return NO_ROWS
     return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
 
 
 def _find_step_jumps(time: Array) -> Rows:
-    """Find the rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
+    """Find the rows between two steps one of which is much longer, across which no parabola is fitted."""
     steps = np.diff(time)
     longer, shorter = np.maximum(steps[1:], steps[:-1]), np.minimum(steps[1:], steps[:-1])
     return np.flatnonzero(longer > MAX_STEP_CHANGE * shorter) + 1
 
 
-def _read_smooth_top(
+def _read_parabola_maximum(
     time: Array, size: Array, row: int, first: int, last: int, others: tuple[int, int]
 ) -> tuple[float, float, float]:
     """
-    Read the top of the parabola through the highest sample and two others, or the sample itself next to a corner.
+    Return the maximum of the parabola through the highest sample and two others, or the sample itself near a corner.
 
-    Returns value, error and instant.
+    The result is value, error and instant.
     """
-    # A fourth sample tells how far the signal is from the parabola: its third divided difference times the cubic that
-    # vanishes at the three samples is the error at the summit. Samples that alternate from step to step are no motion
-    # but ringing of the step, and half of what alternates is an error, whatever the parabola says.
+    # A fourth sample shows the error of the parabola: the third divided difference times the cubic that vanishes at the
+    # three samples is the error at the maximum. Samples that alternate from step to step are ringing of the integrator
+    # and no motion, and the alternating part is an error, too.
     alternating = 0.0
     if last - first >= 4:
         begin = min(max(row - 2, first), last - 4)
@@ -218,26 +219,26 @@ def _read_smooth_top(
 
 
 def _alternating_part(time: Array, size: Array) -> float:
-    """Part of five samples that alternates from step to step: next to nothing where steps resolve the motion."""
+    """Return the part of five samples that alternates from step to step: almost zero where steps resolve the motion."""
     apart = time[:, None] - time
     np.fill_diagonal(apart, 1.0)
     weights = 1.0 / apart.prod(axis=1)
-    longer = time[-1] - time[-2] > LONGER_STEP * (time[-2] - time[-3])
+    longer = time[-1] - time[-2] > MIN_LONGER_STEP_RATIO * (time[-2] - time[-3])
     return float(abs(weights @ size) / (abs(weights[-1]) if longer else np.abs(weights).sum()))
 
 
 def _error_of_lone_sample(time: Array, size: Array, row: int, corners: list[int]) -> float:
     """
-    Error of a sample alone between two corners: what the corners before it have changed.
+    Return the error of a sample alone between two corners: its difference from the extrapolated samples before them.
 
-    It is zero at the beginning of the motion, and where more samples have shown it before.
+    The error is zero at the beginning of the motion, and if there are other samples between the corners.
     """
     if row - 1 not in corners or row not in corners:
         return 0.0
     last = row - 1
     while last - 1 in corners:
         last -= 1
-    first = max(_smooth_side(last, len(size), corners)[0], last - 2)
+    first = max(_find_smooth_side(last, len(size), corners)[0], last - 2)
     if first == last:
         return 0.0
     before = slice(first, last + 1)
@@ -248,19 +249,19 @@ def _read_corner(
     time: Array, size: Array, slip: Array, left: int, threshold: float, corners: list[int]
 ) -> tuple[float, float, float]:
     """
-    Value at a corner between rows `left` and `left + 1`, extrapolated from both sides.
+    Return value, error and instant at a corner between rows `left` and `left + 1`, extrapolated from both sides.
 
-    Each side tells by itself when the slip speed passes the threshold, whose rate jumps there as well. Error: half the
-    gap between the two readings, and what their two instants leave open.
+    Each side alone gives the instant at which the slip speed passes the threshold, since the rate of the slip speed
+    jumps there as well. The error is half the difference of the values, and the slope times half that of the instants.
     """
-    first, _ = _smooth_side(left, len(size), corners)
-    _, last = _smooth_side(left + 1, len(size), corners)
+    first, _ = _find_smooth_side(left, len(size), corners)
+    _, last = _find_smooth_side(left + 1, len(size), corners)
     before = slice(max(first, left - 2), left + 1)
     after = slice(left + 1, min(last, left + 3) + 1)
     contact = int(((slip[left] > threshold) != (slip[left + 1] > threshold)).argmax())
     ends = float(time[left]), float(time[left + 1])
     instants = [
-        _crossing_instant(time[side], slip[side, contact], threshold, ends)
+        _locate_crossing(time[side], slip[side, contact], threshold, ends)
         for side in (before, after)
         if side.stop - side.start > 1
     ]
@@ -274,11 +275,11 @@ def _read_corner(
     return 0.5 * (readings[0] + readings[1]), error, instant
 
 
-def _smooth_stretches(
+def _list_smooth_stretches(
     row: int, count: int, corners: list[int], bends: list[int]
 ) -> Iterator[tuple[int, int, tuple[int, int]]]:
-    """Yield first and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
-    first, last = _smooth_side(row, count, corners)
+    """Yield first and last row of every smooth stretch that contains `row`, and the two rows nearest to `row` in it."""
+    first, last = _find_smooth_side(row, count, corners)
     place = bisect_left(bends, row)
     before, here = [first, *bends[:place]], place < len(bends) and bends[place] == row
     after = [*bends[place + here :], last]
@@ -289,8 +290,8 @@ def _smooth_stretches(
         yield max(first, before[-1]), min(last, after[0]), (row - 1, row + 1)
 
 
-def _smooth_side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
-    """First and last row on the same side of all corners as `row`."""
+def _find_smooth_side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
+    """Return the first and the last row on the same side of all corners as `row`."""
     place = bisect_left(corners, row)
     first = corners[place - 1] + 1 if place > 0 else 0
     return first, corners[place] if place < len(corners) else count - 1
@@ -306,8 +307,8 @@ def _extrapolate(time: Array, values: Array, instant: float) -> float:
     return float(table[0])
 
 
-def _crossing_instant(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
-    """Instant between `ends` at which the slip speed of one side (two or three samples) passes the threshold."""
+def _locate_crossing(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
+    """Return the instant between `ends` at which the slip speed of one side, 2 or 3 samples, passes the threshold."""
     near, far = (-1, -2) if time[-1] <= ends[0] else (0, 1)
     rate = float((slip[near] - slip[far]) / (time[near] - time[far]))
     if rate == 0.0:

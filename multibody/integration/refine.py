@@ -1,9 +1,9 @@
 """
-One phase pair to a tolerance: the whole run at successive levels of accuracy, and an error from their differences.
+Refinement of one phase pair to a tolerance: runs at successive levels, and an error from their differences.
 
-The difference of two levels, at the rate that is seen or at two, is the error of the finer one from step, contact and
-Newton's iteration together. Where rounding forbids a stiffer contact the levels share one. One more run with a softer
-contact then shows the error that its compliance leaves.
+The difference of two levels gives the error of the finer one by step, contact and Newton's iteration together, at the
+rate of convergence that three levels show or at a rate of two. Where rounding forbids a stiffer contact, levels share
+one stiffness, and one more run on a softer contact shows the error by the contact's compliance.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from multibody.integration.candidate import Candidate
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level, plan_levels
-from multibody.integration.level_runs import UNFINISHED, LevelRuns
+from multibody.integration.level_runs import UNFINISHED_OUTCOMES, LevelRuns
 from multibody.integration.look_ahead import level_of_longest_steps
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
@@ -28,25 +28,30 @@ from reference.support.arguments import Range
 
 Array = NDArray[np.float64]
 
-# Steps of the engine in all runs of one point, where the caller says nothing else.
+# Default limit of the engine's steps in all runs of one phase pair: beyond it the pair has no answer.
 MAX_WORK = 2e6
-WORK = Range(1.0, 1e12, "steps")
+WORK_RANGE = Range(1.0, 1e12, "steps")
 
-# Number of successive levels with impacts that are another motion than the level before: a further one would be, too.
+# Number of successive levels with impacts, each another motion than the level before, after which refinement ends.
 MAX_DIFFERENT_MOTIONS = 3
+
+# Least number of levels that show an error where friction yields. Short slides that one level has and the next has not
+# decide how the platform swings on its springs: levels 0 and 1 may agree and both be off (measured: by seven times the
+# error that their difference shows, and level 2 by a seventeenth of theirs).
+LEAST_LEVELS_OF_SPRINGS = 3
 
 
 @dataclass(frozen=True)
 class Refinement:
     """
-    The result of refinement for one phase pair.
+    Peaks, errors and outcome of one phase pair, with the runs that they come from.
 
     Attributes:
-    - peaks, errors: m/s^2, NaN without an answer, (N,).
+    - peaks, errors: Largest absolute accelerations and their errors, m/s^2, (N,); NaN without an answer.
     - outcome, instant: Outcome, and the instant, s, at which an outcome other than ok arose.
-    - finest: The last run.
-    - coarser: Runs whose differences to the last, in these shares, are errors.
-    - floor: Lower bound of a relative error.
+    - finest: The run at the last level.
+    - coarser: Other runs, each with the share of its difference to the last run that is an error.
+    - floor: Lower bound of the relative error of any number of the run.
     """
 
     peaks: Array
@@ -70,35 +75,35 @@ def refine(
     Compute the peaks of the absolute accelerations for one phase pair with a relative error below `tolerance`.
 
     keep: whether the motions of the last run and of `coarser` are kept; every run then goes to the end of the motion.
-    levels: those of `plan_levels` if None. max_work: steps that all runs together may take.
+    levels: levels of accuracy; None takes those of `plan_levels`. max_work: steps that all runs together may take.
     """
-    model, budget, whole = pair.model, Budget(max_work), keep or pair.whole
+    model, budget, whole = pair.model, Budget(max_work), keep or pair.in_full
     planned = plan_levels(pair.scene, model, tolerance) if levels is None else list(levels)
-    if not budget.allows(pair.end, level_of_longest_steps(model, planned[0], whole)):
+    if not budget.has_work_left_for(pair.end, level_of_longest_steps(model, planned[0], whole)):
         no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
-    search = _Search(LevelRuns(pair, tolerance, budget, planned, softens=levels is None, keep=keep))
+    search = _AnswerSearch(LevelRuns(pair, tolerance, budget, planned, may_soften_contact=levels is None, keep=keep))
     while not search.has_ended and search.runs.can_run_next():
         search.add_level()
     return search.answer or search.make_last_answer()
 
 
-class _Search:
+class _AnswerSearch:
     """
-    The candidates among the levels of one phase pair.
+    Search for the answer of one phase pair among its levels.
 
-    candidate: that of the last level, if it has one. complete: the last one whose error misses no part. best: the
-    complete one whose error is least. different_motions: number of the last levels with impacts that were another
-    motion than the level before. answer: where one is final before the levels end.
+    candidate: answer of the last level, if it has one. complete: the last answer whose error misses no part. best: the
+    complete answer with the smallest error. different_motions: number of the last levels with impacts that were another
+    motion than the level before. answer: final answer, if the search ends before the levels do.
     """
 
-    # Levels are added until one meets the tolerance, or until no further one can help. Three cases end the search
-    # early. Two runs without an end, or one behind an answer: a finer run takes more steps still. Impacts that
-    # take three levels in a row elsewhere: the order of impacts is decided by rounding, and no step changes that.
-    # Rounding that exceeds both the tolerance and what the next level would leave: a stiffer contact rounds more, and a
-    # shared one shows no less. What is returned then is the best complete answer with its honest error, called
-    # "tolerance not met". Another set of springs under the supports is another model, so that a change of them
-    # forgets the answers before it.
+    # Levels are added until one meets the tolerance, or until no further level can help. Three cases end the search
+    # early. Two runs do not reach their end, or one run does not after an answer: a finer run takes even more steps.
+    # Three levels in a row are different motions because of impacts: rounding decides in which order supports close,
+    # and no step changes that. Rounding exceeds both the tolerance and the error that the next level would leave: a
+    # stiffer contact rounds more. The best complete answer with its error is then returned, with the outcome "tolerance
+    # not met". Other springs under the supports make another model, so that the answers before a change of springs are
+    # forgotten.
 
     def __init__(self, runs: LevelRuns) -> None:
         self.runs, self.tolerance = runs, runs.tolerance
@@ -110,11 +115,11 @@ class _Search:
         self.has_ended = False
 
     def add_level(self) -> None:
-        """Run the next level, and judge its answer if it has one."""
+        """Run the next level, and decide by its answer, if it has one, whether the search ends."""
         run = self.runs.run_next_level()
         done = self.runs.runs
-        if run.outcome in UNFINISHED:
-            unfinished = sum(other.outcome in UNFINISHED for other in done)
+        if run.outcome in UNFINISHED_OUTCOMES:
+            unfinished = sum(other.outcome in UNFINISHED_OUTCOMES for other in done)
             self.has_ended = self.candidate is not None or unfinished > 1
             return
         self.candidate = None
@@ -124,19 +129,21 @@ class _Search:
         if run.outcome != Outcome.OK:
             self.has_ended = True
             return
+        if self.runs.pair.model.springs is not None and len(done) < LEAST_LEVELS_OF_SPRINGS:
+            return
         self.candidate = self.runs.make_candidate()
-        if done[-1] is not run:  # the springs of real bearings have taken its place
+        if done[-1] is not run:  # a run on springs of real bearings has taken its place
             self.complete = self.best = None
         if self.candidate is not None:
             self._judge(self.candidate)
 
     def make_last_answer(self) -> Refinement:
-        """Return the answer that misses the tolerance, or why there is none."""
+        """Return an answer that misses the tolerance, or one without values and with the outcome that says why."""
         pair = self.runs.pair
         if self.candidate is None:
             return _refuse_unfinished(pair, self.runs.runs)
         candidate = self._complete(self.candidate)
-        if self.best is not None and candidate.rounds_more_than(self.best):
+        if self.best is not None and candidate.is_worse_by_rounding(self.best):
             return _make_answer(pair.model, self.best, Outcome.TOLERANCE_NOT_MET)
         return _answer_beyond_tolerance(pair, candidate, self.complete)
 
@@ -154,7 +161,7 @@ class _Search:
         if candidate.meets(self.tolerance):
             self._end_with(_make_answer(model, candidate, Outcome.OK))
             return
-        if candidate.rounds_beyond(self.tolerance):
+        if candidate.is_limited_by_rounding(self.tolerance):
             if candidate.shares_contact:
                 self.has_ended = True
                 return
@@ -168,11 +175,11 @@ class _Search:
         self.answer, self.has_ended = answer, True
 
     def _complete(self, candidate: Candidate) -> Candidate:
-        """Return a candidate with the error that the contact's compliance leaves."""
+        """Return a candidate with the error by the contact's compliance, which may take one more run."""
         return candidate.add_compliance_error(self.runs.pair, self.runs.budget, self.runs.keep)
 
     def _forget_motions(self) -> None:
-        """Forget the motions of all runs but the last two and those of the best answer."""
+        """Delete the stored motions of all runs but the last two and those of the best answer."""
         needed = [] if self.best is None else [self.best.run, *(other for other, _ in self.best.coarser)]
         for earlier in self.runs.runs[:-2]:
             if not any(earlier is other for other in needed):
@@ -183,16 +190,16 @@ def _answer_beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candi
     """Return the finest answer, whose error misses the tolerance, or the last one whose error is known."""
     if np.isfinite(finest.errors).all():
         return _make_answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
-    # the run that shows what the compliance leaves has no answer
+    # the run that would show the error by the contact's compliance has no answer
     if complete is not None:
         answer = _make_answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
         return replace(answer, finest=finest.run, coarser=finest.coarser[:-1], floor=finest.floor)
-    why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED), Outcome.SOLVER_FAILED)
+    why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED_OUTCOMES), Outcome.SOLVER_FAILED)
     return _make_no_answer(pair.model, finest.run, why, pair.scene.duration)
 
 
 def _refuse_unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
-    """Say why no two levels agree or end alike: by the first of the last two runs that has no answer."""
+    """Return a result without values, with the outcome of the last of the final two runs that has no answer."""
     failed = next((run for run in runs[:-3:-1] if run.outcome != Outcome.OK), None)
     if failed is None:  # one level has an answer, and no steps are left for another that shows its error
         return _make_no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)

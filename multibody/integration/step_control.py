@@ -1,7 +1,7 @@
 """
-Control of the step: how large each step is against what the motion allows there, and how many to try next.
+Step control: ratio of each step to the largest one that the motion allows, and number of steps to try next.
 
-What a constant step gets wrong is the stop. While the slip speed is small, the slip direction turns and the regularized
+A constant step is inaccurate at stops. While the slip speed is small, the slip direction turns and the regularized
 friction relaxes within milliseconds. So the velocity of the platform may change in one step by no more than a fraction
 of the slip speed (of v_reg, where the slip is slower than that). Friction that depends on the slip speed and kinks of a
 recorded loading bound the step as well.
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.chunk import slip_changes, slowest_loaded_slip
+from multibody.integration.chunk import slip_change_ratios, smallest_loaded_slip
 from multibody.integration.constant_step import EngineMotion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP_OVER_RESPONSE
@@ -25,35 +25,35 @@ from multibody.models.system import EngineModel
 
 Array = NDArray[np.float64]
 
-# Bounds of the number of steps in a chunk at the largest step.
+# Smallest and largest number of steps in a chunk at the largest step.
 MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256
 
-# Number of steps in a chunk at smaller steps, times the allowed change of the slip velocity. The chunks of all levels
-# then end, and their steps grow, at the same instants. The bounds are for levels that no model has by itself.
-SMALL_CHUNK_CHANGE = 4.48
+# Number of steps in a chunk of smaller steps, times the allowed change of the slip velocity, so that chunks of all
+# levels end, and steps grow, at the same instants; smallest and largest number, for levels that a caller has changed.
+SLIP_CHANGE_PER_SMALL_CHUNK = 4.48
 MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096
 
-# First step behind a kink of the loading, over slip_change times the relaxation of friction.
+# Largest first step behind a kink of the loading, over slip_change times the relaxation time of friction.
 KINK_STEP_RATIO = 4.0
 
-# Step times the rate at which friction that depends on the slip speed acts back on it (`SpeedFriction`), over the
-# allowed change of the slip velocity. The maximum is well below the 2/3 at which steps of alternating friction begin to
-# grow.
-FEEDBACK_PER_SLIP_CHANGE, MAX_FEEDBACK = 2.0, 0.3
+# Largest step times the rate at which friction that depends on the slip speed acts back on it (`SpeedFriction`), over
+# the allowed change of the slip velocity, and at any level. The latter is well below 2/3, from which on errors of
+# friction alternate and grow.
+FEEDBACK_PER_SLIP_CHANGE, MAX_STEP_TIMES_FEEDBACK = 2.0, 0.3
 
-# Number of steps over which the rate of a gap is taken.
+# Largest number of steps, an even one, over which the rate of a gap is averaged.
 GAP_RATE_STEPS = 4
 
 
 @dataclass(frozen=True)
 class StepControl:
-    """The steps that a model may take at a level of accuracy."""
+    """Bounds of the steps that a model may take at a level of accuracy."""
 
     model: EngineModel
     level: Level
 
     def step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, step: float, state: EngineState) -> Array:
-        """Each step from `state` over what is allowed there, (T,), from accelerations (T, N) and peaks so far, (N,)."""
+        """Return the ratio (T,) of each step to the allowed one, from accelerations (T, N) and peaks so far (N,)."""
         model, level = self.model, self.level
         per_change = step / level.slip_change
         if model.springs is None:
@@ -61,27 +61,29 @@ class StepControl:
         else:
             step_ratio = model.springs.step_ratio(motion, state, level.slide_end) / level.slip_change
         if model.friction is not None:
-            allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_FEEDBACK)
-            step_ratio = np.maximum(step_ratio, step / allowed * model.friction.feedback(motion.slip))
+            allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_STEP_TIMES_FEEDBACK)
+            step_ratio = np.maximum(step_ratio, step / allowed * model.friction.friction_feedback_rate(motion.slip))
         if len(model.ground.knots):
             step_ratio = np.maximum(step_ratio, self._kink_step_ratio(motion, size, peaks, per_change))
         return step_ratio
 
     def _slip_step_ratio(self, motion: EngineMotion, per_change: float) -> Array:
-        """Change of the slip velocity in one step over what is allowed, (T,)."""
+        """Return the ratio (T,) of the change of the slip velocity in each step to the allowed change."""
         corner = self.model.corner
         if not math.isfinite(corner):
             return np.zeros(len(motion.time))
-        changes: Array = slip_changes(motion.accelerations, self.model.bodies[0], motion.contact, per_change, corner)
+        changes: Array = slip_change_ratios(
+            motion.accelerations, self.model.bodies[0], motion.contact, per_change, corner
+        )
         return changes
 
     def _kink_step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, per_change: float) -> Array:
-        """First step behind a kink of the loading over what is allowed, (T,), where a peak may be; zero elsewhere."""
-        # While the platform creeps, its acceleration follows the ground's with the relaxation of regularized friction.
-        # Behind a kink its slope changes within that time, which longer steps would take for a swing. Bodies that turn
-        # with the platform and dampers follow it. So the first step behind a kink is bounded, but only where it counts:
-        # the platform creeps, a body is near its peak, and its samples show the kink. Samples whose third difference is
-        # within the error floor of the peak lie on one parabola and follow no kink.
+        """Return the ratio (T,) of the first step behind a kink to the allowed one, near peaks; zero in other rows."""
+        # While the platform creeps, its acceleration follows that of the ground within the relaxation time of friction.
+        # Behind a kink the slope changes within that time, and longer steps would show an oscillation. Bodies that turn
+        # with the platform and dampers follow it. So the first step behind a kink is bounded, but only if the platform
+        # creeps, a body is near its peak, and its samples show the kink. Samples whose third difference is within the
+        # error floor of the peak lie on one parabola and show no kink.
         step_ratio, model, last = np.zeros(len(motion.time)), self.model, len(motion.time) - 1
         rows = find_kinks(motion.time, model.ground.knots, model.ground.near)
         rows = rows[rows < last]
@@ -97,16 +99,16 @@ class StepControl:
         return step_ratio
 
     def count_small_steps(self) -> int:
-        """Number of steps in a chunk of smaller steps than the largest."""
-        steps = SMALL_CHUNK_CHANGE / self.level.slip_change
+        """Return the number of steps in a chunk whose steps are smaller than the largest."""
+        steps = SLIP_CHANGE_PER_SMALL_CHUNK / self.level.slip_change
         return round(min(max(steps, MIN_SMALL_CHUNK_STEPS), MAX_SMALL_CHUNK_STEPS))
 
     def count_largest_steps(self, motion: EngineMotion) -> int:
-        """Number of largest steps to try behind `motion`: until the slip speed, going on as now, asks for smaller."""
+        """Return the number of largest steps to try after `motion`, until its slip speed needs smaller ones."""
         corner, level = self.model.corner, self.level
         if len(motion.time) < 2 or not math.isfinite(corner):
             return MAX_CHUNK_STEPS
-        before, slip = slowest_loaded_slip(motion.contact, -2), slowest_loaded_slip(motion.contact, -1)
+        before, slip = smallest_loaded_slip(motion.contact, -2), smallest_loaded_slip(motion.contact, -1)
         if not math.isfinite(before + slip):
             return MAX_CHUNK_STEPS
         rate = (slip - before) / float(motion.time[-1] - motion.time[-2])
@@ -118,15 +120,15 @@ class StepControl:
             return MAX_CHUNK_STEPS
         return int(min(max((target - slip) / rate / level.step, MIN_CHUNK_STEPS), MAX_CHUNK_STEPS))
 
-    def divisions_behind_impact(self) -> int:
-        """Number of divisions of the largest step by `STEP_RATIO` while contact forces settle behind an impact."""
+    def count_divisions_behind_impact(self) -> int:
+        """Return the number of divisions of the largest step by `STEP_RATIO` for the first step after an impact."""
         first_step = FIRST_STEP_OVER_RESPONSE * math.sqrt(self.level.penetration)
         wanted = math.ceil(math.log(self.level.step / first_step, STEP_RATIO))
         return min(max(wanted, 0), self.level.max_divisions)
 
 
 def gap_rate_at_end(motion: EngineMotion) -> Array:
-    """Rate of each gap at the end of a chunk, (K,), over an even number of steps: the contact may alternate."""
+    """Return the rates (K,) of the gaps at the end of a chunk, over an even number of steps: gaps may alternate."""
     rows = min(GAP_RATE_STEPS, (len(motion.time) - 1) // 2 * 2)
     if rows == 0:
         return np.zeros(motion.gap.shape[1])

@@ -1,4 +1,4 @@
-"""The times within which the motion of a scene changes, in units of its model: periods, decays, relaxation."""
+"""Time scales of the motion of a scene, in units of its model: periods, decay times, relaxation times."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_stiffness
 from reference.problem import Scene, exponents
 
-# Number of steps at level 0 in a period of the fastest motion that matters.
+# Number of steps at level 0 in the shortest period of loading, pendulum and chain.
 STEPS_PER_PERIOD = 150
 
-# Number of steps in a period of the fastest motion that bars make which give way, a small part of the accelerations,
-# and the largest division of the step for that motion: faster ones hardly move the bodies and are not resolved.
+# Number of steps in the shortest period of elastic bars, whose motion is a small part of the accelerations, and largest
+# division of the step to resolve it: faster bars hardly move the bodies and are not resolved.
 STEPS_PER_BAR_PERIOD = 40
 MAX_BAR_DIVISION = 20.0
 
-# Number of steps at level 0 in the time in which a harmonic falls by e, while it lasts, and the number of such times
-# after which it has fallen by 1e12.
+# Number of steps at level 0 in the time in which a brief motion decays by a factor e, and number of such times until it
+# has decayed by 1e12 and needs no short steps.
 STEPS_PER_DECAY = 24
 DECAY_TIMES = 28.0
 
 
 def largest_step(period: float, model: EngineModel) -> float:
-    """Step of level 0 in units of the model, from the shortest `period` and from that of bars that give way."""
+    """Return the largest step of level 0, in units of time, from the shortest `period` and that of elastic bars."""
     step = period / STEPS_PER_PERIOD
     if model.fastest_bar_frequency > 0.0:
         of_bars = 2.0 * math.pi / model.fastest_bar_frequency / STEPS_PER_BAR_PERIOD
@@ -36,7 +36,7 @@ def largest_step(period: float, model: EngineModel) -> float:
 
 def shortest_period(scene: Scene, model: EngineModel) -> float:
     """
-    Shortest period of the loading, the pendulum and every mode of the chain, in units: all swing from the start.
+    Return the shortest period, in units of time, of the loading, the pendulum and all modes of the chain of bodies.
 
     A record has no period: it is linear within every step.
     """
@@ -59,7 +59,7 @@ def shortest_period(scene: Scene, model: EngineModel) -> float:
 
 
 def fastest_damper_rate(scene: Scene, units: Units) -> float:
-    """Bound of the rates at which dampers of the links settle, per unit of time (Gershgorin's theorem)."""
+    """Return a bound of the decay rates of the damped links, per unit of time (Gershgorin's theorem)."""
     per_mass = scene.damping.max(axis=1)
     below, above = per_mass / scene.masses[1:], per_mass / scene.masses[:-1]
     return float(2.0 * (np.append(above, 0.0) + np.append(0.0, below)).max() * units.time)
@@ -67,7 +67,7 @@ def fastest_damper_rate(scene: Scene, units: Units) -> float:
 
 def list_brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
     """
-    List the brief motions that `step` does not resolve: until when each lasts, and the step it needs at level 0.
+    List the end and the step needed at level 0, in units of time, of every brief motion that `step` does not resolve.
 
     They are harmonics that decay, the start of a lubricated platform, and that of strongly damped links. From rest the
     platform takes on the speed that balances the loading within its relaxation time. Over much longer steps the

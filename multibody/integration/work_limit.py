@@ -1,4 +1,4 @@
-"""The refusal of a scene whose work exceeds the limit, before any step is taken, and what would help."""
+"""Refusal of a scene whose work exceeds the limit, before any step is taken, and changes that would help."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from multibody.integration.engine_run import Budget
 from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import MAX_WORK_GROWTH
 from multibody.integration.look_ahead import level_of_longest_steps
-from multibody.integration.refine import MAX_WORK, WORK
+from multibody.integration.refine import MAX_WORK, WORK_RANGE
 from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
 from reference.problem.ranges import TOLERANCE
-from reference.problem.scene import takes_scene
+from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
-# Work of two levels, and of the compliance of the second, over a first level in its largest steps. The factor of two is
-# for smaller steps at stops, which take as many again.
-WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
+# Work of a phase pair (two levels, and a softer contact at the second) over that of the first level in its largest
+# steps. The factor of two is for smaller steps at stops, which are as many again.
+WORK_OF_PHASE_PAIR = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
-@takes_scene
+@require_scene
 def refusal(
     scene: Scene,
     model: str = "translational",
@@ -61,7 +61,7 @@ def refusal(
     ''
     """
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
-    max_work = check_number("max_work", max_work, WORK)
+    max_work = check_number("max_work", max_work, WORK_RANGE)
     if softened:
         try:
             scene = scene.softened()
@@ -71,13 +71,13 @@ def refusal(
         built = assemble(scene, choose_model(scene, model, full), regularization)
     first = plan_levels(scene, built, tolerance)[0]
     longest = level_of_longest_steps(built, first, full)
-    if Budget(max_work).allows(scene.duration / built.units.time, longest):
+    if Budget(max_work).has_work_left_for(scene.duration / built.units.time, longest):
         return ""
     first_step, step = (level.step * built.units.time for level in (first, longest))
-    needed, work = scene.duration / step, WHOLE_POINT * scene.duration / first_step
+    needed, work = scene.duration / step, WORK_OF_PHASE_PAIR * scene.duration / first_step
     period = STEPS_PER_PERIOD * first_step / (1 + first.precedes_level_0)
     looser_helps = scene.recorded and not first.precedes_level_0
-    tried, enough = max_work * step, max_work * first_step / WHOLE_POINT
+    tried, enough = max_work * step, max_work * first_step / WORK_OF_PHASE_PAIR
     return (
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "

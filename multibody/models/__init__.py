@@ -1,1 +1,1 @@
-"""Assembled systems of the engine: the models of a scene, and what they are made of."""
+"""Assembled systems of the engine: the translational and the spatial model of a scene, and their parts."""

@@ -1,4 +1,4 @@
-"""Assembly of the engine's system of a scene: the model by its name, with its arguments checked."""
+"""Assembly of the engine's system for a scene and the name of a model, with its arguments checked."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_tra
 
 
 def choose_model(scene: Scene, model: str, full: bool) -> str:
-    """Choose the model that answers for `model`: a platform that cannot tilt needs no rotations, unless `full`."""
+    """Return the name of the model to run: "translational" for a platform that cannot tilt, unless `full`."""
     return "translational" if model == "spatial" and not full and body_cannot_tilt(scene).allowed else model
 
 
@@ -39,6 +39,6 @@ def assemble(
     built = BUILDERS[model](scene, regularization, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)
-    # copies of the model with other settings share its recorders, so that these own the engine's memory
+    # copies of the model with other settings share its recorders, so that the memory is freed with the recorders
     reset_when_unused(built.recorders, built.container)
     return built

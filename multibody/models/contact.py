@@ -1,4 +1,4 @@
-"""The contact of every model: the corner of the friction law, the start on the surface, a settled restart."""
+"""Contact of every model: corner of the friction law, initial position on the surface, restart with settled force."""
 
 from __future__ import annotations
 
@@ -9,26 +9,27 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.friction_springs import end_of_slide
+from multibody.models.friction_springs import slide_end_speed
 from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-# Damping ratio of the contact: its own motion dies out within a few of its periods and is not seen.
+# Damping ratio of the contact: at 1 its vibration along the normal dies out within a few of its periods.
 DAMPING_RATIO = 1.0
 
-# Rounding of a position about rho away, in units of rho. Over the penetration it is that of the force, in weights.
-FORCE_ROUNDING = 1e-15
+# Rounding error of a position, in units of rho. Divided by the penetration it is that of the contact force, in weights.
+POSITION_ROUNDING = 1e-15
 
-# Threshold of the lubricated contact in units of velocity, above any speed, so that mu = f_c |v| throughout.
-MAX_LINEAR_SPEED = 1e6
+# Slip speed up to which friction of a lubricated contact is linear, mu = f_c |v| with the viscous friction coefficient
+# f_c, in units of velocity: no motion reaches it.
+LUBRICATED_SPEED_LIMIT = 1e6
 
 
 class ContactLaw(NamedTuple):
     """
-    Friction of the engine's contact: its coefficient, and the speed below which the contact reduces it linearly.
+    Friction coefficient of the engine's contact, and the slip speed below which the contact reduces it linearly.
 
     The threshold is in units of velocity. Where friction depends on slip speed or load, the coefficient is the largest
     under the weight: `SpeedFriction` sets it before every step.
@@ -39,11 +40,11 @@ class ContactLaw(NamedTuple):
 
 
 def contact_law(scene: Scene, regularization: float | None, units: Units) -> ContactLaw:
-    """Friction of the contact for v_reg in m/s, or None where the contact is lubricated or frictionless."""
+    """Return the friction law of the contact; regularization: v_reg, m/s, None without dry friction."""
     if scene.lubricated:
-        return ContactLaw(scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED)
+        return ContactLaw(scene.friction_coefficient * units.velocity * LUBRICATED_SPEED_LIMIT, LUBRICATED_SPEED_LIMIT)
     if scene.dry_friction.elastic:
-        return ContactLaw(scene.friction_coefficient, end_of_slide(scene, units))
+        return ContactLaw(scene.friction_coefficient, slide_end_speed(scene, units))
     if regularization is None:
         return ContactLaw(scene.friction_coefficient, 1.0)
     return ContactLaw(scene.friction_coefficient, regularization / units.velocity)
@@ -58,7 +59,7 @@ def set_contact_parameters(
     damping_ratio: float = DAMPING_RATIO,
 ) -> None:
     """
-    Set radii, of sphere and depression or of a sphere on a plane, stiffness and damping of one of `count` contacts.
+    Set radii (of sphere and depression, or of a sphere on a plane), stiffness and damping of one of `count` contacts.
     """
     mbs.SetObjectParameter(contact, "spheresRadii" if isinstance(radii, list) else "sphereRadius", radii)
     mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
@@ -66,7 +67,7 @@ def set_contact_parameters(
 
 
 def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
-    """Slip speed below which the law is linear, and the time in which such a slip of the platform dies out."""
+    """Return the slip speed below which friction is linear, and the relaxation time of such a slip; inf without."""
     friction, threshold = contact_law(scene, regularization, units)
     if scene.lubricated or friction == 0.0 or scene.dry_friction.elastic:
         return math.inf, math.inf
@@ -75,7 +76,9 @@ def corner_and_relaxation(scene: Scene, regularization: float | None, units: Uni
 
 def viscous_relaxation(scene: Scene, units: Units) -> float:
     """
-    Time m1 / (f_c m_sum g) in which a lubricated platform takes on its slip speed, in units; inf without lubrication.
+    Return the relaxation time of a lubricated platform's slip speed, in units of time; inf without lubrication.
+
+    It is m1 / (f_c m_sum g) with the platform's mass m1, the viscous friction coefficient f_c and the total mass m_sum.
     """
     friction = scene.friction_coefficient * units.velocity if scene.lubricated else 0.0
     return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf
@@ -85,7 +88,7 @@ def place_on_sphere(
     offset: Array, speed: Array, ground: Array, penetration: float
 ) -> tuple[Array, Array, float, float]:
     """
-    Place the platform on the sphere, moving along it, pressed in by as much as a single body would be.
+    Return position and velocity of the platform on the sphere, with the penetration of a single body.
 
     offset, speed: horizontal (2,). ground: the plate's acceleration (3,). Returns displacement (3,), velocity (3,),
     gap and slip speed, all in units of the model. For several bodies off the vertical the penetration is not exact; the
@@ -102,10 +105,10 @@ def place_on_sphere(
 
 def settle_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
     """
-    Return the state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
+    Return the state with the same contact force from the penetration alone, without a part of the contact's damper.
 
-    At a given step the engine's position and velocity disagree along the normal by O(h^2), and the contact's damper
-    turns that into a force which the gap makes up for. A smaller step would start with that balance upset and ring.
+    At a step h the engine's position and velocity disagree along the normal by O(h^2). The contact's damper makes a
+    force of that, which a change of the gap balances. With a smaller step the balance would be lost and the force ring.
     """
     coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
     damping = 2.0 * DAMPING_RATIO / math.sqrt(penetration)

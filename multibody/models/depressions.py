@@ -1,8 +1,8 @@
 """
 Kinematics of the spheres in the depressions of a platform that turns.
 
-A depression is the upper half of a hollow sphere. The engine's contact is a whole one: it would press from the other
-side once the platform has risen by twice rho. So the clearance between platform and spheres is computed here.
+A depression is the upper half of a hollow sphere. The engine's contact is a whole hollow sphere: it would press from
+below once the platform has risen by twice rho. So the clearance between platform and spheres is computed here.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Depressions:
     """
-    The platform's depressions over spheres on the plate, in units of the model, where rho is one.
+    Geometry of the platform's depressions over spheres on the plate, in units of the model, where rho is one.
 
     ring: places of the spheres, (K, 2). center: the platform's center of mass at rest, from the middle of the plane of
     the depressions, (3,). radius: of the spheres. vertical: index of each sphere's vertical coordinate, (K,) or (0,).
@@ -31,24 +31,24 @@ class Depressions:
     vertical: NDArray[np.int_]
 
     def sphere_positions(self, coordinates: Array) -> tuple[Array, Array]:
-        """Positions (T, K, 3) of the spheres in the depressions, in the axes of the plate and of the platform."""
+        """Return positions (T, K, 3) of spheres in their depressions, in the axes of the plate and of the platform."""
         turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
-        apart = self._spheres(coordinates) - place
+        apart = self._sphere_centers(coordinates) - place
         return apart, np.einsum("tij,tki->tkj", turned, apart)
 
     def clearance(self, coordinates: Array) -> Array:
-        """Distance (T, K) from platform to spheres for coordinates (T, n), without penetration; negative: pressed."""
+        """Return the distances (T, K) of depressions and spheres at coordinates (T, n); negative where they overlap."""
         _, inside = self.sphere_positions(coordinates)
         across, upward = np.hypot(inside[..., 0], inside[..., 1]), inside[..., 2]
-        # a sphere below the rim touches nothing until it is back inside, or has left (`rows_beyond_rim`)
+        # a sphere below the rim touches nothing until it is back in its depression, or has left it (`rows_beyond_rim`)
         clear: Array = 1.0 - np.where(upward > 0.0, np.hypot(across, upward), 0.0)
         return clear
 
     def is_near_rest(self, coordinates: Array) -> bool:
         """
-        Return whether bounds prove for all coordinates (T, n) that no sphere is out and no tilt reaches 90 degrees.
+        Return whether bounds prove for all coordinates (T, n) that no sphere leaves the rim and no tilt is 90 degrees.
 
         The proof spares `rows_beyond_rim`, which costs more. A platform that is displaced by u and turned by an angle t
         moves a depression at the distance l from its center by |u| + t l at most, and lifts it by |u_z| + t l.
@@ -58,7 +58,7 @@ class Depressions:
         sinking = max([largest[place] for place in self.vertical], default=0.0)
         moved = turn * self._farthest
         height_in_rim = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)
-        return height_in_rim > 0.0 and turn < 1.0
+        return height_in_rim > 0.0  # which implies turn < 1
 
     @cached_property
     def _farthest(self) -> float:
@@ -66,26 +66,26 @@ class Depressions:
         return float(np.hypot(np.hypot(*(self.ring - self.center[:2]).T), self.center[2]).max())
 
     def rows_beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
-        """Rows (T,) of coordinates (T, n) in which a sphere has left its depression, as a mask."""
+        """Return a mask (T,) of the rows of coordinates (T, n) in which a sphere has left its depression."""
         _, inside = self.sphere_positions(coordinates)
         outside = (inside[..., 2] <= 0.0) & (np.hypot(inside[..., 0], inside[..., 1]) >= 1.0)
         return np.asarray(outside.any(axis=1))
 
     def contact_normals_and_jacobian(self, coordinates: Array) -> tuple[Array, Array]:
-        """Normals (K, 3) at the points of contact, and their Jacobian (K, 3, 6) over the platform's velocities."""
-        normals = self._normals(coordinates)
-        levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
+        """Return the contact normals (K, 3), and the Jacobian (K, 3, 6) of contact points over platform velocities."""
+        normals = self._platform_normals(coordinates)
+        levers = self._sphere_centers(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
         return normals, jacobian
 
-    def _normals(self, coordinates: Array) -> Array:
-        """Normals (K, 3) of the platform at its points of contact for coordinates (n,), out of the plate."""
+    def _platform_normals(self, coordinates: Array) -> Array:
+        """Return the normals (K, 3) of the platform's surface, away from the plate, at its contacts."""
         apart, _ = self.sphere_positions(coordinates[None])
         normals: Array = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
         return normals
 
-    def _spheres(self, coordinates: Array) -> Array:
-        """Centers of the spheres (..., K, 3) in the axes of the plate for coordinates (..., n)."""
+    def _sphere_centers(self, coordinates: Array) -> Array:
+        """Return the centers (..., K, 3) of the spheres in the axes of the plate for coordinates (..., n)."""
         spheres = np.ones((*coordinates.shape[:-1], len(self.ring), 3))
         spheres[..., :2] = self.ring
         if len(self.vertical):
@@ -94,38 +94,38 @@ class Depressions:
 
 
 class FlatUnderside(Depressions):
-    """The plane under the platform of a flat slider, as high above the middle as the tops of the spheres at rest."""
+    """Geometry of a flat slider's plane on spheres, in place of depressions; it touches their tops at rest."""
 
     def clearance(self, coordinates: Array) -> Array:
-        """Distance (T, K) from the plane to spheres for coordinates (T, n), without penetration; negative: pressed."""
+        """Return the distances (T, K) of plane and spheres at coordinates (T, n); negative where they overlap."""
         _, inside = self.sphere_positions(coordinates)
         clear: Array = 1.0 - inside[..., 2]
         return clear
 
     def rows_beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
-        """Return no row: a plane has no rim."""
+        """Return a mask (T,) without any row, since a plane has no rim."""
         return np.zeros(len(coordinates), dtype=bool)
 
-    def _normals(self, coordinates: Array) -> Array:
+    def _platform_normals(self, coordinates: Array) -> Array:
         upright = rotation_matrices(coordinates[3:6])[:, 2]
         return np.tile(upright, (len(self.ring), 1))
 
 
 def rotation_matrices(angles: Array) -> Array:
-    """Matrices (..., 3, 3) of the rotations Rx(a) Ry(b) Rz(c) by angles (..., 3), rad."""
+    """Return the matrices (..., 3, 3) of the rotations Rx(a) Ry(b) Rz(c) by angles (..., 3), rad."""
     about_x, about_y, about_z = (_axis_rotations(axis, angles[..., axis]) for axis in range(3))
     product: Array = about_x @ about_y @ about_z
     return product
 
 
 def angular_velocity_matrix(angles: Array) -> Array:
-    """Matrix (3, 3) of the angular velocity over the rates of angles (3,), rad: columns are the axes turned about."""
+    """Return the matrix (3, 3) from rates of the angles (3,), rad, to angular velocity: its columns are the axes."""
     about_x, about_y = _axis_rotations(0, angles[0]), _axis_rotations(1, angles[1])
     return np.column_stack([[1.0, 0.0, 0.0], about_x[:, 1], (about_x @ about_y)[:, 2]])
 
 
 def cross_matrix(vectors: Array) -> Array:
-    """Matrices (..., 3, 3) that take the cross product of vectors (..., 3) with what they multiply."""
+    """Return matrices (..., 3, 3) whose product with any vector is the cross product of `vectors` (..., 3) with it."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
     rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
@@ -133,7 +133,7 @@ def cross_matrix(vectors: Array) -> Array:
 
 
 def _axis_rotations(axis: int, angle: Array) -> Array:
-    """Matrices (..., 3, 3) of rotations by `angle` about one axis."""
+    """Return the matrices (..., 3, 3) of rotations by `angle` about one axis."""
     matrix = np.zeros((*np.shape(angle), 3, 3))
     first, second = (axis + 1) % 3, (axis + 2) % 3
     matrix[..., axis, axis] = 1.0

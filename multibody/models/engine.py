@@ -1,4 +1,4 @@
-"""The engine, without its type stubs: those of version 1.13 lack `symbolic` and the `self` of solver methods."""
+"""Import of the engine without its type stubs, which lack `symbolic` and the `self` of solver methods (1.13)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import weakref
 from importlib import import_module
 from typing import Any
 
-# Number of coordinates beyond which a sparse solver takes less time a step (measured: a third at 360).
+# Number of coordinates beyond which a sparse solver takes less time for a step (measured: a third at 360).
 MAX_DENSE_COORDINATES = 40
 
 # Number of coordinates of a rigid body: x, y, z of the center of mass and three rotations.
@@ -20,7 +20,7 @@ except ImportError as error:
     raise ImportError(
         f"the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package libgl1): {reason}"
     ) from error
-# The engine's module: EXUDYN_MODULE=fast selects one without range checks.
+# Variant of the engine's module: EXUDYN_MODULE=fast selects one without range checks.
 MODULE = "fast" if "exudyn.exudynCPPfast" in sys.modules else "default"
 items: Any = import_module("exudyn.itemInterface")
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction

@@ -6,9 +6,9 @@ moves its surface along the depression and nothing else, so that a torsion sprin
 series with friction alone, in the tangent plane and alike in all directions. A sphere that moved on a horizontal spring
 would take the restoring force N x / rho along, and lengthen the pendulum by N / k.
 
-Regularized friction below its limit would creep, and make the spring forget within u_y / v_reg. So every contact either
-rests, with a coefficient far above the scene's, or slides. Where its spring reaches the limit it slides from there on,
-and where its slip comes to zero it rests. v_reg counts in the last moment of a slide, and falls from level to level.
+Regularized friction below its limit would creep, so that the spring would relax within u_y / v_reg. So every contact
+either rests, with a coefficient far above the scene's, or slides. It begins to slide when its spring reaches the limit,
+and rests when its slip comes to zero. v_reg acts only at the end of a slide, and falls from level to level.
 """
 
 from __future__ import annotations
@@ -22,50 +22,51 @@ from numpy.typing import NDArray
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix
 from multibody.models.engine import BODY_COORDINATES, items
-from multibody.models.speed_friction import DATA_PER_CONTACT, SLIP
+from multibody.models.speed_friction import DATA_PER_CONTACT, SLIP_INDEX
 from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import DryFriction, Scene
 
 Array = NDArray[np.float64]
 
-# Moment of inertia of all spheres together over r^2: it adds as much to the mass that vibrates on the springs.
-TURNING_MASS = 1e-9
+# Moment of inertia of all spheres over r^2, over the total mass: the mass that vibrates on the springs grows by this.
+ROTATIONAL_MASS = 1e-9
 
-# Mass and stiffness that hold the center of a sphere: it moves by 1e-10 rho under the weight, and does not resonate.
-HELD_MASS, HELD_STIFFNESS = 1e8, 1e10
+# Mass and stiffness that hold the center of a sphere: it moves by 1e-10 rho under the weight and does not resonate.
+CENTER_MASS, CENTER_STIFFNESS = 1e8, 1e10
 
-# Coefficient of a contact that rests over the scene's: it creeps by that share of v_reg.
-RESTING = 1e6
+# Friction coefficient of a contact at rest over the scene's: the contact creeps at v_reg divided by this ratio.
+RESTING_COEFFICIENT_RATIO = 1e6
 
-# Slip speed at which a slide ends at level 0, over sqrt(mu g u_y): noise of the contact force turns a massless sphere
-# by as much in short steps. What is left of the slide takes the spring beyond its limit, which is no yield.
-END_OF_SLIDE = 0.1
+# Slip speed at which a slide ends at level 0, over sqrt(mu g u_y) (friction coefficient mu, yield displacement u_y):
+# noise of the contact force makes as much slip in short steps. The rest of the slide stretches the spring beyond its
+# limit, which does not count as yield.
+SLIDE_END_SPEED_RATIO = 0.1
 
-# Excess of a spring over its limit at level 0, in yield displacements, that is no yield.
-EXCESS = 1e-4
+# Elongation of a spring beyond its limit at level 0, over the yield displacement, up to which the contact still rests.
+NEGLIGIBLE_EXCESS = 1e-4
 
-# v_reg over that speed.
-REGULARIZED_SHARE = 0.25
+# v_reg of a sliding contact over the slip speed at which slides end.
+V_REG_OVER_SLIDE_END = 0.25
 
-# Change of the platform's velocity over the slip speed in one step that counts as much as a change of the springs.
-SHARE_OF_SLIDE = 0.3
+# Weight of a step's change of the platform's velocity, over the slip speed, against the change of springs over yield.
+VELOCITY_CHANGE_WEIGHT = 0.3
 
-# Least elastic displacement that has a direction.
+# Smallest elastic displacement by which a vector is divided: the direction of a smaller one is arbitrary.
 SMALLEST_DISPLACEMENT = 1e-300
 
 
 class ContactChange(NamedTuple):
     """
-    A contact that slides, or rests, from a share of the step behind `row` on.
+    Begin or end of the slide of a contact, at a share of the step after `row`.
 
-    limits: elastic displacements (K,) that no spring at rest exceeds from there on, and that one which begins to slide
-    has; None where a slide ends.
+    slides: whether the contact begins to slide. limits: elastic displacements (K,) at which contacts slide there, to
+    which springs at rest are shortened and the spring that begins to slide is set; None where a slide ends.
     """
 
     row: int
     contact: int
-    share: float
+    step_share: float
     slides: bool
     limits: Array | None = None
 
@@ -73,11 +74,11 @@ class ContactChange(NamedTuple):
 @dataclass(frozen=True)
 class FrictionSprings:
     """
-    The springs that turn the spheres, in units of the model.
+    Torsion springs of the spheres, on which contacts yield before they slide, in units of the model.
 
-    turns: index of the rotations of each sphere, (K, 3). law: friction of the contacts. displacement: elastic one at
-    which they slide under the weight. slide_end: slip speed at which slides end at level 0. Where steps are meant,
-    `motion` is an `EngineMotion`.
+    turns: index of the rotations of each sphere, (K, 3). law: friction law of the contacts. displacement: elastic
+    displacement at which they slide under the weight. slide_end: slip speed at which slides end at level 0. Arguments
+    `motion` are of the type `EngineMotion`.
     """
 
     mbs: Any
@@ -89,40 +90,40 @@ class FrictionSprings:
     slide_end: float
 
     def begin(self, state: EngineState) -> None:
-        """Give every contact the coefficient with which it rests or slides from a state on."""
-        for contact, factor in zip(self.contacts, self.factors(state)):
+        """Set the friction coefficient of every contact for a run from `state`, in which it rests or slides."""
+        for contact, factor in zip(self.contacts, self.coefficient_ratios(state)):
             self.mbs.SetObjectParameter(contact, "dynamicFriction", factor * self.law.largest)
 
-    def factors(self, state: EngineState) -> list[float]:
-        """Coefficients (K,) of the contacts over the scene's: all rest at the start."""
-        return [1.0 if slides else RESTING for slides in self._sliding(state)]
+    def coefficient_ratios(self, state: EngineState) -> list[float]:
+        """Return the friction coefficients (K,) of the contacts over the scene's: large for a contact at rest."""
+        return [1.0 if slides else RESTING_COEFFICIENT_RATIO for slides in self._mark_sliding(state)]
 
     def set_slide_end(self, end: float) -> None:
-        """Set the slip speed at which slides end."""
+        """Set v_reg of all contacts for slides that end at the slip speed `end`."""
         for contact in self.contacts:
-            self.mbs.SetObjectParameter(contact, "frictionProportionalZone", REGULARIZED_SHARE * end)
+            self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
     def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
-        """Largest change in each step from `state`, (T,): of displacements over yield, of velocity over slip."""
+        """Return the largest change (T,) in each step: of elastic displacement over yield, or velocity over slip."""
         turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
-        slip = np.maximum(motion.slip[1:], end)[:, self._sliding(state)].min(axis=1, initial=math.inf)
+        slip = np.maximum(motion.slip[1:], end)[:, self._mark_sliding(state)].min(axis=1, initial=math.inf)
         turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip
-        changes = np.maximum(self.depressions.radius / self.displacement * turned, SHARE_OF_SLIDE * turning)
+        changes = np.maximum(self.depressions.radius / self.displacement * turned, VELOCITY_CHANGE_WEIGHT * turning)
         return np.append(0.0, changes)
 
-    def find_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
-        """Find the first contact that begins or ends to slide in steps from `state`; None without one."""
+    def find_sliding_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
+        """Find the first contact that begins or ends to slide in steps from `state`; None if there is none."""
         if len(motion.time) < 2:
             return None
         time, slip, limit = motion.time, motion.slip, self.limits(motion)
         excess = self.depressions.radius * np.linalg.norm(motion.coordinates[:, self.turns], axis=2) - limit
-        left = EXCESS * self.displacement * (end / self.slide_end) ** 2
+        left = NEGLIGIBLE_EXCESS * self.displacement * (end / self.slide_end) ** 2
         changes = []
-        for number, slides in enumerate(self._sliding(state)):
+        for number, slides in enumerate(self._mark_sliding(state)):
             if slides:
-                changes.append(_find_rest(number, slip[:, number] / end))
+                changes.append(_find_slide_end(number, slip[:, number] / end))
                 continue
-            change = _find_yield(number, excess[:, number] / left)
+            change = _find_slide_start(number, excess[:, number] / left)
             if change is not None:
                 row = change.row
                 speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
@@ -134,13 +135,13 @@ class FrictionSprings:
         return min((change for change in changes if change is not None), default=None)
 
     def limits(self, motion: Any) -> Array:
-        """Elastic displacements at which the contacts slide, (T, K)."""
+        """Return the elastic displacements (T, K) at which the contacts slide."""
         load = motion.load
         speed = np.linalg.norm(motion.velocities[:, :3], axis=1)[:, None]
         limit: Array = self.displacement * self.law.at(speed, load) / self.law.largest * load
         return limit
 
-    def settle(
+    def restart_state(
         self,
         state: EngineState,
         before: EngineState,
@@ -150,12 +151,12 @@ class FrictionSprings:
         change: ContactChange | None = None,
     ) -> EngineState:
         """
-        Return the state to go on from after steps from `before`, with accelerations (n,), rates (K,) of limits there.
+        Return the state to continue from after steps from `before`, given accelerations (n,) and rates (K,) of limits.
 
-        The rates of the spheres are those of contacts that rest or slide: what the steps leave of massless spheres
-        alternates behind every kink. change: what happens there.
+        The velocities of the spheres follow from rest or slip of their contacts, because those that the engine computes
+        for massless spheres alternate after every kink. change: begin or end of a slide at this instant.
         """
-        sliding = np.array(self._sliding(before))
+        sliding = np.array(self._mark_sliding(before))
         if change is not None and change.limits is not None:
             coordinates = state.coordinates.copy()
             for number in np.flatnonzero(~sliding).tolist():
@@ -183,26 +184,26 @@ class FrictionSprings:
                 slip, rates[number] = max(slip, end), 0.0
             else:
                 slip = 0.0
-            contact[DATA_PER_CONTACT * number + SLIP] = slip
+            contact[DATA_PER_CONTACT * number + SLIP_INDEX] = slip
             velocities[turn] = np.cross(normal, speeds[number] - slip * along) / self.depressions.radius
             accelerations[turn] = np.cross(normal, rates[number]) / self.depressions.radius
         return replace(
             state, velocities=velocities, contact=contact, accelerations=accelerations, sliding=tuple(sliding.tolist())
         )
 
-    def rest(self, state: EngineState) -> EngineState:
-        """Return the state with all contacts at rest."""
-        assert state.accelerations is not None  # settled
+    def state_at_rest(self, state: EngineState) -> EngineState:
+        """Return the state to continue from with all contacts at rest."""
+        assert state.accelerations is not None  # restart_state sets them
         resting = replace(state, sliding=(False,) * len(self.contacts))
-        return self.settle(resting, resting, state.accelerations, np.zeros(len(self.contacts)), math.inf)
+        return self.restart_state(resting, resting, state.accelerations, np.zeros(len(self.contacts)), math.inf)
 
-    def _sliding(self, state: EngineState) -> tuple[bool, ...]:
-        """Whether each contact slides: none does at the start."""
+    def _mark_sliding(self, state: EngineState) -> tuple[bool, ...]:
+        """Return whether each contact slides (K,); all contacts rest at the start."""
         return state.sliding or (False,) * len(self.contacts)
 
 
-def _find_yield(contact: int, excess: Array) -> ContactChange | None:
-    """Find the step in which the excess (T,) of a spring over its limit, in units of what is no yield, passes zero."""
+def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
+    """Find the step in which a spring passes its limit; excess: elongation beyond it over the negligible one, (T,)."""
     rows = np.flatnonzero((excess[1:] > 1.0) & (excess[1:] > excess[:-1]))
     if not len(rows):
         return None
@@ -210,8 +211,8 @@ def _find_yield(contact: int, excess: Array) -> ContactChange | None:
     return ContactChange(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)), slides=True)
 
 
-def _find_rest(contact: int, slip: Array) -> ContactChange | None:
-    """Find the step in which the slip speed (T,), over that of the end, would pass zero if it fell as in the last."""
+def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
+    """Find the step in which a slip speed, extrapolated linearly, comes to zero; slip: over slide end's speed, (T,)."""
     rows = np.flatnonzero((2.0 * slip[1:] <= slip[:-1]) | ((slip[1:] <= 1.0) & (slip[1:] < slip[:-1])))
     if not len(rows):
         return None
@@ -222,7 +223,7 @@ def _find_rest(contact: int, slip: Array) -> ContactChange | None:
 def make_friction_springs(
     mbs: Any, scene: Scene, units: Units, contacts: list[Any], first: int, depressions: Depressions
 ) -> FrictionSprings | None:
-    """Return the springs under `contacts` whose spheres have the coordinates from `first` on; None in a rigid scene."""
+    """Return the springs of `contacts`; first: first coordinate of their spheres. None where friction is rigid."""
     if not scene.dry_friction.elastic:
         return None
     turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)
@@ -234,18 +235,18 @@ def make_friction_springs(
         depressions,
         law,
         scene.yield_displacement / units.length,
-        end_of_slide(scene, units),
+        slide_end_speed(scene, units),
     )
 
 
-def end_of_slide(scene: Scene, units: Units) -> float:
-    """Slip speed at which a slide ends at level 0 where friction yields, in units of velocity."""
-    return END_OF_SLIDE * math.sqrt(scene.friction_coefficient * scene.yield_displacement / units.length)
+def slide_end_speed(scene: Scene, units: Units) -> float:
+    """Return the slip speed, in units of velocity, at which a slide ends at level 0 where friction yields."""
+    return SLIDE_END_SPEED_RATIO * math.sqrt(scene.friction_coefficient * scene.yield_displacement / units.length)
 
 
 @dataclass(frozen=True)
 class TurningSpheres:
-    """Markers of spheres that turn, the engine's object on their coordinates, and the matrices of that, (n, n)."""
+    """Spheres that turn: their markers, the engine's object on their coordinates, and its matrices (n, n)."""
 
     markers: list[Any]
     bodies: list[Any]
@@ -254,7 +255,7 @@ class TurningSpheres:
 
     @property
     def coordinates(self) -> int:
-        """Number of their coordinates."""
+        """Number of coordinates of the spheres."""
         return len(self.stiffness)
 
 
@@ -262,9 +263,9 @@ def add_turning_spheres(
     mbs: Any, scene: Scene, units: Units, places: Array, radius: float, moved: float = 0.0
 ) -> TurningSpheres:
     """
-    Add spheres that turn on springs at places (K, 2), a length of one above the depressions; none in a rigid scene.
+    Add spheres that turn on springs at places (K, 2), one length above the depressions; none if friction is rigid.
 
-    moved: mass of all spheres where they can move vertically, pressed upwards by the weight.
+    moved: mass of all spheres, if they can move vertically and are pressed upwards by the weight; else 0.
     """
     if not scene.dry_friction.elastic:
         return TurningSpheres([], [], np.zeros((0, 0)), np.zeros((0, 0)))
@@ -272,9 +273,9 @@ def add_turning_spheres(
     rest = [[*place, 1.0, 0.0, 0.0, 0.0] for place in places]
     nodes = [mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=place)) for place in rest]
     turning = scene.dry_friction.stiffness * units.length / units.force * radius**2 / count
-    mass = np.tile([HELD_MASS] * 3 + [TURNING_MASS * radius**2 / count] * 3, count)
-    stiffness = np.tile([HELD_STIFFNESS] * 3 + [turning] * 3, count)
-    damping = np.tile([2.0 * np.sqrt(HELD_MASS * HELD_STIFFNESS)] * 3 + [0.0] * 3, count)
+    mass = np.tile([CENTER_MASS] * 3 + [ROTATIONAL_MASS * radius**2 / count] * 3, count)
+    stiffness = np.tile([CENTER_STIFFNESS] * 3 + [turning] * 3, count)
+    damping = np.tile([2.0 * np.sqrt(CENTER_MASS * CENTER_STIFFNESS)] * 3 + [0.0] * 3, count)
     upward = np.zeros(len(mass))
     if moved:
         vertical = 2 + BODY_COORDINATES * np.arange(count)

@@ -28,30 +28,30 @@ from reference.problem import DryFriction
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Coordinates of the platform among those of the bodies.
-PLATFORM = slice(BODY_COORDINATES)
+# Slice of the platform's coordinates, the first ones of the bodies.
+PLATFORM_SLICE = slice(BODY_COORDINATES)
 
-# Largest number of sweeps over the contacts, and the change of a velocity in one, over the largest before the impact,
-# at which they end.
+# Largest number of sweeps over the contacts, and largest change of a velocity in one sweep, over the largest velocity
+# before the impact, at which the sweeps end.
 MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
 
-# Speed of separation, in the model's unit of velocity, beyond which a contact counts as open.
+# Normal speed after an impact, in the model's unit of velocity, beyond which a contact counts as open.
 OPENING_SPEED = 1e-5
 
 
 @dataclass(frozen=True)
 class ImpactLaw:
     """
-    Law of impact of a platform with bodies on links, in units of the model.
+    Law for the velocities after an impact of a platform that carries bodies on links, in units of the model.
 
     Attributes:
-    - masses: (N,) array.
-    - inertias, axes: Moments of inertia about the axes of each body, and these axes at rest, columns, (N, 3), (N, 3,
+    - masses: Masses of the bodies, (N,).
+    - inertias, axes: Moments of inertia about the axes of each body, (N, 3), and these axes at rest, as columns, (N, 3,
       3).
     - centers: Centers of mass at rest, from the axis on which the links stand, (N, 3).
-    - friction: Law of the slip speed before the impact.
-    - corner: Slip speed below which the coefficient is reduced linearly.
-    - rigid: Links that are rigid in tension and bending, (N - 1,).
+    - friction: Friction law, evaluated at the slip speed before the impact.
+    - corner: Slip speed below which the friction coefficient is reduced linearly.
+    - rigid: Mask of the links that are rigid in tension and bending, (N - 1,).
     """
 
     depressions: Depressions
@@ -64,13 +64,14 @@ class ImpactLaw:
     corner: float
     rigid: Mask
 
-    def velocities_after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """Return velocities (n,) after an impact and the contacts (K,) that are open, from those closed and hit."""
-        # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix in which
-        # rigid links hold (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by Newton's
-        # restitution, and closed ones may push without rebounding. Friction and unilateral contact are solved for the
-        # velocities after the impact, by sweeps over the contacts (`_solve_impulses`). The spheres are too light to
-        # matter: one that springs up does not push the platform, and one that is hit follows it.
+    def solve_impact(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
+        """Return velocities (n,) after an impact on contacts `hit`, and the open ones (K,); closed: other contacts."""
+        # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix with
+        # rigid links as constraints (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by
+        # Newton's restitution, and closed contacts may push without rebounding. Friction and unilateral contact hold
+        # for the velocities after the impact, which sweeps over the contacts find (`_solve_impulses`). The mass of the
+        # spheres is negligible: a sphere that springs up does not push the platform, and a sphere that is hit follows
+        # it.
         count = BODY_COORDINATES * len(self.masses)
         turning = self._velocity_matrix(coordinates)
         speeds = turning @ velocities[:count]
@@ -78,7 +79,7 @@ class ImpactLaw:
         struck = np.flatnonzero(closed | hit)
         axes = _contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
-        rows[:, :, PLATFORM] = axes @ jacobian[struck]
+        rows[:, :, PLATFORM_SLICE] = axes @ jacobian[struck]
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
@@ -98,7 +99,7 @@ class ImpactLaw:
         return self.carry_spheres_along(coordinates, changed, hit & ~is_open), is_open
 
     def carry_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
-        """Return velocities (n,) with those of the light spheres that the platform hits, (K,): they follow it."""
+        """Return velocities (n,) in which the light spheres `hit` (K,) follow the platform."""
         vertical = self.depressions.vertical
         if not len(vertical):
             return velocities
@@ -108,29 +109,31 @@ class ImpactLaw:
         followed[vertical[hit]] += (leaving / normals[:, 2])[hit]
         return followed
 
-    def relax_bars(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
+    def unload_bar_dampers(self, coordinates: Array, before: Array, after: Array, damping_times: Array) -> Array:
         """
-        Return coordinates (n,) behind an impact that changed velocities (n,), at which no bar's damper pushes.
+        Return coordinates (n,) after an impact that changed velocities (n,), at which the bars' dampers exert no force.
 
         The engine's damper of a link sees the speed of its two ends along the bars, and takes the turning of bars with
-        an offset for stretching. A small stretch makes up for that; it jumps with the velocities. lags: (N - 1,),
-        damping over stiffness along the bars.
+        an offset for stretching. A small stretch, which jumps with the velocities, compensates for that. damping_times:
+        damping over stiffness along the bars, (N - 1,).
         """
         count = BODY_COORDINATES * len(self.masses)
         turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
         jump = (self._velocity_matrix(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
         shifted = coordinates.copy()
-        for link, lag in enumerate(lags):
-            along, levers = turned[link][:, 2], self._levers(link, turned)
+        for link, damping_time in enumerate(damping_times):
+            along, levers = turned[link][:, 2], self._levers_to_link_ends(link, turned)
             ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
-            stretch = lag * float(along @ (ends[1] - ends[0]))
+            stretch = damping_time * float(along @ (ends[1] - ends[0]))
             for first in range(BODY_COORDINATES * (link + 1), count, BODY_COORDINATES):
                 shifted[first : first + 3] -= stretch * along
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
-        """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
-        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[PLATFORM]
+        """Return the normal speeds (K,) of the platform from spheres that cannot rise, and from free spheres."""
+        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
+            PLATFORM_SLICE
+        ]
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
         if not len(self.depressions.vertical):
@@ -139,17 +142,19 @@ class ImpactLaw:
         return leaving - np.minimum(upward, 0.0), leaving - upward
 
     def gap_rates(self, coordinates: Array) -> Array:
-        """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
+        """Return the matrix (K, n) from the engine's velocities to the rates of the gaps, at coordinates (n,)."""
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         rates = np.zeros((len(normals), len(coordinates)))
-        rates[:, PLATFORM] = np.einsum("ki,kij->kj", normals, jacobian)
-        rates[:, PLATFORM] = rates[:, PLATFORM] @ self._velocity_matrix(coordinates)[PLATFORM, PLATFORM]
+        rates[:, PLATFORM_SLICE] = np.einsum("ki,kij->kj", normals, jacobian)
+        rates[:, PLATFORM_SLICE] = (
+            rates[:, PLATFORM_SLICE] @ self._velocity_matrix(coordinates)[PLATFORM_SLICE, PLATFORM_SLICE]
+        )
         if len(self.depressions.vertical):
             rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
         return rates
 
-    def stiff_rates(self, coordinates: Array, closed: Mask) -> Array:
-        """Rates (s, 6 N) of heave and tilt on closed contacts and of rigid links, over the engine's velocities."""
+    def stiff_deformation_rates(self, coordinates: Array, closed: Mask) -> Array:
+        """Return the matrix (s, 6 N) from velocities to heave and tilt of closed contacts and strain of rigid links."""
         count = BODY_COORDINATES * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
@@ -158,7 +163,7 @@ class ImpactLaw:
         return np.vstack([heave_and_tilt @ self.gap_rates(coordinates)[closed, :count], bars])
 
     def _velocity_matrix(self, coordinates: Array) -> Array:
-        """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
+        """Return the matrix (6 N, 6 N) from the engine's velocities to velocities and angular velocities of bodies."""
         count = BODY_COORDINATES * len(self.masses)
         turning = np.eye(count)
         for first in range(0, count, BODY_COORDINATES):
@@ -167,7 +172,7 @@ class ImpactLaw:
         return turning
 
     def _impulse_response(self, coordinates: Array) -> Array:
-        """Change of the velocities over an impulse on them, (6 N, 6 N), with bars that do not stretch or bend."""
+        """Return the matrix (6 N, 6 N) from impulses to changes of velocity, with bars that do not stretch or bend."""
         count = BODY_COORDINATES * len(self.masses)
         inverse = np.zeros((count, count))
         turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
@@ -184,19 +189,19 @@ class ImpactLaw:
         return response
 
     def _bar_rates(self, coordinates: Array, turned: Array) -> Array:
-        """Rates of stretching and bending of the rigid links over the velocities of the bodies, three rows of each."""
+        """Return the matrix from velocities of bodies to stretching and bending of rigid links, three rows for each."""
         count = len(self.masses)
         rows = np.zeros((3 * (count - 1), BODY_COORDINATES * count))
         places = coordinates[: BODY_COORDINATES * count].reshape(-1, BODY_COORDINATES)[:, :3].copy()
         places += self.centers
         for link in range(count - 1):
             below, above = BODY_COORDINATES * link, BODY_COORDINATES * (link + 1)
-            levers = self._levers(link, turned)
+            levers = self._levers_to_link_ends(link, turned)
             shift = places[link + 1] + levers[1] - places[link] - levers[0]
             across, along = turned[link][:, :2].T, turned[link][:, 2]
             stretch = rows[3 * link]
             stretch[below : below + 3], stretch[above : above + 3] = -along, along
-            # along (w x lever) = w (lever x along); the axis turns with the mean of both angular velocities
+            # along (w x lever) = w (lever x along); the link's axis turns with the mean of both angular velocities w
             turn = -0.5 * np.cross(shift, along)
             stretch[below + 3 : below + 6] = -np.cross(levers[0], along) + turn
             stretch[above + 3 : above + 6] = np.cross(levers[1], along) + turn
@@ -204,17 +209,17 @@ class ImpactLaw:
             rows[3 * link + 1 : 3 * link + 3, above + 3 : above + 6] = across
         return rows[np.repeat(self.rigid, 3)]
 
-    def _levers(self, link: int, turned: Array) -> tuple[Array, Array]:
-        """Levers from the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""
+    def _levers_to_link_ends(self, link: int, turned: Array) -> tuple[Array, Array]:
+        """Return the vectors (3,) from the centers of two bodies, turned by (N, 3, 3), to the ends of their link."""
         below, above = self.centers[link : link + 2]
         half = 0.5 * (above[2] - below[2])
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _solve_impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """Solve for impulses (K, 3), normal and across, by sweeps; rebound: least normal speed (K,) afterwards."""
-        # Projected Gauss-Seidel (Jean and Moreau 1992): each contact in turn takes the impulse that its own law asks
-        # for with all others as they are. Across the normal the block of the contact is replaced by its largest
-        # eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not
+        """Solve for impulses (K, 3), normal and tangential; rebound: smallest normal speed (K,) after the impact."""
+        # Projected Gauss-Seidel (Jean and Moreau 1992): each contact in turn takes the impulse that satisfies its own
+        # law while all other impulses stay fixed. In the tangent plane the block of the contact is replaced by its
+        # largest eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not
         # overshoot.
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
@@ -240,7 +245,7 @@ class ImpactLaw:
 
 
 def _contact_axes(normals: Array) -> Array:
-    """Matrices (K, 3, 3) whose rows are the normals (K, 3) and two directions across each."""
+    """Return the matrices (K, 3, 3) whose rows are each normal (K, 3) and two tangential directions."""
     helper = np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
     first = np.cross(normals, helper)
     first /= np.linalg.norm(first, axis=1)[:, None]

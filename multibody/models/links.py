@@ -1,5 +1,5 @@
 """
-The links of the spatial model: upright bars clamped at both ends, as the engine's connectors halfway up.
+Links of the spatial model: upright bars clamped at both ends, as connectors of the engine halfway up.
 
 A link is stiff in tension and in bending about the horizontal axes, ten times less than the contacts. Bars with an
 `axial_stiffness` give way in both as the beams that they are, and the stiffness of the link is part of the model. Its
@@ -30,18 +30,18 @@ from reference.problem.bar_links import BarLink
 
 Array = NDArray[np.float64]
 
-# Largest stiffness of bars in tension, weights over rho, and in bending: as good as rigid.
+# Largest stiffness of elastic bars in tension, in weights over rho, and in bending: stiffer bars act as rigid ones.
 MAX_BAR_STIFFNESS = 1e7
 
-# Length of the rods of dampers, in units of length; longer ones round, and mislead the Jacobian.
-ROD = 100.0
+# Length of the rods of dampers, in units of length: longer rods make larger rounding errors and a wrong Jacobian.
+ROD_LENGTH = 100.0
 
-# Compliance of a stiff link in tension (and, times rho^2, in bending) over that of the contact, under one force.
+# Compliance of a stiff link in tension (and, times rho^2, in bending) over that of the contact.
 LINK_COMPLIANCE_RATIO = 10.0
 
 
 class RigidBodies(NamedTuple):
-    """Bodies one above the other: the engine's numbers, masses (N,), centers of mass (N, 3) in units of the model."""
+    """Object numbers in the engine, masses (N,) and centers of mass (N, 3) of the bodies, in units of the model."""
 
     numbers: list[Any]
     masses: Array
@@ -51,10 +51,10 @@ class RigidBodies(NamedTuple):
 @dataclass(frozen=True)
 class Link:
     """
-    A link between neighbors, in units of the model.
+    Connector and stiffness of a link between two neighboring bodies, in units of the model.
 
-    carried: mass above it, and that mass times the place x, y of its center, (3,). shear: stiffness, (2, 2). twist:
-    stiffness against twist. bars: those that give way in tension and bending; None where these are stiff.
+    carried: mass above the link, and that mass times x and y of its center, (3,). shear: stiffness in shear, (2, 2).
+    twist: stiffness against twist. bars: bars that are elastic in tension and bending, too; None where they are stiff.
     """
 
     connector: Any
@@ -64,17 +64,17 @@ class Link:
     bars: BarLink | None = None
 
     def set_stiffness(self, mbs: Any, penetration: float) -> None:
-        """Set the stiffness of a stiff link for contacts of this penetration; bars that give way have their own."""
+        """Set the stiffness of a stiff link in proportion to that of the contacts; elastic bars keep their own."""
         if self.bars is None:
             stiff = 1.0 / (LINK_COMPLIANCE_RATIO * penetration)
             set_link_stiffness(mbs, self.connector, self.carried, self.shear, self.twist, stiff)
 
-    def sinking(self, penetration: float) -> float:
-        """Shortening of a stiff link along its bars under the weight on it; 0 for bars that give way."""
+    def static_settlement(self, penetration: float) -> float:
+        """Return the shortening of a stiff link under the weight on it; 0 for elastic bars, defined under weight."""
         return LINK_COMPLIANCE_RATIO * penetration * float(self.carried[0]) if self.bars is None else 0.0
 
-    def lag(self, penetration: float) -> float:
-        """Damping over stiffness along a stiff link, in units of time; 0 for bars that give way."""
+    def damping_time(self, penetration: float) -> float:
+        """Return the ratio of damping to stiffness along a stiff link, in units of time; 0 for elastic bars."""
         if self.bars is not None:
             return 0.0
         return float(2.0 * np.sqrt(self.carried[0] * LINK_COMPLIANCE_RATIO * penetration))
@@ -90,7 +90,7 @@ def add_links(
     square_distance: float,
 ) -> list[Link]:
     """
-    Add the links between neighbors.
+    Add the links between neighboring bodies to the engine's system, and return them.
 
     stiffness, damping: in shear, (N - 1, 2, 2). square_distance: mean square of the supports' distance from the axis.
     """
@@ -105,14 +105,14 @@ def add_links(
             links.append(Link(connector, carried, shear, twist))
             continue
         own = _bars_in_units(bars, units)
-        lag = float(np.trace(damper) / np.trace(shear))
-        _set_bars(mbs, connector, neighbors, places, carried, own, lag)
+        damping_time = float(np.trace(damper) / np.trace(shear))
+        _set_bars(mbs, connector, neighbors, places, carried, own, damping_time)
         links.append(Link(connector, carried, own.shear * np.eye(2), own.torsion, own))
     return links
 
 
 def _twist_stiffness(scene: Scene, number: int, units: Units, shear: Array, square_distance: float) -> float:
-    """Stiffness against twist of a link that is stiff otherwise, of bars that stand where the supports do."""
+    """Return the twist stiffness of a stiff link, whose bars stand where the supports do unless the scene says more."""
     bars, swaying = scene.bodies[number + 1].bars, float(np.diag(shear).mean())
     if bars is None:
         return square_distance * swaying
@@ -122,7 +122,7 @@ def _twist_stiffness(scene: Scene, number: int, units: Units, shear: Array, squa
 
 
 def _bars_in_units(bars: BarLink, units: Units) -> BarLink:
-    """Return bars in units of the model, no stiffer than the engine resolves."""
+    """Return the bars in units of the model, with at most the largest stiffness that the engine resolves."""
     force, moment = units.force / units.length, units.force * units.length
     return replace(
         bars,
@@ -136,7 +136,7 @@ def _bars_in_units(bars: BarLink, units: Units) -> BarLink:
 
 
 def add_link(mbs: Any, bodies: list[Any], centers: Array, damping: Array) -> Any:
-    """Add a link halfway between two centers of mass (2, 3), on the vertical axis; damping: in shear, (2, 2)."""
+    """Add the connector of a link halfway between two centers of mass (2, 3), and dampers in shear, (2, 2)."""
     values, directions = np.linalg.eigh(damping)
     for value, direction in zip(values, directions.T):
         add_damper(mbs, bodies, centers, np.append(direction, 0.0), value)
@@ -150,11 +150,11 @@ def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, da
     """Add a damper along a `direction` (3,) between the ends of a link."""
     if damping <= 0.0:
         return
-    forth, back = (_add_end_markers(mbs, bodies, centers, sign * ROD * direction, 0.5) for sign in (1.0, -1.0))
+    forth, back = (_add_end_markers(mbs, bodies, centers, sign * ROD_LENGTH * direction, 0.5) for sign in (1.0, -1.0))
     for ends in (forth, back):
-        rod = items.ObjectConnectorSpringDamper(markerNumbers=ends, referenceLength=ROD, damping=0.5 * damping)
+        rod = items.ObjectConnectorSpringDamper(markerNumbers=ends, referenceLength=ROD_LENGTH, damping=0.5 * damping)
         mbs.AddObject(rod)
-    # a reference length of -1 turns the sign of the rope's damping, and a regularization force below zero lets it push
+    # a reference length of -1 reverses the sign of the rope's damping, and a negative regularization force lets it push
     rope = items.ObjectConnectorReevingSystemSprings(
         markerNumbers=[*forth, *back[::-1]],
         referenceLength=-1.0,
@@ -167,7 +167,7 @@ def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, da
 
 
 def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
-    """Add markers on two neighbors at the ends of a rod (3,), of which a share lies below halfway up on the axis."""
+    """Add markers on two bodies at the ends of a `rod` (3,) whose share `below` lies below the middle of the link."""
     half = 0.5 * (centers[1, 2] - centers[0, 2]) * np.array([0.0, 0.0, 1.0])
     axis = [[-center[0], -center[1], 0.0] for center in centers]
     places = (axis[0] + half - below * rod, axis[1] - half + (1.0 - below) * rod)
@@ -178,15 +178,15 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Give a link its stiffness in shear, (2, 2), and twist, else `stiff`; carried: (3,), mass and its moments."""
+    """Set a link's stiffness: shear (2, 2), `twist`, others `stiff`; carried: mass above and its moments, (3,)."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
     mbs.SetObjectParameter(connector, "stiffness", matrix)
-    # the stiff directions are damped critically, twist not at all
+    # the stiff directions are damped critically, and twist is not damped
     dampers = 2.0 * np.sqrt(np.array([0.0, 0.0, stiff, stiff, stiff, 0.0]) * mass)
     mbs.SetObjectParameter(connector, "damping", np.diag(dampers))
-    # at rest the bars carry what stands on them without giving way
+    # at rest the bars carry the weight above them without a change of their length
     mbs.SetObjectParameter(connector, "offset", [0.0, 0.0, mass / stiff, along_y / stiff, -along_x / stiff, 0.0])
 
 
@@ -197,12 +197,12 @@ def _set_bars(
     centers: Array,
     carried: Array,
     bars: BarLink,
-    lag: float,
+    damping_time: float,
 ) -> None:
-    """Give a link the stiffness of its bars, and dampers `lag` times that, but in shear."""
+    """Set a link's stiffness to that of its elastic bars, and its damping, but in shear, to `damping_time` times it."""
     _, along_x, along_y = carried
     stiffness = np.array([bars.shear, bars.shear, bars.tension, bars.bending, bars.bending, bars.torsion])
-    # at rest the bars have the heights of the scene under the weight that they carry
+    # the heights of the scene are those at rest, under the weight that the bars carry
     offset = [0.0, 0.0, bars.load / bars.tension, along_y / bars.bending, -along_x / bars.bending, 0.0]
     if bars.pendulum:
         stiffness[2] = offset[2] = 0.0
@@ -210,18 +210,18 @@ def _set_bars(
             markerNumbers=_add_end_markers(mbs, bodies, centers, np.array([0.0, 0.0, bars.pendulum]), 0.5),
             referenceLength=bars.pendulum + bars.load / bars.tension,
             stiffness=bars.tension,
-            damping=lag * bars.tension,
+            damping=damping_time * bars.tension,
         )
         mbs.AddObject(rod)
-    add_damper(mbs, bodies, centers, np.array([0.0, 0.0, 1.0]), lag * stiffness[2])
-    dampers = np.diag(lag * stiffness * [0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
+    add_damper(mbs, bodies, centers, np.array([0.0, 0.0, 1.0]), damping_time * stiffness[2])
+    dampers = np.diag(damping_time * stiffness * [0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
     mbs.SetObjectParameter(connector, "stiffness", np.diag(stiffness))
     mbs.SetObjectParameter(connector, "damping", dampers)
     mbs.SetObjectParameter(connector, "offset", offset)
 
 
 def fastest_bar_frequency(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
-    """Largest angular frequency that bars which give way make of bodies held by nothing else; 0 without bars."""
+    """Return the largest angular frequency of the bodies on elastic bars alone; 0 without elastic bars."""
     if all(link.bars is None for link in links):
         return 0.0
     size = BODY_COORDINATES * len(masses)

@@ -1,4 +1,4 @@
-"""Ground acceleration as an expression that the engine evaluates: (5.2)-(5.4), or a record (`recorded.py`)."""
+"""Ground acceleration as an expression for the engine: harmonics (5.2)-(5.4), or a record (`recorded.py`)."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from reference.problem import Scene, exponents
 
 class SymbolicGround:
     """
-    The plate's acceleration in units of the model; its two phases can be changed between runs.
+    Acceleration of the plate as a symbolic expression, in units of the model, whose two phases can be changed.
 
-    knots: instants at which steps must end, none. near: distance within which an instant is on a knot. decay_rate: that
-    of the fastest harmonic, per unit of time.
+    knots: instants at which steps must end; none here. near: distance within which an instant counts as a knot.
+    decay_rate: decay rate of the harmonic that decays fastest, per unit of time.
     """
 
     knots, near = np.empty(0), 0.0
@@ -35,21 +35,21 @@ class SymbolicGround:
             symbol.SetValue(float(value))
 
     def begin(self, time: float) -> None:
-        """Do nothing: the expression holds at any time."""
+        """Do nothing, as the expression holds at any time."""
 
     def before_step(self, mbs: Any, end: float) -> bool:
-        """Do nothing: the expression holds in every step."""
+        """Do nothing, as the expression holds in every step."""
         return True
 
-    def shakes(self, axis: int) -> bool:
+    def accelerates(self, axis: int) -> bool:
         """Return whether the plate is accelerated along `axis`."""
         return bool(self.amplitudes[axis].any())
 
     def acceleration_along(self, axis: int, time: Any) -> Any:
         """
-        Expression of the acceleration along `axis` at the symbolic instant `time`.
+        Return the expression of the acceleration along `axis` at the symbolic instant `time`.
 
-        It has no term that changes nothing: the engine evaluates all of them in every iteration.
+        It has no terms equal to zero, because the engine evaluates every term in every iteration.
         """
         terms = [
             (amplitude if exponent.real == 0.0 else amplitude * exudyn.symbolic.exp(exponent.real * time))
@@ -64,25 +64,25 @@ Ground = SymbolicGround | RecordedGround
 
 
 def make_ground(mbs: Any, scene: Scene, units: Units) -> Ground:
-    """Make the loading of the scene for the engine."""
+    """Return the acceleration of the plate for the engine, from the record or the harmonics of the scene."""
     return RecordedGround(mbs, scene, units) if scene.recorded else SymbolicGround(scene, units)
 
 
 def attach_symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:
-    """Give `load` the user function as a recorded expression, which the caller keeps alive as long as the system."""
+    """Set `function` as symbolic expression of `load`, and return it: it must stay alive as long as the system."""
     expression = symbolic_function(mbs, function, parameter, load)
     mbs.SetLoadParameter(load, parameter, expression)
     return expression
 
 
 def add_coordinate_load(mbs: Any, node: Any, coordinate: int, load: float = 0.0) -> Any:
-    """Add a constant load on a coordinate of a node; an expression may take its place."""
+    """Add a constant load on a coordinate of a node, which an expression may replace later; return the load."""
     marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
     return mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=load))
 
 
-class Push(NamedTuple):
-    """A coordinate of a node with a mass that the loading accelerates along `axis`."""
+class LoadedCoordinate(NamedTuple):
+    """Coordinate of a node, its mass, and the axis of the plate's acceleration that loads it."""
 
     node: Any
     coordinate: int
@@ -90,15 +90,15 @@ class Push(NamedTuple):
     axis: int
 
 
-def load_coordinates(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
-    """Load every coordinate by -m times the plate's acceleration, faster than by forces; return the expressions."""
+def load_coordinates(mbs: Any, ground: Ground, pushes: Iterable[LoadedCoordinate]) -> list[Any]:
+    """Add the load -m times the plate's acceleration to every coordinate, and return the symbolic expressions."""
 
     def force(mass: float, axis: int) -> Any:
         return lambda mbs, t, load: -mass * ground.acceleration_along(axis, t)
 
     expressions = []
     for node, coordinate, mass, axis in pushes:
-        if ground.shakes(axis):
+        if ground.accelerates(axis):
             load = add_coordinate_load(mbs, node, coordinate)
             expressions.append(attach_symbolic_load(mbs, load, "loadUserFunction", force(mass, axis)))
     return expressions

@@ -1,5 +1,5 @@
 """
-A flat slider: the platform on a plane, the limit of a sphere of infinite radius.
+Contact and start of a flat slider, a platform on a plane: the limit of a sphere of infinite radius.
 
 The engine's contact is that of a sphere with a triangle, which is made so large that no motion leaves it. Friction,
 stiffness and damping follow the same laws as those of two spheres. The gap does not depend on the place, so a plane
@@ -21,40 +21,41 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-# Least extent of the triangle, in units of length: its normal is known to 1e-16 of that over the sphere's radius.
-MIN_EXTENT = 1e4
+# Smallest extent of the contact triangle, in units of length: its normal has an error of 1e-16 extents over the radius.
+MIN_TRIANGLE_EXTENT = 1e4
 
-# Factor of the extent over the distance that the loading and the start alone may take the platform.
-EXTENT_MARGIN = 2.0
+# Extent of the contact triangle over the largest distance that the loading and the start alone may move the platform.
+EXTENT_RATIO = 2.0
 
 
 def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, height: float, law: ContactLaw) -> Any:
-    """Make the contact of a sphere with the plane at `height` above the marker `plane`."""
+    """Return the engine's contact of a sphere with the plane at `height` above the marker `plane`."""
     return items.ObjectContactSphereTriangle(
         markerNumbers=[sphere, plane],
         nodeNumber=node,
         sphereRadius=radius,
-        trianglePoints=_make_triangle(MIN_EXTENT, height),
+        trianglePoints=_make_triangle(MIN_TRIANGLE_EXTENT, height),
         includeEdges=0,
         dynamicFriction=law.friction,
         frictionProportionalZone=law.threshold,
     )
 
 
-def set_plane_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
-    """Make the triangle at `height` large enough for a platform that goes `way`, in units of length."""
-    mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
+def set_plane_extent(mbs: Any, contact: Any, distance: float, height: float) -> None:
+    """Set the contact triangle at `height` large enough for a platform that moves by `distance`, in units of length."""
+    extent = max(MIN_TRIANGLE_EXTENT, EXTENT_RATIO * distance)
+    mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(extent, height))
 
 
 def _largest_distance_possible(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
-    """Bound of the distance that the start and the loading alone may take a body, in units of length."""
+    """Return a bound of the distance that initial state and loading may move a body, in units of length."""
     end = scene.duration / units.time
     loading = 2.0 * scene.largest_acceleration / units.acceleration
     return float(np.abs(coordinates).max() + np.abs(velocities).max() * end + loading * end**2)
 
 
 def place_on_plane(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
-    """Place the platform on the plane; arguments and results are those of `contact.place_on_sphere`."""
+    """Return position, velocity, gap and slip of the platform on the plane; arguments as of `place_on_sphere`."""
     pressed = penetration * float(1.0 + ground[2])
     place = np.array([*offset, penetration - pressed])
     return place, np.array([*speed, 0.0]), -pressed, float(np.hypot(*speed))
@@ -71,7 +72,7 @@ def start_platform(
     set_extent: Callable[[float], None],
 ) -> tuple[Array, Array, float, float]:
     """
-    Place the platform on its sphere or plane, and the other bodies as an initial state says (None: at rest).
+    Return the state with the platform on its sphere or plane and all bodies in an initial state (None: at rest).
 
     bodies: index of the coordinates of the bodies, (N, 3), among `count`. ground: acceleration of the plate, m/s^2,
     (3,). set_extent: makes the plane large enough for a distance. Returns coordinates and velocities (count,), gap and
@@ -91,6 +92,6 @@ def start_platform(
 
 
 def _make_triangle(extent: float, height: float) -> Any:
-    """Make a triangle whose center is above the origin."""
+    """Return the corners of a triangle at `height` whose center is above the origin."""
     points = [[-extent, -extent, height], [2.0 * extent, -extent, height], [-extent, 2.0 * extent, height]]
     return exudyn.Vector3DList(points)

@@ -1,5 +1,5 @@
 """
-Recorded ground acceleration for the engine, linear between samples, and the steps that go with it.
+Recorded ground acceleration for the engine, linear between samples, and steps that end at the samples.
 
 The engine's expressions know no tables. But steps end at the knots of a record, so within a step the acceleration is
 one straight line, whose numbers are set before the step: one call of Python per step, none inside it.
@@ -19,12 +19,12 @@ from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-# Distance in time from a knot, in shortest intervals, within which an instant counts as the knot itself.
+# Distance in time from a knot, over the shortest interval of the record, within which an instant counts as the knot.
 KNOT_TOLERANCE = 1e-6
 
 
 class RecordedGround:
-    """The plate's acceleration in units of the model, by the interface of `SymbolicGround`; phases mean nothing."""
+    """Acceleration of the plate from a record, in units of the model, with the methods of `SymbolicGround`."""
 
     decay_rate = 0.0
 
@@ -40,28 +40,28 @@ class RecordedGround:
         mbs.SetPreStepUserFunction(self.before_step)
 
     def set_phase(self, phase: Any) -> None:
-        """Do nothing: a record has no phases."""
+        """Do nothing, as a record has no phases."""
 
     def begin(self, time: float) -> None:
-        """Make ready for a run that begins at this instant."""
+        """Set the interval of the record in which a run begins at `time`."""
         self._interval = -1
         self._enter_interval(int(np.searchsorted(self._time, time + self.near, side="right")))
 
-    def shakes(self, axis: int) -> bool:
+    def accelerates(self, axis: int) -> bool:
         """Return whether the plate is accelerated along `axis`."""
         return bool(self._samples[:, axis].any())
 
     def acceleration_along(self, axis: int, time: Any) -> Any:
-        """Expression of the acceleration along `axis` at the symbolic instant `time`, inside the step being made."""
+        """Return the expression of the acceleration along `axis` at the symbolic instant `time` of the present step."""
         return self._value[axis] + self._rate[axis] * (time - self._origin)
 
     def before_step(self, mbs: Any, end: float) -> bool:
-        """Enter the interval of the step that ends at this instant."""
+        """Set the interval of the record for the step that ends at `end`, before the engine takes that step."""
         self._enter_interval(int(np.searchsorted(self._time, end - self.near)))
         return True
 
     def _enter_interval(self, interval: int) -> None:
-        """Set the line of interval k between knots k - 1 and k, or 0 before the first knot, where its sample holds."""
+        """Set value and rate of the acceleration for interval k, between samples k - 1 and k; 0 precedes the first."""
         if interval == self._interval:
             return
         self._interval, knot = interval, max(interval - 1, 0)
@@ -73,8 +73,8 @@ class RecordedGround:
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
     """Return step and number of steps from `time` on, at most `step` and `count`, that end at every knot passed."""
-    # The gap to the next knot is divided into equal steps. Intervals of the same length behind it can share the step
-    # and the call of the engine; a longer or shorter one ends the chunk.
+    # The time to the next knot is divided into equal steps. Further intervals of the same length can have the same
+    # step in the same call of the engine; an interval of another length ends the chunk.
     place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0
     if place == len(knots):
         return step, count

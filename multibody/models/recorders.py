@@ -1,4 +1,4 @@
-"""Sensors of a model: all that a run is judged by, kept in the engine's memory and read back after each chunk."""
+"""Sensors of a model, which record motion and contacts in the engine's memory to be read after each chunk."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def add_recorders(
     contact_nodes: list[Any],
     contacts: list[Any],
 ) -> Recorders:
-    """Add sensors: motion of nodes and linear bodies, and gap, slip, force and normal of contacts."""
+    """Add sensors for the motion of nodes and linear bodies and for gap, slip, force and normal of contacts."""
     kind = exudyn.OutputVariableType
 
     def sense_node(node: Any, quantity: Any) -> Any:

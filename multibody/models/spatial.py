@@ -1,5 +1,5 @@
 """
-The spatial model: rigid bodies free to turn, supports in the plane, contacts that open and close.
+Spatial model: rigid bodies that can rotate, supports in the plane, contacts that open and close.
 
 Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
 per support. Each has its own unilateral contact, so supports share the load as overturning demands. A link is a
@@ -30,7 +30,7 @@ from scipy.spatial import ConvexHull
 
 from multibody.models.contact import (
     DAMPING_RATIO,
-    FORCE_ROUNDING,
+    POSITION_ROUNDING,
     ContactLaw,
     contact_law,
     corner_and_relaxation,
@@ -41,13 +41,13 @@ from multibody.models.engine import BODY_COORDINATES, exudyn, items
 from multibody.models.friction_springs import add_turning_spheres, make_friction_springs
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import Link, RigidBodies, add_links, fastest_bar_frequency
-from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
+from multibody.models.loading import LoadedCoordinate, add_coordinate_load, load_coordinates, make_ground
 from multibody.models.plane import make_plane_contact, set_plane_extent, start_platform
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
 from multibody.models.supports import (
-    DETERMINATE,
+    MAX_DETERMINATE_SUPPORTS,
     MIN_WARPING_COMPLIANCE,
     SPHERES_MASS,
     Supports,
@@ -58,14 +58,14 @@ from multibody.models.supports import (
 from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
 from reference.problem import DryFriction, Scene, State
-from reference.problem.supports import ring_places
+from reference.problem.supports import ring_positions
 
 Array = NDArray[np.float64]
 
 
 def assemble_spatial(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
     """
-    Assemble the spatial model; arguments are those of `assemble_translational`.
+    Assemble the spatial model of a scene in the engine; arguments are those of `assemble_translational`.
 
     Raises ValueError if the scene has no data of supports or bodies.
     """
@@ -79,13 +79,13 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     ground = make_ground(mbs, scene, units)
     bearings, count = scene.isolator.support_stiffness, len(geometry.places)
     bearing_penetration = 0.0 if bearings is None else units.force / (count * bearings * units.length)
-    shared = not bearing_penetration and count > DETERMINATE
+    shared = not bearing_penetration and count > MAX_DETERMINATE_SUPPORTS
     supports = _add_supports(mbs, scene, units, geometry, shared)
     engine_law = contact_law(scene, regularization, units)
     contacts, contact_nodes = _add_contacts(mbs, supports.markers, numbers[0], geometry, engine_law, scene.flat)
     for mass, node in zip(masses, nodes):
         add_coordinate_load(mbs, node, 2, -float(mass))
-    pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
+    pushed = [LoadedCoordinate(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
     expressions = load_coordinates(mbs, ground, pushed)
     forces = contacts if contact_force or scene.dry_friction.needs_load else []
     recorders = add_recorders(mbs, nodes, supports.springs, contact_nodes, forces)
@@ -100,10 +100,10 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     under_platform = underside(geometry.places, centers[0], geometry.radius, vertical)
     springs = make_friction_springs(mbs, scene, units, contacts, parts.body_coordinates, under_platform)
     law = DryFriction(engine_law.friction, engine_law.friction, 0.0) if varying is None else varying.law
-    law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # a spring has no impulse
+    law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # springs transmit no friction impulse
     impact_law = _make_impact_law(scene, geometry, under_platform, links, law, engine_law.threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
-    # positions round in proportion to the distance, and so do the moments of the forces that they make
+    # rounding of positions, and of the moments of forces, is in proportion to the distance
     farthest_place = max(1.0, float(geometry.distances.max()), float(centers[:, 2].max()))
     return EngineModel(
         mbs=mbs,
@@ -116,7 +116,7 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
         settle=parts.settle,
         corner=corner,
         relaxation=relaxation,
-        rounding=FORCE_ROUNDING * farthest_place**2,
+        rounding=POSITION_ROUNDING * farthest_place**2,
         references=(container, expressions),
         allows_liftoff=True,
         kinematics=impact_law,
@@ -125,7 +125,7 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
         depressions=under_platform,
         critical_tilt=_critical_tilt(geometry.places, geometry.radius, masses, centers),
         impact=None if bearing_penetration else impact_law,
-        bar_lags=parts.bar_lags,
+        bar_damping_times=parts.bar_damping_times,
         take_out_open_contacts=parts.take_out_open_contacts,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
@@ -137,11 +137,11 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
 @dataclass(frozen=True)
 class _Geometry:
     """
-    Bodies and places of supports, in units of the model.
+    Geometry of bodies and supports, in units of the model.
 
-    places: of the supports, (K, 2). distances: of supports from the axis of the links, (K,), or one for a ring. radius:
-    of the spheres. masses: (N,). centers: of mass, (N, 3). inertias: about the axes of the boxes, (N, 3). axes: of the
-    boxes at rest, columns, (N, 3, 3).
+    places: x and y of the supports, (K, 2). distances: distances of the supports from the axis of the links, (K,), or
+    (1,) for a ring. radius: radius of the spheres. masses: mass of each body, (N,). centers: centers of mass, (N, 3).
+    inertias: moments about the axes of the boxes, (N, 3). axes: these axes at rest, as columns, (N, 3, 3).
     """
 
     places: Array
@@ -154,13 +154,13 @@ class _Geometry:
 
     @property
     def tensors(self) -> Array:
-        """Tensors of inertia, (N, 3, 3)."""
+        """Tensors of inertia of the bodies in the axes of the plate, (N, 3, 3)."""
         turned: Array = (self.axes * self.inertias[:, None, :]) @ self.axes.swapaxes(1, 2)
         return turned
 
 
 def _measure_geometry(scene: Scene, units: Units) -> _Geometry:
-    """Return bodies and supports of a scene. Raises ValueError where the scene lacks data of them."""
+    """Return the geometry of a scene's bodies and supports. Raises ValueError where the scene lacks data of them."""
     isolator = scene.isolator
     required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
     if not isinstance(isolator.supports, list):
@@ -177,7 +177,7 @@ def _measure_geometry(scene: Scene, units: Units) -> _Geometry:
     else:
         assert isolator.supports is not None
         assert isolator.ring is not None
-        places = ring_places(isolator.supports, isolator.ring / units.length)
+        places = ring_positions(isolator.supports, isolator.ring / units.length)
         distances = np.hypot(*places[:1].T)
     masses, radius = scene.masses / units.mass, isolator.sphere_radius / units.length
     sizes = np.array([body.size for body in scene.bodies]) / units.length
@@ -192,7 +192,7 @@ def _measure_geometry(scene: Scene, units: Units) -> _Geometry:
 
 
 def _add_boxes(mbs: Any, geometry: _Geometry) -> tuple[list[Any], list[Any]]:
-    """Add the bodies; return their nodes and numbers."""
+    """Add the bodies to the engine's system; return their nodes and object numbers."""
     nodes, bodies = [], []
     for mass, center, tensor in zip(geometry.masses, geometry.centers, geometry.tensors):
         nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*center, 0.0, 0.0, 0.0])))
@@ -202,7 +202,7 @@ def _add_boxes(mbs: Any, geometry: _Geometry) -> tuple[list[Any], list[Any]]:
 
 
 def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, numbers: list[Any]) -> list[Link]:
-    """Add the links between the bodies, along the axes of the upper one."""
+    """Add the links between the bodies, with shear stiffness along the axes of the upper body of each."""
     directions = geometry.axes[1:, :2, :2]
     shear, damping = (
         directions @ (values[:, :, None] * directions.swapaxes(1, 2))
@@ -213,7 +213,7 @@ def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, number
 
 
 def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, shared: bool) -> Supports:
-    """Add the spheres: fixed, or sharing the load elastically, or turning on springs where friction yields."""
+    """Add the supports: spheres fixed, on springs that share the load, or turning where friction yields."""
     places = geometry.places
     if scene.dry_friction.elastic:
         moved = SPHERES_MASS if shared else 0.0
@@ -225,7 +225,7 @@ def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, sha
 def _make_impact_law(
     scene: Scene, geometry: _Geometry, under_platform: Depressions, links: list[Link], law: DryFriction, corner: float
 ) -> ImpactLaw:
-    """Return the law of contacts that close, with friction by `law` above the slip speed `corner`."""
+    """Return the impact law of contacts that close, with friction by `law`, linear below the slip speed `corner`."""
     restitution = scene.isolator.restitution or 0.0
     rigid = np.array([link.bars is None for link in links], dtype=bool)
     return ImpactLaw(
@@ -244,10 +244,10 @@ def _make_impact_law(
 @dataclass(frozen=True)
 class _SpatialSystem:
     """
-    The parts of the assembled system that can be set, and its start; in units of the model.
+    Assembled spatial system: setting of its contacts and links and its initial state, in units of the model.
 
-    index: of the coordinates that move the bodies, (N, 3). radius: of the spheres. bearing_penetration: under the
-    weight, as the scene's bearings state it, or 0.
+    index: index of the coordinates that move the bodies, (N, 3). radius: radius of the spheres. bearing_penetration:
+    penetration under the weight by the stiffness of the scene's bearings, or 0.
     """
 
     scene: Scene
@@ -262,7 +262,7 @@ class _SpatialSystem:
 
     @property
     def body_coordinates(self) -> int:
-        """Number of the coordinates of the bodies, which come before those of the spheres."""
+        """Number of coordinates of the bodies, which come before those of the spheres."""
         return BODY_COORDINATES * len(self.index)
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
@@ -272,12 +272,12 @@ class _SpatialSystem:
         for link in self.links:
             link.set_stiffness(self.mbs, penetration)
 
-    def bar_lags(self, penetration: float) -> Array:
-        """Damping over stiffness of each link along its bars, (N - 1,), for a penetration of the contacts."""
-        return np.array([link.lag(penetration) for link in self.links])
+    def bar_damping_times(self, penetration: float) -> Array:
+        """Return damping over stiffness of each link along its bars, (N - 1,), for a penetration of the contacts."""
+        return np.array([link.damping_time(penetration) for link in self.links])
 
     def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
-        """Take open contacts (K,) out of the engine, and put the others in with their penetration."""
+        """Switch off the contacts `is_open` (K,) in the engine, and set the others to their penetration."""
         self._set_penetration(penetration)
         for contact in compress(self.contacts, is_open):
             self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
@@ -293,40 +293,41 @@ class _SpatialSystem:
             set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts), ratio)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        """Return the state for an initial state (None: at rest), the plate's acceleration, m/s^2, and a penetration."""
+        """Return the engine's state for an initial state (None: at rest) and the plate's acceleration, m/s^2."""
         index, pressed = self.index, self.bearing_penetration or penetration
 
-        def set_extent(way: float) -> None:
+        def set_extent(distance: float) -> None:
             for contact in self.contacts:
-                set_plane_extent(self.mbs, contact, way, 1.0 + self.radius)
+                set_plane_extent(self.mbs, contact, distance, 1.0 + self.radius)
 
         count = self.body_coordinates + self.supports.coordinates
         coordinates, velocities, gap, slip = start_platform(
             self.scene, self.units, index, count, initial, ground_acceleration, pressed, set_extent
         )
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = coordinates[2], velocities[2]
-        # spheres and stiff links spring back as far as the loading takes the weight off them
+        # spheres and stiff links rise as far as the vertical loading relieves them of the weight
         relief = 1.0 + gap / pressed
-        coordinates[index[:, 2]] += relief * self.supports.sinking(penetration)
-        coordinates[index[1:, 2]] += relief * np.cumsum([link.sinking(penetration) for link in self.links])
-        coordinates[self.body_coordinates + self.supports.vertical] = relief * self.supports.sinking(penetration)
+        settlement = relief * self.supports.static_settlement(penetration)
+        coordinates[index[:, 2]] += settlement
+        coordinates[index[1:, 2]] += relief * np.cumsum([link.static_settlement(penetration) for link in self.links])
+        coordinates[self.body_coordinates + self.supports.vertical] = settlement
         contacts = len(self.contacts)
         data, load = np.tile([gap, slip, 0.0, 0.0], contacts), np.full(contacts, -gap / pressed)
         return EngineState(coordinates, velocities, data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return the state as it is: bodies that turn settle by themselves."""
+        """Return the state unchanged, because contact forces of bodies that turn settle by themselves."""
         return state
 
     def warping_displacement(self, coordinates: Array) -> Array:
-        """Largest distance of the supports from a plane, (T,), for coordinates (T, n)."""
+        """Return the largest warping displacement (T,) of any support, from a plane, for coordinates (T, n)."""
         vertical = self.body_coordinates + self.supports.vertical
         largest: Array = np.abs(coordinates[:, vertical] @ self.supports.warping).max(axis=1, initial=0.0)
         return largest
 
 
 def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) -> float:
-    """Angle from the nearest edge of the supports to the center of mass over it, from the vertical, rad."""
+    """Return the tilt, rad, at which the center of mass is above the nearest edge of the supports."""
     center = masses @ centers / masses.sum()
     outward_normals, distances = np.split(ConvexHull(ring).equations, [2], axis=1)
     inside = -float((outward_normals @ center[:2] + distances[:, 0]).max())
@@ -336,7 +337,7 @@ def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) ->
 def _add_contacts(
     mbs: Any, supports: list[Any], platform: Any, geometry: _Geometry, law: ContactLaw, flat: bool
 ) -> tuple[list[Any], list[Any]]:
-    """Add contacts of the spheres in the platform's depressions, or under its plane, and their data nodes."""
+    """Add contacts of the spheres with the platform's depressions or plane; return them and their data nodes."""
     radius, ring = geometry.radius, geometry.places
     depressions = np.column_stack([ring, np.zeros(len(ring))]) - geometry.centers[0]
     contacts, nodes = [], []

@@ -1,11 +1,11 @@
 """
-Friction that depends on slip speed, normal force or heat, for contacts of the engine, whose coefficient is one number.
+Friction that depends on slip speed, normal force or heat, for the engine's contacts with a constant coefficient.
 
 Before every step the coefficient of each contact is set to that at the slip speed and the normal force which the
 contact will have at the end of the step, by straight lines through the last two values of each, and at the temperature
 that follows from them (surface_heat.py). Within a step the engine solves for constant coefficients. So the error is of
 second order in the step, like that of the integrator, as long as a step is shorter than the time in which the change of
-friction acts back on the speed (`feedback`).
+friction acts back on the speed (`friction_feedback_rate`).
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-# Number of data coordinates of a contact, and the place of the slip speed among them.
-DATA_PER_CONTACT, SLIP = 4, 1
+# Number of data coordinates of a contact, and index of the slip speed among them.
+DATA_PER_CONTACT, SLIP_INDEX = 4, 1
 
 
 class SpeedFriction:
-    """Law that sets the coefficients of `contacts` before every step; in units of the model."""
+    """Friction law that sets the coefficients of `contacts` before every step, in units of the model."""
 
     def __init__(
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
@@ -42,23 +42,23 @@ class SpeedFriction:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
-        # over the coefficients of the law, for contacts that rest where friction yields (`FrictionSprings`)
-        self.factors = [1.0] * len(contacts)
+        # coefficients over those of the law, above 1 for contacts at rest where friction yields (`FrictionSprings`)
+        self.coefficient_ratios = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        # slip speeds, loads over the shares of the weight and their rates at the start of the step, from _start to _end
+        # slip speeds and loads over the weight's shares, with their rates, at the start of the step from _start to _end
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)
         self._load = [1.0] * len(contacts)
         self._start = self._end = 0.0
         mbs.SetPreStepUserFunction(self._before_step)
 
     def begin(self, mbs: Any, state: EngineState, time: float) -> None:
-        """Make ready for a run from `state` at this instant."""
+        """Set slip speeds, loads and coefficients for a run from `state` at `time`."""
         nothing = [0.0] * len(self._add_contacts)
         self._slip = self._read_speeds(state.contact, state.velocities)
         self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
         if self.law.elastic:
-            self._rate = [_rate_of_length(state.velocities[:3], state.accelerations)] * len(nothing)
+            self._rate = [_compute_rate_of_length(state.velocities[:3], state.accelerations)] * len(nothing)
         self._load = [1.0] * len(nothing) if state.load is None else state.load.tolist()
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
@@ -71,24 +71,24 @@ class SpeedFriction:
             )
         self._set_coefficients(mbs, 0.0)
 
-    def feedback(self, slip: Array) -> Array:
-        """Rate at which a change of the coefficients acts back on slip speeds (T, K), the largest of the contacts."""
+    def friction_feedback_rate(self, slip: Array) -> Array:
+        """Return the largest rate (T,), of all contacts, at which friction by slip speeds (T, K) changes the slip."""
         rate: Array = (self._mass_ratio * self.law.steepness(slip) * np.minimum(slip / self._threshold, 1.0)).max(
             axis=1
         )
         return rate
 
     def _before_step(self, mbs: Any, end: float) -> bool:
-        """Set the coefficients for the step that ends at this instant; the engine calls this before it."""
-        # The engine tries a step again with another length where it cannot solve it. The slip speeds of a step that was
-        # made differ from those before it: only then is the state of the contacts one step further.
+        """Set the coefficients for the step that ends at `end`; the engine calls this before every step."""
+        # The engine repeats a step that it cannot solve with another length. Only after a step that it has solved, the
+        # slip speeds differ from those before, and only then the state of the contacts advances.
         self._ground.before_step(mbs, end)
         data = mbs.systemData
         slip = self._read_speeds(data.GetDataCoordinates(), data.GetODE2Coordinates_t())
         if slip != self._slip:
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
-            if self.law.by_load:
+            if self.law.depends_on_load:
                 load = self._read_loads(mbs)
                 self._load_rate = [(new - old) / span for new, old in zip(load, self._load, strict=True)]
                 self._load = load
@@ -103,32 +103,32 @@ class SpeedFriction:
         return True
 
     def _read_speeds(self, contact: Array, velocities: Array) -> list[float]:
-        """Read the speeds that the coefficients depend on: of the slip, or of the platform where friction yields."""
+        """Return the speeds on which the coefficients depend: of slip, or of the platform where friction yields."""
         if self.law.elastic:
             return [math.hypot(*velocities[:3])] * len(self._add_contacts)
-        speeds: list[float] = contact[SLIP::DATA_PER_CONTACT].tolist()
+        speeds: list[float] = contact[SLIP_INDEX::DATA_PER_CONTACT].tolist()
         return speeds
 
     def _read_loads(self, mbs: Any) -> list[float]:
-        """Read the normal forces of the contacts over their shares of the weight."""
+        """Return the normal forces of the contacts over their shares of the weight, from the engine."""
         kind, count = exudyn.OutputVariableType, len(self._add_contacts)
         pairs = [(mbs.GetObjectOutput(each, kind.Force), mbs.GetObjectOutput(each, kind.Director1))
                  for each in self._add_contacts]  # fmt: skip
         return [count * abs(float(force @ normal)) for force, normal in pairs]
 
     def _set_coefficients(self, mbs: Any, span: float) -> None:
-        """Set the coefficients at the speeds and loads that the contacts have after `span`."""
+        """Set the coefficients for the extrapolated slip speeds and loads of the contacts after `span`."""
         coefficients = self._coefficients_without_heat(span)
         if self._heat is not None:
             end = self._start + span
             celsius = self._heat.temperature(end, self._friction_power(coefficients, span), self._heat.distance(end))
             self._factor_of_heat = Heat.factor(celsius)
             coefficients = list(self._factor_of_heat * coefficients)
-        for contact, coefficient, factor in zip(self._add_contacts, coefficients, self.factors, strict=True):
+        for contact, coefficient, factor in zip(self._add_contacts, coefficients, self.coefficient_ratios, strict=True):
             mbs.SetObjectParameter(contact, "dynamicFriction", factor * coefficient)
 
     def _coefficients_without_heat(self, span: float) -> list[float]:
-        """Coefficients of the contacts after `span`, without heat."""
+        """Return the coefficients of the contacts after `span`, without the effect of heat."""
         contacts = zip(self._slip, self._rate, self._load, self._load_rate, strict=True)
         return [
             self.law.coefficient_at(max(slip + span * rate, 0.0), load + span * load_rate)
@@ -136,7 +136,7 @@ class SpeedFriction:
         ]
 
     def _friction_power(self, cold: list[float], span: float) -> Array:
-        """Power of friction of each contact after `span`, W, from the coefficients then without heat."""
+        """Return the power of friction, W, of each contact after `span`; cold: its coefficients without heat."""
         slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
         speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)
         held = np.minimum(speed / self._threshold, 1.0)
@@ -144,7 +144,7 @@ class SpeedFriction:
         return power
 
 
-def _rate_of_length(vector: Array, rates: Array | None) -> float:
-    """Rate of the length of a vector (3,) whose rates (3, ...) are known; else 0."""
+def _compute_rate_of_length(vector: Array, rates: Array | None) -> float:
+    """Return the rate of the length of a vector (3,) with given rates (3, ...); 0 if the rates are None."""
     length = math.hypot(*vector)
     return 0.0 if rates is None or length == 0.0 else float(vector @ rates[:3]) / length

@@ -1,4 +1,4 @@
-"""One state of the engine, from which a run starts."""
+"""State of the engine from which a run starts."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class EngineState:
     """
-    One state of the engine in its own units, relative to the plate.
+    Coordinates, velocities and contact data of the engine at one instant, in its own units, relative to the plate.
 
     Attributes:
-    - coordinates, velocities: (n,) arrays.
-    - contact: Contact data, (c,).
+    - coordinates, velocities: Values of all coordinates and their rates, (n,).
+    - contact: Contact data, (c,): gap, slip speed and two unused entries of each contact.
     - slip_rate, load, load_rate: Rates of the contacts' slip speeds over the last step, their loads over their shares
-      of the weight where friction depends on it, and the rates of these; None where there was no last step, (K,).
-    - accelerations: (n,) where the engine is not to compute them; else None.
+      of the weight where friction depends on load, and the rates of these loads, (K,); None without a last step.
+    - accelerations: Accelerations at the start, (n,); None lets the engine compute them.
     - sliding: Whether each contact slides, (K,), where friction yields; empty at the start, where all rest.
     """
 

@@ -1,14 +1,14 @@
 """
-The supports of the spatial model: they share the load as elastic bearings do, however stiff the contacts are.
+Supports of the spatial model, which share the load as elastic bearings do, however stiff the contacts are.
 
 Rigid supports leave the forces of more than three of them undetermined, and a rigid platform that has yawed and tilted
 fits three spheres only, by about 3e-8 rho: contacts stiffer than that make it rock on two diagonals. Real bearings give
 way by far more, so that the vertical forces are c0 + c1 x_k + c2 y_k. Here every sphere can move vertically. Against
 the three patterns of such forces (heave, tilt about x, tilt about y) the spheres are held ten times as stiffly as by
 contacts. Against the K - 3 other patterns, which warp the ring, they give way by a stated share of rho under the
-weight. That is more than the misfit. Where all supports stay closed it is so much more that warping takes no load;
-where one opens, less than what would let it hit the platform as it closes again. The stiffness of the contacts, and
-with it the time in which the total force follows, does not change.
+weight, which is more than the misfit. Where all supports stay closed, this share is so large that warping carries no
+load. Where a support opens, it is so small that the sphere does not hit the platform as it closes again. The stiffness
+of the contacts, and with it the time in which the total force follows, does not change.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ from multibody.models.friction_springs import TurningSpheres
 
 Array = NDArray[np.float64]
 
-# Number of supports whose forces follow from statics.
-DETERMINATE = 3
+# Largest number of supports whose vertical forces follow from statics alone.
+MAX_DETERMINATE_SUPPORTS = 3
 
-# Stiffness of the springs against heave and tilt over that of the contacts.
+# Stiffness of the springs under the spheres against heave and tilt over that of the contacts.
 SPHERE_STIFFNESS_RATIO = 10.0
 
-# Compliance against warping in units of rho under the weight, where no level of accuracy says more.
+# Compliance of the supports against warping under the weight, in units of rho, until a level of accuracy sets another.
 MIN_WARPING_COMPLIANCE = 2e-5
 
-# Mass of all spheres together: much less than that of the bodies.
+# Mass of all spheres together over the total mass: the spheres hardly take part in the motion.
 SPHERES_MASS = 1e-2
 
-# Rotation that turns the axis of a 1-D mass, x, upwards.
-UPRIGHT = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+# Rotation matrix that turns the x axis, along which a 1-D mass moves, upwards.
+UPRIGHT_ROTATION = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
 
 
 @dataclass(frozen=True)
 class Supports:
     """
-    Spheres under the platform.
+    Spheres under the platform, fixed or on springs.
 
     Attributes:
     - markers: Markers at the spheres' centers.
-    - springs: An object on all coordinates of the spheres and no others; empty where the spheres are fixed.
+    - springs: The engine's object on all coordinates of the spheres and no others; empty where the spheres are fixed.
     - coordinates: Number of these coordinates.
     - vertical: Index of each sphere's vertical coordinate; empty where the spheres are fixed, (K,).
     - warping: `warping_projection` of the supports, (K, K).
@@ -63,13 +63,13 @@ class Supports:
     warping: Array
     set_stiffness: Callable[[float, float], None]
 
-    def sinking(self, penetration: float) -> float:
-        """Sinking of the spheres under the weight, for the contacts' penetration; 0 for fixed ones."""
+    def static_settlement(self, penetration: float) -> float:
+        """Return the settlement of the spheres under the weight, for the contacts' penetration; 0 for fixed spheres."""
         return penetration / SPHERE_STIFFNESS_RATIO if len(self.vertical) else 0.0
 
 
 def warping_projection(ring: Array) -> Array:
-    """Projection (K, K) of K forces at places (K, 2) onto the part that neither heave nor tilt contains."""
+    """Return the projection (K, K) of forces at places (K, 2) onto their warping part, without heave and tilt."""
     patterns, _ = np.linalg.qr(np.column_stack([np.ones(len(ring)), ring]))
     projection: Array = np.eye(len(ring)) - patterns @ patterns.T
     return projection
@@ -95,7 +95,10 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
     nodes = [mbs.AddNode(items.Node1D(referenceCoordinates=[0.0])) for _ in ring]
     spheres = [
         items.ObjectMass1D(
-            mass=SPHERES_MASS / count, nodeNumber=node, referencePosition=[*place, 1.0], referenceRotation=UPRIGHT
+            mass=SPHERES_MASS / count,
+            nodeNumber=node,
+            referencePosition=[*place, 1.0],
+            referenceRotation=UPRIGHT_ROTATION,
         )
         for node, place in zip(nodes, ring)
     ]
@@ -104,25 +107,25 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
 
     def set_stiffness(penetration: float, share: float) -> None:
         stiffness, damping = _sharing_springs(count, penetration, share)
-        mbs.SetObjectParameter(springs, "stiffnessMatrix", _soft_against_warping(warped, *stiffness))
-        mbs.SetObjectParameter(springs, "dampingMatrix", _soft_against_warping(warped, *damping))
+        mbs.SetObjectParameter(springs, "stiffnessMatrix", _combine_tilt_and_warping(warped, *stiffness))
+        mbs.SetObjectParameter(springs, "dampingMatrix", _combine_tilt_and_warping(warped, *damping))
 
     return Supports(markers, [springs], count, np.arange(count), warped, set_stiffness)
 
 
 def _sharing_springs(count: int, penetration: float, share: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return stiffness and critical damping of the springs under the spheres, each against the rest and warping."""
+    """Return stiffness and critical damping of the springs under the spheres: against heave and tilt, and warping."""
     stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
     return (stiff, soft), (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
 
-def _soft_against_warping(warped: Array, stiff: float, soft: float) -> Array:
-    """Return a matrix (K, K) that is `stiff` but for warping, against which it is `soft`."""
+def _combine_tilt_and_warping(warped: Array, stiff: float, soft: float) -> Array:
+    """Return a stiffness or damping matrix (K, K): `stiff` against heave and tilt, `soft` against warping."""
     return stiff * (np.eye(len(warped)) - warped) + soft * warped
 
 
 def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared: bool) -> Supports:
-    """Make supports of spheres that turn at places (K, 2), which share the load elastically or not at all."""
+    """Return supports of turning spheres at places (K, 2); shared: whether they share the load elastically."""
     count, size = len(ring), turning.coordinates
     vertical = 2 + BODY_COORDINATES * np.arange(count) if shared else np.empty(0, np.int_)
     warped = warping_projection(ring) if shared else np.zeros((0, count))
@@ -137,7 +140,7 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
             ("dampingMatrix", turning.damping, damping),
         ):
             matrix = held.copy()
-            matrix[block] = _soft_against_warping(warped, *parts)
+            matrix[block] = _combine_tilt_and_warping(warped, *parts)
             mbs.SetObjectParameter(turning.bodies[0], name, matrix)
 
     return Supports(turning.markers, turning.bodies, size, vertical, warped, set_stiffness)

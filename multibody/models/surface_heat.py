@@ -1,8 +1,8 @@
 """
-Heat of the contacts, for friction that it lowers: the temperature at the end of each step, before the step is made.
+Temperature of the contacts at the end of each step, before the step is made, for friction that heat lowers.
 
 The kernel 1 / sqrt(s) of the temperature is a sum of decays exp(-x^2 s), its integral over ln x by the trapezoidal
-rule. So all that a contact remembers is the share of each decay, and a step adds a power that is linear in time.
+rule. So the state of a contact is its share of each decay, and a step adds a power that is linear in time.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-# Spacing of ln x in the trapezoidal rule, whose error is exp(-pi^2 / (2 SPACING)) of the kernel, 7e-8.
-SPACING = 0.3
+# Spacing of ln x in the trapezoidal rule, whose error relative to the kernel is exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
+LOG_SPACING = 0.3
 
-# Least x, times the root of the duration.
-SLOWEST = 1e-5
+# Smallest x, the root of a decay rate, times the root of the duration.
+MIN_DECAY_RATE_ROOT = 1e-5
 
-# Time over which the kernel is cut off, in durations: the square root of it is missed.
-FASTEST = 1e-6
+# Time, over the duration, below which the kernel is cut off: the heat of so short a time is missing.
+KERNEL_CUTOFF_TIME = 1e-6
 
 
 class _HeatState(NamedTuple):
     """
-    Heat of the contacts at an instant, in units of time.
+    Heat of the contacts at one instant.
 
-    shares: of the decays, W s, (K, X). power: of friction, W, covered or not, (K,). distance: of the platform from the
-    center, in units of length.
+    time: instant, in units of time. shares: heat in each of the decays, W s, (K, X). power: power of friction, W, (K,),
+    whether the platform covers the contact or not. distance: of the platform from the center, in units of length.
     """
 
     time: float
@@ -42,18 +42,18 @@ class _HeatState(NamedTuple):
 
 
 class SurfaceHeat:
-    """Temperature of `count` contacts; unit_time, s, and unit_length, m, are those of the model."""
+    """Temperature of `count` contacts in a run; unit_time, s, and unit_length, m: units of the model."""
 
     def __init__(self, heat: Heat, count: int, duration: float, unit_time: float, unit_length: float) -> None:
         self._initial, self._rise, self._cover = heat.initial, count * heat.rise, heat.cover / unit_length
         self._unit_time, self._count = unit_time, count
-        low, high = math.log(SLOWEST), math.log(3.0 / math.sqrt(FASTEST * 1e-3))
-        x = np.exp(np.arange(low, high, SPACING)) / math.sqrt(duration)
-        self._rates, self._add_weights = x * x, 2.0 / math.sqrt(math.pi) * SPACING * x
+        low, high = math.log(MIN_DECAY_RATE_ROOT), math.log(3.0 / math.sqrt(KERNEL_CUTOFF_TIME * 1e-3))
+        x = np.exp(np.arange(low, high, LOG_SPACING)) / math.sqrt(duration)
+        self._rates, self._add_weights = x * x, 2.0 / math.sqrt(math.pi) * LOG_SPACING * x
         self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
-        """Forget what came after `time`; return whether the power there is known, too."""
+        """Delete the states after `time`, where a run begins; return whether the power at `time` is known."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
             self._kept = [_HeatState(0.0, nothing, nothing[:, 0], 0.0)]
@@ -66,17 +66,17 @@ class SurfaceHeat:
         return known
 
     def step_to(self, time: float, power: Array, distance: float) -> None:
-        """Remember a step up to `time` with this power at its end."""
+        """Store the state after a step up to `time` with power (K,), W, and distance of the platform at its end."""
         self._kept.append(self._advance(time, power, distance))
 
     def temperature(self, time: float, power: Array, distance: float) -> Array:
-        """Temperature (K,), degrees C, at the end of a step up to `time` with this power there."""
+        """Return the temperature (K,), degrees C, at the end of a step up to `time` with power (K,), W, there."""
         shares = self._advance(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
         celsius: Array = self._initial + self._rise * (shares @ self._add_weights)
         return celsius
 
     def distance(self, time: float) -> float:
-        """Distance of the platform from the center at `time`, by the straight line through the last two."""
+        """Return the platform's distance from the center at `time`, extrapolated linearly from the last two states."""
         *before, last = self._kept[-2:]
         if not before or last.time <= before[0].time:
             return last.distance

@@ -1,4 +1,4 @@
-"""An assembled model of the engine: its coordinates, contacts and recorders, and how it starts."""
+"""Assembled model of the engine: its coordinates, contacts, recorders and initial state."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Recorders:
     """
-    Sensors that are read after a run.
+    Sensors of a model that are read after a run.
 
-    coordinates, velocities, accelerations: one a node. contact: gap, slip speed and two unused entries of each contact.
-    contact_force: force vector and normal of each contact; empty unless asked for.
+    coordinates, velocities, accelerations: one sensor for each node. contact: gap, slip speed and two unused entries of
+    each contact. contact_force: force vector and normal of each contact; empty unless requested.
     """
 
     coordinates: list[Any]
@@ -41,38 +41,39 @@ class Recorders:
 @dataclass(frozen=True)
 class EngineModel:
     """
-    An assembled engine system that can be run again and again, in units of `units`.
+    Assembled system of the engine that can be run any number of times, in units of `units`.
 
     Attributes:
     - mbs: The engine's system.
-    - ground: The loading.
+    - ground: Acceleration of the plate.
     - bodies: Index of the coordinate that moves each body along x, y, z, (N, 3).
     - set_contact: Sets the contact's penetration under the weight and the compliance of the supports against warping.
     - start: Returns the state for an initial state (None: at rest), the plate's acceleration then, m/s^2, and the
       penetration.
-    - settle: Returns the state to go on from with a smaller step, for the last one, the rate of each gap (K,) and the
-      penetration.
-    - corner, relaxation: Slip speed below which the friction law is linear, and the time in which such a slip dies out;
-      inf if the law has no such corner.
-    - rounding: Rounding of a contact force times its penetration, in units of weight times length.
-    - references: The engine's container of the system, and what the engine only points to.
-    - allows_liftoff: Whether the model goes on when every contact is open.
+    - settle: Returns the state to continue from with a smaller step, for the last state, the rates (K,) of the gaps and
+      the penetration.
+    - corner, relaxation: Slip speed below which the friction law is linear, and the relaxation time of such a slip; inf
+      if the law has no such corner.
+    - rounding: Rounding error of a contact force times its penetration, in units of weight times length.
+    - references: The engine's container of the system, and objects that must stay alive because the engine points to
+      them.
+    - allows_liftoff: Whether a run continues when every contact is open.
     - depressions: Depressions of a platform that turns.
     - travel: Largest displacement of the platform that the isolator permits.
     - critical_tilt: Tilt of the platform, rad, beyond which its weight turns it over.
-    - impact: Law of contacts that close; None where their own stiffness decides.
-    - bar_lags: Returns damping over stiffness of each link along its bars, (N - 1,), in units of time, for a
+    - impact: Impact law of contacts that close; None in the translational model, and on bearings of stated stiffness.
+    - bar_damping_times: Returns damping over stiffness of each link along its bars, (N - 1,), in units of time, for a
       penetration.
     - take_out_open_contacts: Takes contacts (K,) out of the engine, whose penetration is given, and puts the others in.
-    - kinematics: Kinematics of bodies that turn, of their contacts and stiff links; None where the model starts in
-      balance by itself.
+    - kinematics: Kinematics of bodies that turn, of their contacts and stiff links; None where no body turns, so that
+      the initial state needs no search for equilibrium.
     - warping_displacement: Returns the distance of the supports from a plane, (T,), for coordinates (T, n); None where
       the supports do not share the load.
     - bearing_penetration: Penetration under the weight as the scene's bearings state it, or 0.
     - friction: Friction that depends on slip speed or load.
-    - springs: Springs on which the spheres turn where friction yields.
+    - springs: Springs on which the spheres turn where friction yields; None for rigid friction.
     - rim: Displacement of the platform at which it reaches the rim; inf on a plane.
-    - fastest_bar_frequency: Largest angular frequency that bars make which give way; 0 without such bars.
+    - fastest_bar_frequency: Largest angular frequency of the bodies on elastic bars; 0 without such bars.
     """
 
     mbs: Any
@@ -92,7 +93,7 @@ class EngineModel:
     travel: float = math.inf
     critical_tilt: float = math.inf
     impact: ImpactLaw | None = None
-    bar_lags: Callable[[float], Array] | None = None
+    bar_damping_times: Callable[[float], Array] | None = None
     take_out_open_contacts: Callable[[NDArray[np.bool_], float], None] | None = None
     kinematics: ImpactLaw | None = None
     warping_displacement: Callable[[Array], Array] | None = None
@@ -109,5 +110,5 @@ class EngineModel:
 
     @property
     def coordinates(self) -> int:
-        """Number of the system's coordinates."""
+        """Number of coordinates of the system."""
         return int(self.mbs.systemData.ODE2Size())

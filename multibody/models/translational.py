@@ -1,5 +1,5 @@
 """
-The translational model: the paper's degrees of freedom, the engine's bodies and contact.
+Translational model: the degrees of freedom of the paper, with the bodies and the contact of the engine.
 
 The platform is a rigid body whose moments of inertia are so large that it does not turn: the contact item needs a
 body with an orientation, and locking the rotations by constraints would cost more coordinates. The bodies above
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from multibody.models.contact import (
-    FORCE_ROUNDING,
+    POSITION_ROUNDING,
     ContactLaw,
     contact_law,
     corner_and_relaxation,
@@ -29,7 +29,7 @@ from multibody.models.contact import (
 from multibody.models.depressions import Depressions, FlatUnderside
 from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn, items
 from multibody.models.friction_springs import TurningSpheres, add_turning_spheres, make_friction_springs
-from multibody.models.loading import Push, load_coordinates, make_ground
+from multibody.models.loading import LoadedCoordinate, load_coordinates, make_ground
 from multibody.models.plane import make_plane_contact, set_plane_extent, start_platform
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
@@ -40,16 +40,17 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-# Pattern of a spring between two coordinates.
-BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])
+# Stiffness matrix of a unit spring between two coordinates.
+UNIT_SPRING_MATRIX = np.array([[1.0, -1.0], [-1.0, 1.0]])
 
-# Moment of inertia in units of mass * length^2: the platform turns by 1e-11 rad in 20 s under the largest torque.
+# Moment of inertia of a platform that must not turn, in units of mass times length^2: the largest torque turns it by
+# 1e-11 rad in 20 s.
 LOCKED_INERTIA = 1e15
 
-# Radius R of the hollow sphere in units of rho; in translation only R - r matters.
+# Radius R of the hollow sphere, in units of rho, for a free choice: in translation only R - r = rho has an effect.
 HOLLOW_RADIUS = 2.0
 
-# Radius of the sphere, also of that under a flat slider, in units of length.
+# Radius r of the sphere, also under a flat slider, in units of length.
 SPHERE_RADIUS = HOLLOW_RADIUS - 1.0
 
 
@@ -61,10 +62,10 @@ def assemble_translational(
     axes: int = 2,
 ) -> EngineModel:
     """
-    Assemble the translational model.
+    Assemble the translational model of a scene in the engine.
 
     regularization: v_reg, m/s, of dry friction; None where the contact is lubricated or frictionless. contact_force:
-    record it too. axes: 1 for a motion in the plane of x and z, in which the bodies above the platform have no
+    whether to record it. axes: 1 for a motion in the plane of x and z, in which the bodies above the platform have no
     coordinate along y (their y is the platform's, which stays zero).
     """
     units = units_of(scene)
@@ -81,7 +82,7 @@ def assemble_translational(
     law = contact_law(scene, regularization, units)
     turning = add_turning_spheres(mbs, scene, units, np.zeros((1, 2)), SPHERE_RADIUS)
     contact, contact_node, height = _add_contact(mbs, plate, depression, law, turning, scene.flat)
-    expressions = load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
+    expressions = load_coordinates(mbs, ground, _list_loaded_coordinates(masses, nodes, axes))
     recorders = add_recorders(
         mbs,
         [],
@@ -113,7 +114,7 @@ def assemble_translational(
         settle=parts.settle,
         corner=corner,
         relaxation=relaxation,
-        rounding=FORCE_ROUNDING,
+        rounding=POSITION_ROUNDING,
         references=(container, expressions),
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
@@ -124,10 +125,10 @@ def assemble_translational(
 @dataclass(frozen=True)
 class _TranslationalSystem:
     """
-    The parts of the assembled system that can be set, and its start; in units of the model.
+    Assembled translational system: setting of its contact and its initial state, in units of the model.
 
-    bodies: index of the coordinates that move the bodies, (N, 3). height: of the plane of a flat slider. coordinates:
-    their number.
+    bodies: index of the coordinates that move the bodies, (N, 3). height: height of the plane of a flat slider.
+    coordinates: number of coordinates of the system.
     """
 
     scene: Scene
@@ -139,22 +140,22 @@ class _TranslationalSystem:
     coordinates: int
 
     def set_contact(self, penetration: float, warping_compliance: float = 0.0) -> None:
-        """Set the penetration of the contact under the weight; a single contact has nothing to warp."""
-        # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
+        """Set the penetration of the contact under the weight; `warping_compliance` has no effect on one contact."""
+        # the static penetration reduces the distance of the centers, so that the pendulum at rest always has length rho
         sphere, hollow = SPHERE_RADIUS + penetration, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS]
         set_contact_parameters(self.mbs, self.contact, sphere if self.scene.flat else hollow, penetration)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        """Return the state for an initial state (None: at rest), the plate's acceleration, m/s^2, and a penetration."""
+        """Return the engine's state for an initial state (None: at rest) and the plate's acceleration, m/s^2."""
         coordinates, velocities, gap, slip = start_platform(
             self.scene, self.units, self.bodies, self.coordinates, initial, ground_acceleration, penetration,
-            lambda way: set_plane_extent(self.mbs, self.contact, way, self.height),
+            lambda distance: set_plane_extent(self.mbs, self.contact, distance, self.height),
         )  # fmt: skip
         contact_data, load = np.array([gap, slip, 0.0, 0.0]), np.array([-gap / penetration])
         return EngineState(coordinates, velocities, contact_data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return the state to go on from with a smaller step (`settle_contact`)."""
+        """Return the state to continue from with a smaller step, with a settled contact force (`settle_contact`)."""
         x, y, z = (0.0, 0.0, 0.0) if self.scene.flat else state.coordinates[:3].tolist()
         to_center_of_hollow_sphere = -x, -y, 1.0 - z
         length = math.hypot(*to_center_of_hollow_sphere)
@@ -166,10 +167,10 @@ def _add_contact(
     mbs: Any, plate: Any, platform: Any, law: ContactLaw, turning: TurningSpheres, flat: bool
 ) -> tuple[Any, Any, float]:
     """
-    Add a sphere inside the platform's hollow sphere, and its data node; `set_contact` completes it.
+    Add a sphere inside the platform's hollow sphere, and its data node; `set_contact` sets its stiffness.
 
-    Under a flat slider the sphere is the platform's and lies on the plane of the plate, unless it turns: no moment
-    turns platform and plate. Returns the height of the plane, too.
+    Under a flat slider the sphere belongs to the platform and lies on the plane of the plate; a sphere that turns
+    belongs to the plate, and the plane to the platform. Returns contact, data node and height of the plane.
     """
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     if flat:
@@ -217,8 +218,8 @@ def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, da
             lower = upper - axes if link > 0 else axis
             mass_matrix[upper, upper] = masses[link + 1]
             pair = np.ix_([lower, upper], [lower, upper])
-            stiffness_matrix[pair] += stiffness[link, axis] * BETWEEN_TWO
-            damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
+            stiffness_matrix[pair] += stiffness[link, axis] * UNIT_SPRING_MATRIX
+            damping_matrix[pair] += damping[link, axis] * UNIT_SPRING_MATRIX
     weight = np.zeros(len(mass_matrix))
     weight[2] = -1.0
     matrices = {"massMatrix": _matrix_container(mass_matrix), "stiffnessMatrix": _matrix_container(stiffness_matrix)}
@@ -228,7 +229,7 @@ def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, da
 
 
 def _matrix_container(matrix: Array) -> Any:
-    """Return a matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
+    """Return a matrix (n, n) in the engine's form: dense, or its non-zero entries for the sparse solver."""
     if len(matrix) <= MAX_DENSE_COORDINATES:
         return matrix
     entries = exudyn.MatrixContainer()
@@ -236,12 +237,12 @@ def _matrix_container(matrix: Array) -> Any:
     return entries
 
 
-def _list_pushes(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
-    """List the coordinates that the loading accelerates: the bodies above share the platform's vertical motion."""
-    platform = [Push(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
+def _list_loaded_coordinates(masses: Array, nodes: list[Any], axes: int) -> list[LoadedCoordinate]:
+    """List the coordinates that the loading accelerates; only the platform has a vertical one, with all masses."""
+    platform = [LoadedCoordinate(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
     above = [
-        Push(nodes[1], axes * number + axis, float(mass), axis)
+        LoadedCoordinate(nodes[1], axes * number + axis, float(mass), axis)
         for number, mass in enumerate(masses[1:])
         for axis in range(axes)
     ]
-    return [*platform, Push(nodes[0], 2, 1.0, 2), *above]
+    return [*platform, LoadedCoordinate(nodes[0], 2, 1.0, 2), *above]

@@ -19,7 +19,7 @@ from reference.problem import GRAVITY, Scene, loading_period
 
 @dataclass(frozen=True)
 class Units:
-    """Units of the model in SI: kg, m, s, and those derived from them."""
+    """Units of the model in SI: kg, m, s, and the units derived from them."""
 
     mass: float
     length: float
@@ -42,7 +42,7 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """Return the units in which `scene` has total mass, rho and g equal to one; on a plane those of the loading."""
+    """Return the units in which total mass, rho and g of `scene` are one; on a plane the loading sets the length."""
     if scene.flat:
         time = min(loading_period(scene), scene.duration) / (2.0 * math.pi)
         return Units(scene.total_mass, GRAVITY * time**2, time)
@@ -50,10 +50,10 @@ def units_of(scene: Scene) -> Units:
 
 
 def link_stiffness(scene: Scene, units: Units) -> NDArray[np.float64]:
-    """Stiffness of the links in units of the model, (N-1, 2)."""
+    """Return the shear stiffness of the links in units of the model, (N-1, 2)."""
     return scene.stiffness * (units.time**2 / units.mass)
 
 
 def link_damping(scene: Scene, units: Units) -> NDArray[np.float64]:
-    """Damping of the links in units of the model, (N-1, 2)."""
+    """Return the shear damping of the links in units of the model, (N-1, 2)."""
     return scene.damping * (units.time / units.mass)

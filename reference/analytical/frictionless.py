@@ -1,5 +1,5 @@
 """
-Frictionless small vibration (4.3)-(4.4), mu = 0, from rest, under the damped cosines (5.3): the whole chain, exact.
+Frictionless small vibration (4.3)-(4.4), mu = 0, from rest, under the damped cosines (5.3), in closed form.
 
 Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha_k) exp(s_k t)), solved from rest by
     eta = -Gamma (D(s, i omega) - D(s, -i omega)) / (2 i omega),   D(s, z) = (exp(s t) - exp(z t)) / (s - z).
@@ -21,17 +21,17 @@ from reference.problem import Scene, exponents, loading_period
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Intervals per shortest period, and terms of the series on each: those left out are below 1e-14 of the motion
+# Intervals per shortest period, and terms of the series on each: the remainder is below 1e-14 of the motion
 INTERVALS_PER_PERIOD = 12
 SERIES_TERMS = 12
-# Size of s t, rad, below which the drift on a plane is summed as a series of DRIFT_TERMS terms, without cancellation
+# rad: below this size of s t the drift on a plane is summed as a series of DRIFT_TERMS terms, without cancellation
 MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20
-ROUNDING_ERROR = 1e-13  # relative error of a frequency and of an operation
+ROUNDING_ERROR = 1e-13  # relative error of a frequency and of each operation
 
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return largest accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and `ends`, (M,) each.
+    Return peak accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and `ends`, (M,) each.
 
     The scene is one that `linear` allows. `ends` is True at phase pairs at which the platform may reach the end of its
     travel, or without one the rim (4.1): such a motion has left the range of the small equations.
@@ -62,7 +62,7 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
 def _harmonic_responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
-    """Return the complex response per harmonic and its derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
+    """Return the complex response to each harmonic and its derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
     shape = natural.shape[:, :bodies]
     parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
@@ -103,7 +103,7 @@ def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
 
 
 def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
-    """Return D(s, z) for the roots z (N,), (T, N), s: t exp(z t) where s equals z."""
+    """Return (exp(s t) - exp(z t)) / (s - z) for the roots z (N,), (T, N), s, which is t exp(z t) where s equals z."""
     gap = s - roots
     same = gap == 0.0
     growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)

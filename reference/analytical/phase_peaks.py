@@ -1,5 +1,5 @@
 """
-Largest length over time of vectors that are linear in exp(i alpha_1), exp(i alpha_2): whole surfaces from one motion.
+Largest length over time of vectors that are linear in exp(i alpha_1) and exp(i alpha_2), at many phase pairs.
 
 A body's vector is v(t) = Re(A_1(t) exp(i alpha_1) + A_2(t) exp(i alpha_2)), one entry per axis. Time is cut into
 intervals on which A is a short series. The terms behind the slope bound |v| on the whole interval: intervals that
@@ -21,15 +21,15 @@ from reference.support.build_cache import cache_on_disk
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # places in an interval from which the best starts Newton's method
-NEWTON_STEPS = 5  # iterations to the largest length
-SERIES_REMAINDER = 1e-14  # terms that the series leaves out, as a share of the envelope
+STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # points of an interval, the best of which starts Newton's method
+NEWTON_STEPS = 5  # iterations of Newton's method to the largest length
+SERIES_REMAINDER = 1e-14  # share of the envelope that the terms left out by the series may have
 
 
 @dataclass(frozen=True)
 class PhaseSeries:
     """
-    Series of the vectors of N bodies on T intervals of time.
+    Series in time of the vectors of N bodies on T intervals.
 
     Attributes
     ----------
@@ -47,9 +47,9 @@ class PhaseSeries:
 
     @classmethod
     def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
-        """Return the series from the derivatives (T, N, axes, 2) of A in the middle of intervals of 2 `half`, s."""
+        """Return the series from the derivatives (T, N, axes, 2) at the middle of intervals of length 2 `half`, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
-        sizes = np.abs(scaled).sum(axis=-1)  # at the phases at which both harmonics add up
+        sizes = np.abs(scaled).sum(axis=-1)  # the harmonics add up at these phases
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
         envelope = np.sqrt((sizes.sum(axis=0) ** 2).sum(axis=-1)).max(axis=0)
         rest = np.moveaxis(sizes[2:].sum(axis=0), 0, -1)
@@ -57,14 +57,14 @@ class PhaseSeries:
 
 
 def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
-    """Return max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
+    """Return max_t |v| of every body for phase pairs (M, 2), rad, and the error of the maximum: (M, N) each."""
     peaks, errors = np.empty((2, len(phases), len(series.envelope)))
     _maximize_over_time(series.terms, series.rest, _phase_factors(phases), peaks, errors)
     return peaks, errors + SERIES_REMAINDER * series.envelope
 
 
 def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray[np.bool_]:
-    """Return True for phase pairs (M, 2), rad, at which the first body's |v| may reach `bound`: (M,)."""
+    """Return True for phase pairs (M, 2), rad, at which the length |v| of the first body may reach `bound`: (M,)."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))
@@ -76,13 +76,13 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return the factors of the four coefficients at phase pairs, (M, 4)."""
+    """Return the factors of the four coefficients at each phase pair, (M, 4)."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
 @cache_on_disk(__file__)
 def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
-    """Set |v|^2 in the middle of each interval, and an upper bound on it over the interval, (T,) each."""
+    """Set the squared length |v|^2 in the middle of each interval, and its upper bound over the interval, (T,) each."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
@@ -98,7 +98,7 @@ def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array,
 
 @njit(nogil=True)
 def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
-    """Return the coefficient of x^order on interval n."""
+    """Return the coefficient of x^order on interval n for one body and axis."""
     total = 0.0
     for part in range(4):
         total += turn[part] * terms[order, body, axis, part, n]
@@ -154,7 +154,7 @@ def _maximize_on_interval(series: Array) -> tuple[float, float]:
 
 @njit(nogil=True)
 def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
-    """Return |v|^2 at x and its first two derivatives."""
+    """Return the squared length |v|^2 at x and its first two derivatives."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):
         value = slope = curvature = 0.0

@@ -1,5 +1,5 @@
 """
-Quantities that are read off motions and surfaces of either side.
+Quantities that are computed from motions and surfaces of either side.
 
 Functions
 ---------

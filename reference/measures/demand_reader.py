@@ -1,4 +1,4 @@
-"""Reader of numbers from the samples of a motion, and of their errors."""
+"""Reading of extreme values, energies and counts from the samples of a motion, with their errors."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reference.measures.energy import Energy, energy_of
+from reference.measures.energy import Energy, compute_energy
 from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
-ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-END_TOLERANCE = 1e-9  # time by which a motion may miss its end, as a share of the duration
-DECIMATION = 5  # the sampling error is the largest change if only one of DECIMATION samples is taken
+FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
+END_TOLERANCE = 1e-9  # time by which a motion may miss its end, over the duration
+DECIMATION = 5  # the sampling error is the largest change of a value if every fifth sample is taken
 
 
 @dataclass(frozen=True)
 class Estimate:
     """
-    Number with its error.
+    A number with its error.
 
     Attributes
     ----------
@@ -46,13 +46,13 @@ UNKNOWN = Estimate(math.nan, math.nan)
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
-    """Return the largest length of `place` (T, 2), m, also between the instants `time` (T,)."""
-    square, summits = squares_and_summits(time, place, velocity)
+    """Return the largest length, m, of the displacement `place` (T, 2), also between the instants `time` (T,)."""
+    square, summits = squared_lengths_and_interval_maxima(time, place, velocity)
     return float(np.sqrt(max(square.max(), summits.max(initial=0.0))))
 
 
-def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the squared length of `place` (T, 2) at the instants, and its largest from each instant to the next."""
+def squared_lengths_and_interval_maxima(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
+    """Return the squared length of `place` (T, 2), m^2, at the instants, and its maxima over the intervals between."""
     # Between two instants the rate p . v of half the squared length is taken as linear. Where it passes zero downward,
     # the length has a summit: the squared length there exceeds the one before by rate^2 over the fall of the rate,
     # times the interval.
@@ -86,17 +86,17 @@ class DemandSamples(NamedTuple):
             motion.absolute_acceleration[:, :, :2],
         )  # fmt: skip
 
-    def decimate(self) -> list[DemandSamples]:
-        """Return one of DECIMATION samples from the first on, from the second on, ..."""
+    def split_into_subsamples(self) -> list[DemandSamples]:
+        """Return DECIMATION sets of samples, each with every fifth sample from another start."""
         firsts = range(min(DECIMATION, len(self.time)))
         return [DemandSamples(*(part[first::DECIMATION] for part in self)) for first in firsts]
 
     def largest_length(self, place: Array, velocity: Array) -> float:
-        """Return the largest length of a displacement (T, 2), m."""
+        """Return the largest length of a displacement (T, 2), m, also between the samples."""
         return largest_displacement(self.time, place, velocity)
 
     def residual_and_creep(self, stick: list[tuple[float, float]]) -> tuple[float, float]:
-        """Return the displacement at the start of the last rest, and the distance of creep in all rests together."""
+        """Return the displacement at the start of the last rest, and the total distance of creep in all rests, m."""
         place, creep, first = self.place[:, 0], 0.0, 0
         for begin, end in stick:
             first = int(np.searchsorted(self.time, begin))
@@ -109,18 +109,18 @@ ReadNumber = Callable[[DemandSamples], float]
 
 
 class DemandReader:
-    """Reader of numbers from a motion, and of their errors from its decimated samples and from its other runs."""
+    """Reader of numbers from a motion, with errors from its decimated samples and from less accurate runs."""
 
     def __init__(self, motion: Trajectory) -> None:
         self.motion, self.accuracy = motion, motion.accuracy
-        self.answered = motion.status in ANSWERED and len(motion.time) > 0
+        self.answered = motion.status in FULL_LENGTH_OUTCOMES and len(motion.time) > 0
         self.samples = DemandSamples.from_motion(motion)
-        self.decimated = self.samples.decimate()
+        self.decimated = self.samples.split_into_subsamples()
         self.others = self.accuracy.coarser if self.accuracy else ()
         self.coarser = [DemandSamples.from_motion(other) for other in self.others]
 
     def extreme(self, read: ReadNumber) -> Estimate:
-        """Return a number that is read from samples."""
+        """Return a number that `read` computes from samples, with its error."""
         if not self.answered:
             return UNKNOWN
         value = read(self.samples)
@@ -128,12 +128,12 @@ class DemandReader:
         return Estimate(value, sampling + self._solution_error(value, [read(samples) for samples in self.coarser]))
 
     def residual(self) -> Estimate:
-        """Return the displacement in the last rest, with the creep in all rests as part of its error."""
+        """Return the displacement in the last rest, with the creep in all rests as a part of its error."""
         if not self.answered:
             return UNKNOWN
         scene, stick = self.motion.scene, self.motion.stick
         yields = scene.dry_friction.elastic
-        stick = stick[-1:] if yields else stick  # elastic displacements do not add up
+        stick = stick[-1:] if yields else stick  # elastic displacements of several rests do not add up
         if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
             rests = scene.has_dry_friction or yields
             return Estimate(math.nan, math.nan, MOVING_AT_END if rests else NEVER_RESTS)
@@ -148,7 +148,7 @@ class DemandReader:
         return Estimate(value, creep + sampling + self._solution_error(value, others))
 
     def energy(self, read: Callable[[Energy], float]) -> Estimate:
-        """Return an amount of energy, which is added up over the samples."""
+        """Return an energy that `read` integrates over the samples, with its error."""
         if not self.answered:
             return UNKNOWN
         (energy, *coarser), decimated = self._energies
@@ -159,19 +159,19 @@ class DemandReader:
 
     @cached_property
     def _energies(self) -> tuple[list[Energy], list[Energy]]:
-        """Energies of the motion and of its other runs, and of the motion's decimated samples."""
-        energies = [energy_of(motion) for motion in (self.motion, *self.others)]
-        return energies, energies[0].decimate(DECIMATION)
+        """Energies of the motion and of its less accurate runs, and energies from the motion's decimated samples."""
+        energies = [compute_energy(motion) for motion in (self.motion, *self.others)]
+        return energies, energies[0].split_into_subsamples(DECIMATION)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
-        """Return a number of events; its error is the difference of the runs."""
+        """Return the number of events that `read` counts; its error is the difference of the runs."""
         if not self.answered:
             return UNKNOWN
         value = read(self.motion)
         return Estimate(value, max((abs(value - read(other)) for other in self.others), default=math.nan))
 
     def peaks(self) -> tuple[Estimate, ...]:
-        """Return the largest accelerations of all bodies."""
+        """Return the largest accelerations of all bodies, with their errors."""
         bodies = len(self.motion.scene.bodies)
         if not self.answered:
             return (UNKNOWN,) * bodies

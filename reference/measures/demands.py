@@ -8,7 +8,7 @@ import numpy as np
 
 from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate, ReadNumber
 from reference.measures.energy import Energy
-from reference.problem.result import Trajectory, takes_motion
+from reference.problem.result import Trajectory, require_motion
 from reference.problem.scene import Scene
 
 
@@ -78,7 +78,7 @@ class Demands:
     energy_balance: Estimate | None
 
 
-@takes_motion
+@require_motion
 def demands(trajectory: Trajectory) -> Demands:
     """
     Return the demands of one motion, with errors.
@@ -131,15 +131,15 @@ def demands(trajectory: Trajectory) -> Demands:
         travel_share=None if scene.isolator.travel is None else _ratio_to_limit(displacement, scene.isolator.travel),
         acceleration=read.peaks(),
         base_shear=read.extreme(lambda samples: float(np.linalg.norm(samples.isolator, axis=1).max())),
-        drift=tuple(read.extreme(_drift_of(link)) for link in bodies[:-1]),
+        drift=tuple(read.extreme(_drift_reader(link)) for link in bodies[:-1]),
         contact_force_min=read.extreme(lambda samples: float(samples.contact.min())),
         contact_force_max=read.extreme(lambda samples: float(samples.contact.max())),
         support_force_min=read.extreme(lambda samples: float(samples.support.min())) if supported else None,
         support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
-        torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
-        # A rest that begins with the motion is no stop.
+        torsion=tuple(map(read.extreme, map(_torsion_reader, bodies))) if read.samples.rotation.shape[1] else None,
+        # a rest at the start of the motion is no stop
         stops=read.count(lambda motion: float(sum(start > 0.0 for start, _ in motion.stick))),
-        support_displacement=read.extreme(_support_displacement_of(scene)) if supported and turning else None,
+        support_displacement=read.extreme(_support_displacement_reader(scene)) if supported and turning else None,
         uplift=read.extreme(lambda samples: float(samples.uplift.max())) if supported else None,
         friction_energy=read.energy(Energy.friction_energy),
         damping_energy=read.energy(Energy.damping_energy) if scene.damping.any() and not turning else None,
@@ -148,26 +148,27 @@ def demands(trajectory: Trajectory) -> Demands:
 
 
 def _ratio_to_limit(displacement: Estimate, limit: float) -> Estimate:
-    """Return a displacement over its limit, m."""
+    """Return the ratio of a displacement to its limit, m, with the error of the ratio."""
     return Estimate(displacement.value / limit, displacement.error / limit)
 
 
-def _drift_of(link: int) -> ReadNumber:
-    """Return a reader of the largest displacement of the body above a link relative to the one below."""
+def _drift_reader(link: int) -> ReadNumber:
+    """Return a function that reads the largest displacement of the body above a link relative to the body below it."""
     return lambda samples: samples.largest_length(
         samples.place[:, link + 1] - samples.place[:, link], samples.velocity[:, link + 1] - samples.velocity[:, link]
     )
 
 
-def _torsion_of(body: int) -> ReadNumber:
-    """Return a reader of the largest rotation of a body about the vertical."""
+def _torsion_reader(body: int) -> ReadNumber:
+    """Return a function that reads the largest rotation of a body about the vertical."""
     return lambda samples: float(np.abs(samples.rotation[:, body]).max())
 
 
-def _support_displacement_of(scene: Scene) -> ReadNumber:
-    """Return a reader of the largest displacement of a support, which turns about the platform's center of mass."""
+def _support_displacement_reader(scene: Scene) -> ReadNumber:
+    """Return a function that reads the largest displacement of a support of a platform that rotates."""
     assert scene.support_places is not None
-    arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]  # x + i y
+    # Positions from the center of mass as complex numbers x + i y
+    arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]
 
     def largest(samples: DemandSamples) -> float:
         place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])

@@ -1,4 +1,4 @@
-"""mu as a random variable: initial phases that are independent and uniform over a full turn."""
+"""Distribution of mu over initial phases that are independent and uniform over a full turn."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from reference.measures.demand_reader import Estimate
 from reference.support.arguments import check_array
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
-# Sampling error over the largest difference to a grid of twice the spacing. Measured with the paper's scenes, 8 to 64
-# phases per axis against 256: 1.6 differences at most in 336 values.
+# Sampling error over the largest difference from a grid of twice the spacing. Measured on the paper's scenes, 8 to 64
+# phases per axis against 256: the error was at most 1.6 of these differences in 336 values.
 SAMPLING_FACTOR = 2.0
 
 
 def fractile(values: ArrayLike, probability: float) -> float:
     """
-    Return the value below which a share of M values in any order lies; every fractile of this project is one of these.
+    Return the value below which a share `probability` of M values lies, in any order, as for every fractile here.
 
     The fractile is linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (plotting positions of
     Hazen, Trans. ASCE 77, 1914), and the smallest or largest value beyond these. Values may be infinite: the fractile
@@ -38,7 +38,7 @@ def fractile(values: ArrayLike, probability: float) -> float:
 @dataclass(frozen=True)
 class PhaseDistribution:
     """
-    Distribution of mu of one body over uniform phases.
+    Distribution of mu of one body over uniform initial phases.
 
     Attributes
     ----------

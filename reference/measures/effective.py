@@ -1,4 +1,4 @@
-"""Effective linear isolator that design codes put in the place of a friction pendulum."""
+"""Effective linear isolator that replaces a friction pendulum in design codes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.problem.result import Array
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.support.constants import GRAVITY
 
 
@@ -36,7 +36,7 @@ class EffectiveIsolator:
     restoring: Array
 
 
-@takes_scene
+@require_scene
 def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolator:
     """
     Return effective stiffness, period and damping of the isolator at a displacement, and its re-centering ratio.
@@ -76,7 +76,7 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
         raise ValueError(f"effective_isolator: displacement is {displacement!r}: pass lengths in m above 0")
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
-    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # elastic where it does not yield
+    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # less where friction is elastic
     dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)
     stiffness = weight * (friction + slope) / amplitude
     with np.errstate(divide="ignore", invalid="ignore"):

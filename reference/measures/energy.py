@@ -12,37 +12,37 @@ from reference.support.constants import GRAVITY
 
 
 class Energy(NamedTuple):
-    """Powers and stored energy at T instants; NaN where the motion does not determine them."""
+    """Powers and stored energies at T instants; NaN where the motion does not determine them."""
 
     time: Array  # (T,) s
-    friction: Array  # (T,) W, power that friction takes: it dissipates this, but for what its elastic part keeps
+    friction: Array  # (T,) W, power of friction: dissipated, except for the part that its elastic deformation stores
     dampers: Array  # (T,) W, power that the dampers of the links dissipate
     ground: Array  # (T,) W, power of the inertial forces in the plate's frame
     stored: Array  # (T,) J, kinetic and elastic energy of the bodies, and that of gravity
     sheared: Array  # (T,) J, elastic energy of friction that yields, which is a part of the work of `friction`
 
     def friction_energy(self) -> float:
-        """Return the energy that friction has dissipated at the end, J."""
+        """Return the energy that friction has dissipated by the end of the motion, J."""
         return float(np.trapezoid(self.friction, self.time)) - float(self.sheared[-1] - self.sheared[0])
 
     def damping_energy(self) -> float:
-        """Return the energy that the dampers of the links have dissipated at the end, J."""
+        """Return the energy that the dampers of the links have dissipated by the end of the motion, J."""
         return float(np.trapezoid(self.dampers, self.time))
 
     def imbalance(self) -> float:
-        """Return the work of the ground less the energy dissipated and stored, J: zero but for errors."""
+        """Return the work of the ground less dissipated and stored energy, J, which is zero in an exact motion."""
         power = self.ground - self.friction - self.dampers
         return float(np.trapezoid(power, self.time) - (self.stored[-1] - self.stored[0]))
 
-    def decimate(self, step: int) -> list[Energy]:
-        """Return one of `step` instants from the first on, from the second on, ..., each with both ends."""
+    def split_into_subsamples(self, step: int) -> list[Energy]:
+        """Return `step` histories, each with every `step`-th instant from another start, and both ends."""
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
         return [Energy(*(part[rows] for part in self)) for rows in kept]
 
 
 def friction_force(scene: Scene, place: Array, total: Array, contact: Array) -> Array:
-    """Return the force of friction, (T, 3), N: that on all bodies less the normal force of the contact."""
+    """Return the friction force, (T, 3), N: the force on all bodies less the normal force of the contact."""
     force = np.einsum("i,tia->ta", scene.masses, total)
     force[:, 2] += scene.total_mass * GRAVITY
     normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
@@ -50,8 +50,8 @@ def friction_force(scene: Scene, place: Array, total: Array, contact: Array) -> 
     return friction
 
 
-def energy_of(motion: Trajectory) -> Energy:
-    """Return powers and stored energy of a motion, NaN but for friction where bodies turn."""
+def compute_energy(motion: Trajectory) -> Energy:
+    """Return powers and stored energies of a motion; where bodies turn, all but the power of friction are NaN."""
     # The motions of the small equations have no height. Their restoring force is that of a paraboloid, so its height
     # p^2 / 2 rho and its slope take part in the energies of gravity and of the vertical ground motion.
     scene, place, velocity = motion.scene, motion.position, motion.velocity

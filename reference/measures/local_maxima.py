@@ -9,11 +9,11 @@ from reference.problem.result import Array
 from reference.problem.scene import Scene
 from reference.problem.symmetry import indices_of_solved_pairs
 
-GRID = 48  # phases per axis of the grid on which local maxima are found
-MAX_STARTS = 12  # number of local maxima from which a search begins: those that may rise highest
+GRID = 48  # phases per axis of the grid on which local maxima are sought
+MAX_STARTS = 12  # number of local maxima from which a search begins: those that may lead to the highest values
 
 
-def local_maxima(surface: Array, scene: Scene) -> Array:
+def find_local_maxima(surface: Array, scene: Scene) -> Array:
     """
     Return the phase pairs (K, 2), rad, at which a surface is as high as at its eight neighbors.
 
@@ -22,7 +22,7 @@ def local_maxima(surface: Array, scene: Scene) -> Array:
 
     >>> from reference.problem import load_scene
     >>> alpha = 2.0 * np.pi * np.arange(8) / 8
-    >>> local_maxima(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
+    >>> find_local_maxima(np.cos(2.0 * alpha)[:, None] + np.cos(2.0 * alpha)[None, :], load_scene("fig3-I")).tolist()
     [[0.0, 0.0]]
     """
     points = len(surface)

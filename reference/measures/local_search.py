@@ -1,5 +1,5 @@
 """
-Local search on a surface over the phases whose denominator is known exactly.
+Local search for the maximum of a surface over the phases whose denominator is known exactly.
 
 In a square around the best pair of phases, the numerator is interpolated by a polynomial and divided by the exact
 denominator, and the pair at which this quotient is largest is computed next. The square moves with the best pair, and
@@ -25,67 +25,67 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
-# Places along each axis of the square at which the quotient is computed: at first, and around the largest of them
+# Coordinates along each axis of the square at which the quotient is computed: first, and then around the largest
 COARSE_PLACES, FINE_PLACES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
-REFINEMENTS = 5  # grids of places for the largest quotient, each four times finer than the one before
-MIN_HALF_WIDTH = 1e-7  # rad, half width of a square at which its search ends
-# Distance of the best pair from the center, in half widths, beyond which the square moves and keeps its size
+REFINEMENTS = 5  # number of grids for the largest quotient, each four times finer than the one before
+MIN_HALF_WIDTH = 1e-7  # rad: a search ends when the half width of its square is smaller
+# The square moves and keeps its size if the best pair is farther from the center than this share of the half width
 MOVING_FRACTION = 0.8
 NODES, MANY_NODES = 3, 5  # nodes of the polynomial along each axis: at first, and after a poor prediction
-GOOD_PREDICTION = 0.1  # largest error of a good prediction over the differences in the square
+MAX_GOOD_PREDICTION_ERROR = 0.1  # of the differences of values in the square: a prediction with a smaller error is good
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
 # A search ends if it lies below the highest one by more than PROMISE_FACTOR times the differences in its square, or by
 # more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump a square has large differences
 # however small it is.
 PROMISE_FACTOR = 2.0
 LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0
-MAX_MERGED_WIDTH = 0.04  # rad, width of a common square below which two searches have found the same maximum
-JUMP_HALF_WIDTH = 0.07  # rad, half width of the first square in which a jump is followed
-JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # squares in which a jump is followed, and grids in each
+MAX_MERGED_WIDTH = 0.04  # rad: two searches that share a square of smaller width have found the same maximum
+JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
+JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # squares in which a search follows a jump, and grids in each square
 DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
-FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances at which it is computed
-# Fall at the near distance over that at the far one: 0.01 of a parabola, 0.1 of an edge, 1 of a jump
+FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
+# Ratio of the falls at the near and the far distance: it is 0.01 for a parabola, 0.1 for an edge, 1 for a jump
 KINK_FALL, JUMP_FALL = 0.03, 0.3
-CLEAR_FALL = 10.0  # fall, in errors of the value, below which it shows nothing
+CLEAR_FALL = 10.0  # a fall of fewer errors of the value shows nothing
 
 
 @dataclass(frozen=True)
 class ComputedPhases:
-    """Computed phase pairs; NaN without an answer."""
+    """Computed phase pairs, with NaN for a pair without an answer."""
 
     phases: Array  # (M, 2), rad
-    numerator: Array  # (M,), of (5.1), m/s^2, or the displacement, m
-    denominator: Array  # (M,), of (5.1), m/s^2, or 1
+    numerator: Array  # (M,), numerator of (5.1), m/s^2, or displacement, m
+    denominator: Array  # (M,), denominator of (5.1), m/s^2, or 1
     error: Array  # (M,), error of numerator / denominator
 
     @cached_property
     def value(self) -> Array:
-        """Quotient of numerator and denominator, -inf without an answer."""
+        """Quotient of numerator and denominator, -inf for a pair without an answer."""
         return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
 
     def select(self, places: slice) -> ComputedPhases:
-        """Return some of the pairs."""
+        """Return the pairs at these places."""
         return ComputedPhases(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
 
 
 @dataclass
 class Surface:
-    """Surface that is searched: mu of one body, or the displacement of the platform, m."""
+    """A surface to search: mu of one body, or the displacement of the platform, m, over the phases."""
 
     scene: Scene
     amplification: Callable[..., Amplification]
     settings: Mapping[str, Any]  # arguments of `amplification` other than scene and phases
-    body: int  # index from 0
-    quantity: str = "amplification"  # or "displacement"
+    body: int  # index of the body, from 0
+    quantity: str = "amplification"  # "amplification" or "displacement"
     evaluations: int = 0  # number of phase pairs computed so far
     outcome: str = ""  # last outcome that was not ok
 
     def denominator(self, phases: Array) -> Array:
-        """Return the denominator of (5.1), exact and cheap, (M,) at (M, 2), rad; 1 for a displacement."""
+        """Return the denominator of (5.1), m/s^2, (M,) at (M, 2), rad, exact and cheap; 1 for a displacement."""
         return ground_peak(self.scene, phases) if self.quantity == "amplification" else np.ones(len(phases))
 
     def compute(self, phases: Array, **changes: Any) -> ComputedPhases:
-        """Compute the surface at phase pairs (M, 2), rad, with `changes` of the settings."""
+        """Return the surface at phase pairs (M, 2), rad, computed with `changes` of the settings."""
         result = self.amplification(self.scene, phases, **{**self.settings, **changes})
         self.evaluations += len(phases)
         self.outcome = next((str(status) for status in result.status[::-1] if status != Outcome.OK.value), self.outcome)
@@ -100,51 +100,51 @@ class Surface:
 
 @dataclass(eq=False)
 class LocalSearch:
-    """Best phase pair so far, and the square that is searched next."""
+    """The best phase pair of a search so far, and the square to search next."""
 
     phases: Array  # (2,), rad
     value: float
     error: float
-    half_width: float  # rad, of the next square
+    half_width: float  # rad, half width of the next square
     differences: float = np.inf  # range of the values in the last square
     nodes: int = NODES  # nodes along each axis of the next square
-    count: int = 1  # number of searches that have been merged into this one
+    count: int = 1  # number of searches that were merged into this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
 
     def move_to_best(self, points: ComputedPhases) -> None:
-        """Move to the best of the points, if it is better."""
+        """Move to the best of the points if it is higher than the present one."""
         top = int(points.value.argmax())
         if points.value[top] > self.value:
             self.phases, self.value, self.error = points.phases[top], float(points.value[top]), float(points.error[top])
 
     def may_reach(self, highest: float) -> bool:
-        """Return True if the search goes on: its square is not closed yet and may contain the highest value."""
+        """Return True if the search goes on: its square is not too small and may contain the highest value."""
         promise = PROMISE_FACTOR * self.differences
         if len(self.history) > LATEST_ROUNDS:
             promise = min(promise, GAIN_FACTOR * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
         return self.half_width > MIN_HALF_WIDTH and self.value + promise >= highest
 
     @property
-    def search_error(self) -> float:
-        """Gain of the value while the square became ten times smaller for the last time."""
+    def recent_gain(self) -> float:
+        """Return the gain of the value during the last tenfold reduction of the square."""
         width, value = self.history[-1]
         return value - next((before for wide, before in reversed(self.history) if wide >= 10.0 * width), value)
 
 
 @cache
-def square_nodes(nodes: int) -> tuple[Array, Array]:
-    """Return places (nodes^2, 2) in [-1, 1], and the matrix from values there to Chebyshev coefficients."""
+def make_square_nodes(nodes: int) -> tuple[Array, Array]:
+    """Return coordinates (nodes^2, 2) in [-1, 1], and the matrix from values there to Chebyshev coefficients."""
     node = np.cos(np.pi * np.arange(nodes) / (nodes - 1))
     places = np.stack(np.meshgrid(node, node, indexing="ij"), axis=-1).reshape(-1, 2)
     return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))
 
 
-def search_round(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance all searches by one round: compute their squares, then the pairs predicted to be best."""
+def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
+    """Advance all searches by one round: compute their squares, then the best pairs that these predict."""
     # All searches share two calls of the solver, so that its threads have work. A prediction is good if the value
     # computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly and with
     # more nodes. A square in which neither the values nor the prediction differ by more than the error is closed.
-    places = [search.phases + search.half_width * square_nodes(search.nodes)[0] for search in searches]
+    places = [search.phases + search.half_width * make_square_nodes(search.nodes)[0] for search in searches]
     ends = np.cumsum([len(place) for place in places]).tolist()
     computed = surface.compute(np.concatenate(places))
     squares = [computed.select(slice(end - len(place), end)) for place, end in zip(places, ends)]
@@ -157,7 +157,7 @@ def search_round(surface: Surface, searches: Sequence[LocalSearch]) -> None:
         known = square.value[np.isfinite(square.value)]
         search.differences = float(np.ptp(known)) if len(known) else 0.0
         miss = abs(value - float(best.value[n]))
-        good = miss <= GOOD_PREDICTION * search.differences
+        good = miss <= MAX_GOOD_PREDICTION_ERROR * search.differences
         search.nodes = NODES if good else MANY_NODES
         if np.abs(search.phases - center).max() < MOVING_FRACTION * search.half_width:
             search.half_width *= FAST_SHRINKING if good else SLOW_SHRINKING
@@ -167,13 +167,13 @@ def search_round(surface: Surface, searches: Sequence[LocalSearch]) -> None:
 
 
 def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) -> tuple[Array, float]:
-    """Return the pair in the square at which numerator, interpolated, over denominator is largest, and its value."""
+    """Return the pair of the square with the largest quotient, from the interpolated numerator, and this quotient."""
     known = np.isfinite(square.numerator)
     if not known.any():
         return search.phases, -np.inf
     numerator = np.where(known, square.numerator, square.numerator[known].min())
     nodes = math.isqrt(len(numerator))
-    coefficients = (square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
+    coefficients = (make_square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
 
     def quotient(first: Array, second: Array) -> Array:
         phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
@@ -186,7 +186,7 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
 
 
 def _maximize_on_square(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
-    """Return the place in the square [-1, 1]^2 at which a function is largest, (2,), and its value, by finer grids."""
+    """Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value."""
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
         second, half = np.zeros((len(first), 1)), 1.0
@@ -207,11 +207,11 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], readings: lis
 
 
 def follow_jump(surface: Surface, search: LocalSearch) -> None:
-    """Move a search from a place next to a jump to the highest one along it, by computed values alone."""
+    """Move a search at a jump to the highest phase pair along this jump, by computed values alone."""
     # The polynomial of a square fails across a jump. So the maximum over the second phase is taken for each first one,
     # on ever finer grids of computed values, and then the maximum over the first phase: a ridge of any direction
     # is followed. The square is centered anew and made ten times smaller once.
-    center, half_width = search.phases, JUMP_HALF_WIDTH
+    center, half_width = search.phases, JUMP_SEARCH_HALF_WIDTH
 
     def value(first: Array, second: Array) -> Array:
         phases = center + half_width * np.stack([first, second], axis=-1)
@@ -243,7 +243,7 @@ def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSea
 
 
 def classify_maximum(surface: Surface, search: LocalSearch) -> tuple[str, tuple[float, float]]:
-    """Return "jump", "kink" or "smooth" for a maximum, and the direction of the high side of a jump."""
+    """Return "jump", "kink" or "smooth" for a maximum, and the direction from a jump to its high side."""
     # The surface falls from its maximum like the square of the distance where it is smooth, like the distance at an
     # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance tells which, in any of the
     # DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the

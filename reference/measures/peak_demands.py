@@ -1,4 +1,4 @@
-"""Demands at all phase pairs of a surface: one motion for each, read by `demands`."""
+"""Demands at all phase pairs of a surface, from one motion for each pair, read by `demands`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies, with the index of the first body
+PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # index of the first body with the demand
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
     "residual": ("residual displacement of the isolator", "m"),
@@ -54,7 +54,7 @@ def unit_of(quantity: str) -> str:
 @dataclass(frozen=True)
 class Estimates:
     """
-    Arrays of numbers with their errors.
+    Arrays of numbers and of their errors.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ class PeakDemands(Mapping[str, Estimates]):
         >>> data["drift"].dims, data["drift"].attrs["units"]
         (('phase', 'body'), 'm')
         """
-        import xarray as xr  # loaded on first use
+        import xarray as xr  # xarray is loaded on first use
 
         dims, alpha = phase_coordinates(self.phases)
         bodies = self["acceleration"].value.shape[-1] if "acceleration" in self else 0
@@ -147,7 +147,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
-    """Return the demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN without an answer."""
+    """Return demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN for a missing motion."""
     pairs, shape = flat_phases(phases)
     clock = time.process_time()
     status = np.full(len(pairs), Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
@@ -165,7 +165,7 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
 
 
 def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
-    """Return value and error, the last axis, of every field that any answer has; NaN where one has no answer."""
+    """Return value and error, on the last axis, of every demand that any answer has; NaN where an answer lacks it."""
     stacked: dict[str, Array] = {}
     for name in (field.name for field in fields(Demands) if field.name != "status"):
         tables = [None if answer is None else _estimate_table(getattr(answer, name)) for answer in answers]
@@ -187,7 +187,7 @@ def _estimate_table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array 
 
 def list_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
     """
-    Yield field of `Demands`, body and number of every demand of a motion.
+    Iterate over field of `Demands`, body and number for every demand of a motion.
 
     The body is 0 for the isolator; of a drift it is the upper one.
     """
@@ -198,6 +198,6 @@ def list_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
         elif isinstance(estimates, tuple):
             listed = list(enumerate(estimates, start=2 if field.name == "drift" else 1))
         else:
-            continue  # the status, or a demand that the model does not have
+            continue  # this is the status, or a demand that the model does not have
         for body, estimate in listed:
             yield field.name, body, estimate

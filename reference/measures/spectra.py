@@ -1,5 +1,5 @@
 """
-Response spectra of ground motions and of the floors of a motion.
+Response spectra of ground motions, and of the floors of a moving structure.
 
 An oscillator of one degree of freedom stands on a body and follows its absolute acceleration, which is linear between
 the samples. Its motion from one sample to the next is the exact one (Nigam and Jennings, Bull. Seism. Soc. Am. 59,
@@ -14,17 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.measures.demand_reader import ANSWERED
-from reference.problem.result import Array, Trajectory, takes_motion
+from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
+from reference.problem.result import Array, Trajectory, require_motion
 from reference.support.arguments import Range, check_array, check_number
 from reference.support.build_cache import cache_on_disk
 
-PERIODS = np.geomspace(0.02, 5.0, 49)  # s, default periods
+PERIODS = np.geomspace(0.02, 5.0, 49)  # s, periods of a spectrum by default
 DAMPING_RANGE = Range(0.0, 1.0, "of critical")
-SERIES_TERMS = 8  # terms of the power series of a step
-MAX_ANGLE = 0.25  # rad, largest angle of the oscillator in a step: the series then has an error of 1e-12
-# The sampling error is SAMPLING_FACTOR times the largest change if only one of DECIMATION samples is taken. Measured on
-# the built-in scenes against ten times as many samples: 0.6 of that at most.
+SERIES_TERMS = 8  # number of terms in the power series of a step
+MAX_ANGLE = 0.25  # rad: the oscillator turns by at most this angle in a step, so that the series has an error of 1e-12
+# The sampling error is SAMPLING_FACTOR times the largest change if every third sample is taken. On the built-in
+# scenes, against ten times as many samples, the errors were at most 0.6 of that.
 SAMPLING_FACTOR, DECIMATION = 2.0, 3
 
 
@@ -52,7 +52,7 @@ class FloorSpectra:
     error: Array
 
 
-@takes_motion
+@require_motion
 def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damping: float = 0.05) -> FloorSpectra:
     """
     Return floor response spectra of every body of one motion, with errors.
@@ -93,7 +93,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     """
     damping = check_number("damping", damping, DAMPING_RANGE)
     period = PERIODS if periods is None else _check_periods(periods)
-    if trajectory.status not in ANSWERED or len(trajectory.time) < 2:
+    if trajectory.status not in FULL_LENGTH_OUTCOMES or len(trajectory.time) < 2:
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
         return FloorSpectra(period, damping, nothing, nothing.copy())
 
@@ -269,7 +269,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
                     y1 = y - s * pulled + b * v - r * change
                     v1 = d * v - b * pulled - f * change
                     top = abs(y1)
-                    if v * v1 < 0.0:  # the oscillator turns: its speed is taken as linear
+                    if v * v1 < 0.0:  # where the oscillator turns back its speed is taken as linear
                         top = max(top, abs(y + 0.5 * v * v / (v - v1) * angle))
                     if top > largest[i, p]:
                         largest[i, p] = top
@@ -279,7 +279,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
 
 def _power_series(damping: float) -> Array:
     """
-    Return coefficients (SERIES_TERMS, 3) of the motion from rest as power series in the angle, lowest power first.
+    Return coefficients (SERIES_TERMS, 3) of the motion from rest in powers of the angle, lowest power first.
 
     Columns: motion under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp
     up to 1, over the square of the angle. All motions of a step are sums of these. The k-th derivative at the start of

@@ -1,4 +1,4 @@
-"""Forces over the height of a structure, and of its single supports: what columns and bearings are designed for."""
+"""Forces over the height of a structure and forces of its supports, for the design of columns and bearings."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate
-from reference.problem.result import Array, Trajectory, takes_motion
+from reference.problem.result import Array, Trajectory, require_motion
 from reference.problem.scene import Scene
 from reference.problem.supports import static_shares
 from reference.support.constants import GRAVITY
@@ -50,7 +50,7 @@ class StoryForces:
     drift_along: tuple[tuple[Estimate, ...], ...]
 
 
-@takes_motion
+@require_motion
 def story_forces(trajectory: Trajectory) -> StoryForces:
     """
     Return story shears, overturning moments and forces of the single supports of one motion, with errors.
@@ -88,9 +88,9 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     has_supports = read.samples.support.shape[1] > 0
     support: Callable[[DemandSamples], Array] | None = None
     if has_supports:
-        support = _support_of_model
+        support = _support_forces_of_model
     elif places is not None and heights is not None:
-        support = _keep_by_samples(_support_by_statics(scene, heights, places))
+        support = _cache_by_samples(_support_forces_by_statics(scene, heights, places))
     shears = [_force_below(scene.masses[body:], body) for body in bodies]
     arms = [] if heights is None else [_arms_below(scene, heights, body) for body in bodies]
     moments = [_force_below(own, body) for body, own in enumerate(arms)]
@@ -105,9 +105,9 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     return StoryForces(
         shear=lengths(shears),
         moment=None if heights is None else lengths(moments),
-        support_min=_of_supports(read, support, np.min),
-        support_max=_of_supports(read, support, np.max),
-        uplift=_of_supports(read, _uplift_of_model, np.max) if has_supports else None,
+        support_min=_read_supports(read, support, np.min),
+        support_max=_read_supports(read, support, np.max),
+        uplift=_read_supports(read, _uplift_of_model, np.max) if has_supports else None,
         shear_along=along(shears),
         moment_along=None if heights is None else along(moments),
         drift_along=along(drifts),
@@ -122,15 +122,17 @@ def heights_above_contact(scene: Scene) -> Array | None:
     plane of a flat slider.
     """
     heights = [body.height for body in scene.bodies]
-    return None if None in heights else np.array(heights, dtype=float) - (0.0 if scene.flat else _depression(scene))
+    return (
+        None if None in heights else np.array(heights, dtype=float) - (0.0 if scene.flat else _depression_radius(scene))
+    )
 
 
-def _depression(scene: Scene) -> float:
-    """Radius R = rho + r of the depressions, m."""
+def _depression_radius(scene: Scene) -> float:
+    """Return the radius of the depressions, R = rho + r, m."""
     return scene.radius + (scene.isolator.sphere_radius or 0.0)
 
 
-def _support_of_model(samples: DemandSamples) -> Array:
+def _support_forces_of_model(samples: DemandSamples) -> Array:
     return samples.support
 
 
@@ -138,8 +140,8 @@ def _uplift_of_model(samples: DemandSamples) -> Array:
     return samples.uplift
 
 
-def _keep_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[DemandSamples], Array]:
-    """Compute the forces of all supports once for samples that outlive the reading: each support reads its own."""
+def _cache_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[DemandSamples], Array]:
+    """Return a function that computes the forces of all supports only once for the same samples."""
     known: dict[int, Array] = {}
 
     def forces(samples: DemandSamples) -> Array:
@@ -150,10 +152,10 @@ def _keep_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[Deman
     return forces
 
 
-def _of_supports(
+def _read_supports(
     read: DemandReader, force: Callable[[DemandSamples], Array] | None, extreme: Callable[..., float]
 ) -> tuple[Estimate, ...] | None:
-    """Return the smallest or largest value of every support."""
+    """Return the smallest or largest value of every support, with its error; None without single supports."""
     if force is None:
         return None
 
@@ -190,23 +192,24 @@ def _largest_along(vectors: ReadVectors, axis: int, samples: DemandSamples) -> f
 
 
 def support_loads_at_rest(scene: Scene) -> Array | None:
-    """Return the forces of equally stiff supports under the weight at rest, (K,), N; None unless they are placed."""
+    """Return the forces of equally stiff supports under the weight at rest, (K,), N; None without their positions."""
     if (places := scene.support_places) is None:
         return None
     return scene.total_mass * GRAVITY * static_shares(places, scene.center_of_mass)
 
 
-def _support_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
+def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
     """
-    Forces (T, K), N, of equally stiff supports in balance with the normal force and the overturning moment.
+    Return a function for forces (T, K), N, of equally stiff supports in balance with the normal force and the moment.
 
     The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
     the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
     """
     middle = places.mean(axis=0)
     arms = places - middle
-    leverage = arms @ np.linalg.inv(arms.T @ arms)  # force of every support for a moment along x and y, (K, 2), 1/m
-    lean = 1.0 if scene.flat else _depression(scene) / scene.radius
+    # (K, 2), 1/m: force of every support for a unit moment along x and y
+    leverage = arms @ np.linalg.inv(arms.T @ arms)
+    lean = 1.0 if scene.flat else _depression_radius(scene) / scene.radius
     shares = scene.masses / scene.total_mass
 
     def forces(samples: DemandSamples) -> Array:

@@ -1,5 +1,5 @@
 """
-The question that both sides answer: scene, loading, measured quantity (5.1).
+The question that both sides answer: scene, loading, and the measured quantity, the amplification factor (5.1).
 
 Functions
 ---------

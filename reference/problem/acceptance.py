@@ -1,4 +1,4 @@
-"""Acceptance limits of a study: what `--check` compares the differences of the models with."""
+"""Acceptance limits of a study, with which `--check` compares the differences of the models."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from reference.problem.keys import ENSEMBLE, STUDY, NonNegative, Positive, Table
 from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
 
-ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # name of an engine of the user
+ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # a user may give an engine such a name
 
 
 class LimitTable(Table):
-    """A table that may state limits, some of its keys."""
+    """A table of a scene file in which the keys `limited` state limits."""
 
     limited: ClassVar[tuple[str, ...]]
 
     def limits_by_key(self) -> dict[str, float]:
-        """Return the limits that are present, by key."""
+        """Return the limits that the table states, by key."""
         return {name: limit for name in self.limited if (limit := getattr(self, name)) is not None}
 
 
@@ -41,11 +41,17 @@ class DemandLimits(LimitTable):
     """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
 
     limited = (
-        "displacement", "drift_ratio", "uplift", "base_shear", "support_force_max", "acceleration", "residual",
+        "displacement", "support_displacement", "drift_ratio", "uplift", "base_shear", "support_force_max",
+        "acceleration", "residual",
     )  # fmt: skip
 
     displacement: NonNegative | None = key(
         "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
+    )
+    support_displacement: NonNegative | None = key(
+        "largest displacement of a support, which turns with the platform; the spatial engine alone has it",
+        Range(0.0, 1e6, "m"),
+        models=ENSEMBLE,
     )
     drift_ratio: NonNegative | None = key(
         "largest drift of any story over its height, the distance of the centers of mass",
@@ -75,7 +81,7 @@ class DemandLimits(LimitTable):
 
 
 def _check_table(value: Any) -> Any:
-    """Refuse a key that is neither known nor, with a table, the name of an engine."""
+    """Raise an error for an unknown key, unless its value is a table: then the key may name an engine of the user."""
     if isinstance(value, dict | Limits):
         return value
     raise PydanticCustomError("extra_forbidden", "unknown key")
@@ -83,7 +89,7 @@ def _check_table(value: Any) -> Any:
 
 class Acceptance(Limits):
     """
-    Limits for `--check`. The keys of `Limits` given here are those of `like_for_like`.
+    Limits for `--check`; the keys of `Limits` given here mean the same as in the table `like_for_like`.
 
     Any other table has the name of an engine of the user: its limits against the equations with the same friction law.
     """
@@ -117,28 +123,28 @@ class Acceptance(Limits):
     )
 
     @model_validator(mode="after")
-    def _check_names(self) -> Acceptance:
+    def _check_duplicate_and_engine_keys(self) -> Acceptance:
         if twice := sorted(self.limits_by_key().keys() & (self.like_for_like or Limits()).limits_by_key().keys()):
             raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
-        for name, limits in self.of_engines.items():
+        for name, limits in self.user_engine_limits.items():
             if not ENGINE_NAME.fullmatch(name):
                 rule = "must be total, translational, like_for_like or the name of an engine: letters, digits and -"
                 raise MisfitError(f"acceptance.{name}", limits.limits_by_key(), rule)
         return self
 
     @property
-    def of_engines(self) -> dict[str, Limits]:
-        """The tables of limits of the user's engines, by name."""
+    def user_engine_limits(self) -> dict[str, Limits]:
+        """Limits of the user's engines, by name of the engine."""
         return self.__pydantic_extra__
 
-    def differences(self) -> list[tuple[str, str, str, float]]:
-        """Return key as written, pair of models, measure and limit of every difference that is limited."""
+    def list_limited_differences(self) -> list[tuple[str, str, str, float]]:
+        """Return key as written, pair of models, measure and limit of every difference that has a limit."""
         tables = (
             ("", "like-for-like", self),
             ("like_for_like.", "like-for-like", self.like_for_like),
             ("translational.", "translational", self.translational),
             ("total.", "total", self.total),
-            *((f"{name}.", name, limits) for name, limits in self.of_engines.items()),
+            *((f"{name}.", name, limits) for name, limits in self.user_engine_limits.items()),
         )
         return [
             (f"{start}{key}", pair, key, limit)
@@ -148,6 +154,8 @@ class Acceptance(Limits):
         ]
 
     @property
-    def failures(self) -> int | None:
-        """Points without an answer that are allowed: none where only other limits are given; None without any limit."""
-        return 0 if self.failed is None and (self.differences() or self.closure is not None) else self.failed
+    def allowed_failures(self) -> int | None:
+        """Number of points that may stay without an answer: 0 with other limits alone, None without any limit."""
+        return (
+            0 if self.failed is None and (self.list_limited_differences() or self.closure is not None) else self.failed
+        )

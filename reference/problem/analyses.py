@@ -8,16 +8,16 @@ from pydantic import Field, model_validator
 
 from reference.problem.keys import REPORT, Table, key
 
-Names = Annotated[list[str], Field(min_length=1)]
+AnalysisNames = Annotated[list[str], Field(min_length=1)]
 
 
 class Analyses(Table):
-    """The analyses of the scene in a report: `only` these, or all but those to `skip`; and `also` those on request."""
+    """Selection of analyses in a report: `only` these, or all except those to `skip`; `also` adds some on request."""
 
-    only: Names | None = key("analyses that the report makes of the scene; all without it", models=REPORT)
-    skip: Names | None = key("analyses that the report does not make of the scene", models=REPORT)
+    only: AnalysisNames | None = key("analyses that the report makes of the scene; all without it", models=REPORT)
+    skip: AnalysisNames | None = key("analyses that the report does not make of the scene", models=REPORT)
 
-    also: Names | None = key("analyses besides, of those on request", models=REPORT)
+    also: AnalysisNames | None = key("analyses besides, of those on request", models=REPORT)
 
     @model_validator(mode="after")
     def _check_selection(self) -> Analyses:

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class BarLink:
     """
-    All bars of one link together, half-way up.
+    Stiffness of all bars of one link together, between the two points half-way up.
 
     shear: N/m, without the effect of a weight that sinks as bars shorten. bending: N m, about either horizontal axis.
     tension: N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the
@@ -39,7 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """Return the links between bodies under loads, N, from below; None if rigid; radius: m, for a missing `spread`."""
+    """Return the links between bodies under `loads`, N, from below; None if rigid; radius: m, as default `spread`."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -76,7 +76,7 @@ def stands_upright(
     apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2. The weight N above sinks by
     D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Rigid links have one rotation on both sides.
     """
-    rotation = np.cumsum([0] + [link is not None for link in links])  # number of the rotation of each body, 0: none
+    rotation = np.cumsum([0] + [link is not None for link in links])  # number of each body's rotation; 0: it has none
     count = len(links)
     size = count + int(rotation[-1])
     unit = np.eye(size + 1)[:, :size]  # the last row stands for the platform, which does not move
@@ -99,5 +99,5 @@ def stands_upright(
 
 
 def _upright_bending(link: BarLink) -> float:
-    """Return the bending stiffness of a link that does not let its body sink otherwise than by shear."""
+    """Return the bending stiffness, N m, of a link in a model in which the body above sinks by shear alone."""
     return link.bending + 0.25 * link.load * link.pendulum

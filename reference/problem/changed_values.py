@@ -1,4 +1,4 @@
-"""One value of a scene, read and set by its dotted key, and the name of a scene whose values are changed."""
+"""Reading and setting of one value of a scene by its dotted key, and the name of a scene whose values are changed."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from pathlib import Path
 from typing import Any
 
 from reference.records.formats import OPTIONS
-from reference.records.loading import SET_BY_THE_READER, SUITE
-from reference.records.samples import AXES, files_by_axis, name_of_file
-from reference.support.arguments import as_float, brief
+from reference.records.loading import READER_KEYS, SUITE_KEYS
+from reference.records.samples import AXES, file_name, files_by_axis
+from reference.support.arguments import as_float, quote
 from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
-LONGEST_TEXT, LONGEST_LIST = 40, 80  # letters of one changed value in a name, and of all of them
-WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # tables that enter no result
+# Most letters of one changed value in a name of a scene, and of all of them; more become "changed"
+MAX_VALUE_LETTERS, MAX_CHANGES_LETTERS = 40, 80
+TABLES_WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # their changes change no result
 
 
 def value_at(data: Any, key: str) -> Any:
-    """Return the value of tables under a dotted key; None without one."""
+    """Return the value at a dotted key in nested tables; None where there is none."""
     place = data
     for part in key.split("."):
         if isinstance(place, dict):
@@ -31,20 +32,20 @@ def value_at(data: Any, key: str) -> Any:
 
 
 def short_key(key: str) -> str:
-    """Return a dotted key as names show it: its last part, or all of it with the number of a body."""
+    """Return a dotted key as names of scenes show it: its last part, or the whole key if it numbers a body."""
     parts = key.split(".")
     return key if any(part.isdecimal() for part in parts) else parts[-1]
 
 
-def text_of_table(table: Mapping[str, Any]) -> str:
-    """Return the files of one record, or the numbers of a table with their keys, as one text."""
-    parts = [(key, name_of_file(part)) for key, part in files_by_axis(table).items()]
+def word_table(table: Mapping[str, Any]) -> str:
+    """Return the file names of one record, or the keys and numbers of a table, as one text."""
+    parts = [(key, file_name(part)) for key, part in files_by_axis(table).items()]
     return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in parts)
 
 
-def change_of(key: str, before: Any, value: Any) -> str:
-    """Return the part of a scene's name that a changed value adds; "" where it changes no result."""
-    if key.split(".")[0] in WITHOUT_EFFECT or (value is None and before is None):
+def name_change(key: str, before: Any, value: Any) -> str:
+    """Return the text that a changed value adds to a scene's name; "" if the change affects no result."""
+    if key.split(".")[0] in TABLES_WITHOUT_EFFECT or (value is None and before is None):
         return ""
     short, number = short_key(key), as_float(value)
     if value is None:
@@ -57,20 +58,20 @@ def change_of(key: str, before: Any, value: Any) -> str:
 
 
 def _short_entry(short: str, value: Any) -> str:
-    """Return a key with its text, or the files or numbers of its table; "" where that is too long for a name."""
+    """Return "key=value" with a text, or with the files or numbers of a table; "" if that is too long for a name."""
     if isinstance(value, bool | str):
         text = Path(str(value)).stem
         entry = f"{short}={text}"
     elif isinstance(value, dict) and value and all(isinstance(part, str | Real) for part in value.values()):
-        text = entry = f"{short}={text_of_table(value)}"
+        text = entry = f"{short}={word_table(value)}"
     else:
         return ""
-    return entry if len(text) <= LONGEST_TEXT and text.isprintable() else ""
+    return entry if len(text) <= MAX_VALUE_LETTERS and text.isprintable() else ""
 
 
 def name_with_changes(name: str, changes: Sequence[str]) -> str:
     """
-    Return the name of a scene with other values, as the scenes of a family are named: the later value of a key counts.
+    Return the name of a scene with changed values, worded as by a family; a later change of a key replaces an earlier.
 
     Examples
     --------
@@ -85,18 +86,18 @@ def name_with_changes(name: str, changes: Sequence[str]) -> str:
     stem, bracket, inside = name.removesuffix("]").partition("[")
     if not (bracket and name.endswith("]")):
         stem, inside = name, ""
-    anew = {_key_of(change) for change in shown}
-    entries = [entry for entry in inside.split(", ") if entry and _key_of(entry) not in anew] + shown
+    anew = {_changed_key(change) for change in shown}
+    entries = [entry for entry in inside.split(", ") if entry and _changed_key(entry) not in anew] + shown
     text = ", ".join(entries)
-    return f"{stem}[{text if len(text) <= LONGEST_LIST else 'changed'}]"
+    return f"{stem}[{text if len(text) <= MAX_CHANGES_LETTERS else 'changed'}]"
 
 
-def _key_of(change: str) -> str:
+def _changed_key(change: str) -> str:
     return change.partition("=")[0].removesuffix(" changed")
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
-    """Set one value by its dotted key in tables with these valid keys; None leaves it out. Raises SceneError."""
+    """Set the value at a dotted key in nested tables that have these valid keys; None removes it. Raises SceneError."""
     key, value = _put_in_record(scene, data, key, value)
     parts = key.split(".")
     place: Any = data
@@ -105,7 +106,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     index = _index_of(scene, place, parts, len(parts) - 1, value, keys)
     if key == "excitation.record":
         place["record"] = value
-        for name in SET_BY_THE_READER:  # what was read from the record before the change
+        for name in READER_KEYS:  # keys that were read from the record before the change
             place.pop(name, None)
     elif value is not None:
         place[index] = value
@@ -116,12 +117,12 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
 
 
 def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tuple[str, Any]:
-    """Return the key and value of a whole record in place of one of its keys; any other key as it is."""
+    """Return key and value of the whole record table for one of its keys; any other key and value unchanged."""
     table, _, last = key.rpartition(".")
     record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
     if table != "excitation.record" or not isinstance(record, dict):
         return key, value
-    own: Sequence[str] = SUITE if "suite" in record else OPTIONS if "file" in record else AXES
+    own: Sequence[str] = SUITE_KEYS if "suite" in record else OPTIONS if "file" in record else AXES
     if last not in own:
         raise unknown_key(scene, key, value, own)
     return table, {name: part for name, part in {**record, last: value}.items() if part is not None}
@@ -130,7 +131,7 @@ def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tu
 def _index_of(
     scene: str, place: Any, parts: Sequence[str], depth: int, value: Any, keys: Mapping[str, Sequence[str]]
 ) -> Any:
-    """Return the index of one part of a dotted key in its list or table; make an optional table. Raises SceneError."""
+    """Return the index of one part of a dotted key; add an optional table that is missing. Raises SceneError."""
     key, part, last = ".".join(parts), parts[depth], depth == len(parts) - 1
     if isinstance(place, list):
         if part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place):
@@ -141,11 +142,11 @@ def _index_of(
     if not valid:
         raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
     if part in valid and not isinstance(place, dict):
-        rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
+        rule = f"{table} is {quote(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
         raise SceneError(scene, key, value, rule)
     if isinstance(place, dict) and (part in valid or f"{table}.*" in keys):
         if not last and keys_of_table(f"{table}.{part}".lstrip("."), keys):
-            place.setdefault(part, {})  # an optional table that is not there yet
+            place.setdefault(part, {})  # the optional table is not in the scene yet
         if last or part in place:
             return part
     raise unknown_key(scene, ".".join(parts[: depth + 1]), value, valid)

@@ -1,5 +1,5 @@
 """
-The measured quantity: dynamic amplification factor (5.1).
+The measured quantity: the dynamic amplification factor (5.1).
 
 mu_i = sqrt(max_t |absolute acceleration of body i|^2 / max_t |ground acceleration|^2) over 0 <= t <= duration.
 The denominator depends on the scene and the phases alone, so both sides take it from here.
@@ -15,16 +15,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import check_phases
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
 
-SAMPLES_PER_PERIOD = 32  # samples of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
-CLOSE = 1.0 - 1e-9  # share of the largest square of the samples: rounding may have made these smaller
+SAMPLES_PER_PERIOD = 32  # per period of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
+# Share of the largest square above which a sample is computed again: rounding may have made the largest smaller
+MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 
 
-@takes_scene
+@require_scene
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     """
     Return the largest ground acceleration over the duration, the denominator of (5.1).
@@ -62,8 +63,8 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
 
 
 def _record_peak(scene: Scene) -> float:
-    """Return the largest acceleration of a record, m/s^2."""
-    # The norm of a vector that changes linearly is convex: it is largest at a knot, or where the motion ends.
+    """Return the largest acceleration of a recorded motion over the duration, m/s^2."""
+    # The norm of a vector that changes linearly in time is convex: it is largest at a knot, or where the motion ends.
     time = scene.record[:, 0]
     instants = np.append(time[time < scene.duration], scene.duration)
     with np.errstate(over="ignore"):
@@ -72,7 +73,7 @@ def _record_peak(scene: Scene) -> float:
 
 @njit(nogil=True)
 def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> tuple[float, float, float]:
-    """Return |u|^2 and its first two derivatives at time t."""
+    """Return |u|^2, the squared ground acceleration, and its first two derivatives at time t, s."""
     value = slope = curvature = 0.0
     for k in range(3):
         u = du = ddu = 0.0
@@ -91,7 +92,7 @@ def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> t
 
 @njit(nogil=True)
 def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
-    """Return the maximum of |u|^2 on [left, right], which has a higher sample inside: Newton, guarded by bisection."""
+    """Return the maximum of |u|^2 on [left, right] around a higher sample, by Newton's method guarded by bisection."""
     t = 0.5 * (left + right)
     close = 1e-9 * (right - left)
     best = 0.0
@@ -111,7 +112,7 @@ def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, 
 
 @njit(nogil=True)
 def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound: Array) -> None:
-    """Fill what all phases share at sample n: exp(s t) of both harmonics, and a bound of |u|^2 from there on."""
+    """Set what all phases share at sample n: exp(s t) of both harmonics, and an upper bound on |u|^2 from there on."""
     largest = 0.0
     for harmonic in range(2):
         size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
@@ -122,7 +123,7 @@ def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound
 
 @njit(nogil=True)
 def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
-    """Return |u|^2 at a sample, rounded otherwise than `_square_and_slopes` does; turn: exp(i phase), (2, 2)."""
+    """Return |u|^2 at a sample, with other rounding than in `_square_and_slopes`; turn: exp(i phase), (2, 2)."""
     value = 0.0
     for k in range(3):
         u = 0.0
@@ -135,14 +136,14 @@ def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
 
 @cache_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, duration: float, step: float) -> Array:
-    """Return peaks (M,) for phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): their exponents."""
+    """Return peaks (M,), m/s^2, for phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): exponents."""
     count = math.ceil(duration / step) + 1
     peaks = np.empty(phases.shape[0])
     grown = np.empty((count, 2, 2))  # real and imaginary part of exp(s t) at the samples
-    bound = np.empty(count)  # bound of |u|^2 from each sample on
+    bound = np.empty(count)  # upper bound on |u|^2 from each sample on
     turn = np.empty((2, 2))  # real and imaginary part of exp(i phase)
-    known = 0  # number of samples that some phase has needed
-    square = np.empty(count)  # |u|^2 of one phase
+    known = 0  # number of samples at which `grown` and `bound` are computed
+    square = np.empty(count)  # |u|^2 at the samples for one phase pair
     for m in range(phases.shape[0]):
         phase = phases[m]
         for harmonic in range(2):
@@ -160,9 +161,9 @@ def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, du
                 break
         best = 0.0 if math.isfinite(highest) else math.inf
         for n in range(end):
-            if square[n] >= CLOSE * highest:
+            if square[n] >= MIN_RECOMPUTED_SHARE * highest:
                 best = max(best, _square_and_slopes(min(n * step, duration), phase, amplitudes, s)[0])
-            # a wave sampled 16 times is at most 4 % above its highest sample
+            # the peak of a wave sampled 16 times exceeds its highest sample by at most 4 %
             rises = n == 0 or square[n] >= square[n - 1]
             falls = n == end - 1 or square[n] >= square[n + 1]
             if rises and falls and 1.04 * square[n] > highest:

@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.phases import check_phase
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.problem.tables import Excitation
 from reference.support.arguments import check_array
 
 Array = NDArray[np.float64]
 
 
-@takes_scene
+@require_scene
 def exponents(scene: Scene) -> NDArray[np.complex128]:
     """
     Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
@@ -54,7 +54,7 @@ def exponents(scene: Scene) -> NDArray[np.complex128]:
     return np.array([complex(-decay, 2.0 * np.pi / period) for decay, period in zip(load.decay, load.periods)])
 
 
-@takes_scene
+@require_scene
 def loading_period(scene: Scene) -> float:
     """
     Return the time in which the ground acceleration changes.
@@ -84,7 +84,7 @@ def loading_period(scene: Scene) -> float:
     return float(2.0 * np.pi * largest / rate) if rate > 0.0 and np.isfinite(rate) else scene.duration
 
 
-@takes_scene
+@require_scene
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Return the acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
@@ -110,14 +110,14 @@ def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
 
 
 def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], Array]:
-    """Return `ground_acceleration` of one phase pair as a function of time (T,), s, that can be called often."""
+    """Return the ground acceleration of one phase pair as a function of time (T,), s, for repeated calls."""
     if scene.recorded:
         return lambda time: _integrate_record(scene.record, time, 0)
     powers, amplitudes = exponents(scene), _phase_factors(phase)[:, None] * scene.amplitudes.T
     return lambda time: (np.exp(time[..., None] * powers) @ amplitudes).real
 
 
-@takes_scene
+@require_scene
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Return the velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
@@ -145,7 +145,7 @@ def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     return _superpose(scene, phase, np.expm1(np.multiply.outer(_check_instants(time), s)) / s)
 
 
-@takes_scene
+@require_scene
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
     Return the displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.
@@ -172,13 +172,13 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
     t = _check_instants(time)
     s = exponents(scene)
     st = np.multiply.outer(t, s)
-    # (exp(st) - 1 - st) / s^2; the series where the subtraction would cancel
+    # (exp(st) - 1 - st) / s^2 is summed as a series where the subtraction would cancel digits
     series = st**2 * (0.5 + st / 6.0 * (1.0 + st / 4.0 * (1.0 + st / 5.0 * (1.0 + st / 6.0 * (1.0 + st / 7.0)))))
     return _superpose(scene, phase, np.where(np.abs(st) < 1e-2, series, np.expm1(st) - st) / s**2)
 
 
 def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]) -> Array:
-    """Return the real part of sum_i a_ki exp(i alpha_i) harmonics_i, rows x, y, z."""
+    """Return the sum over both harmonics of Re(a_ki exp(i alpha_i) harmonics_i), rows x, y, z."""
     result: Array = np.real((harmonics * _phase_factors(phase)) @ scene.amplitudes.T)
     return result
 
@@ -194,16 +194,16 @@ def _check_instants(time: ArrayLike) -> Array:
 
 
 def _integrate_record(knots: Array, time: ArrayLike, times: int) -> Array:
-    """Return the acceleration of a record (K, 4), integrated `times` times from rest, at `time`: (T, 3)."""
+    """Return the acceleration of a record (K, 4), integrated `times` times from rest, at instants (T,): (T, 3)."""
     t = np.asarray(time, float)
     instant, start = knots[:, 0], knots[:, 1:]
     span = np.diff(instant)[:, None]
-    slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # none behind the last knot
-    parts = [start]  # acceleration, velocity, displacement at the knots
+    slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # no slope behind the last knot
+    parts = [start]  # acceleration, then velocity and displacement at the knots
     if times > 0:
-        parts.append(_add_up(span * (start[:-1] + 0.5 * span * slope[:-1])))
+        parts.append(_cumulative_sums(span * (start[:-1] + 0.5 * span * slope[:-1])))
     if times > 1:
-        parts.append(_add_up(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
+        parts.append(_cumulative_sums(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
     k = np.clip(np.searchsorted(instant, t, side="right") - 1, 0, len(instant) - 1)
     since = (t - instant[k])[..., None]
     result: Array = parts[-1][k]
@@ -214,5 +214,5 @@ def _integrate_record(knots: Array, time: ArrayLike, times: int) -> Array:
     return np.where(t[..., None] < instant[0], 0.0, result)
 
 
-def _add_up(gains: Array) -> Array:
+def _cumulative_sums(gains: Array) -> Array:
     return np.vstack([np.zeros(3), np.cumsum(gains, axis=0)])

@@ -26,46 +26,46 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reference.problem.changed_values import short_key, text_of_table
+from reference.problem.changed_values import short_key, word_table
 from reference.problem.scene import Scene
 from reference.problem.scene_file import (
     RANGE,
     VALUES,
+    find_varied_keys,
     make_scene,
-    running_values,
     scale_loading,
     scene_tables,
     scene_text,
 )
 from reference.records.pairing import SuiteError
-from reference.records.samples import files_by_axis, name_of_file
+from reference.records.samples import file_name, files_by_axis
 from reference.records.suites import motion_names, suite_motions
-from reference.support.arguments import Range, as_float, brief, takes
+from reference.support.arguments import Range, as_float, quote, require_type
 from reference.support.scene_error import SceneError, printable
 
 if TYPE_CHECKING:
     import xarray as xr
 
 ALL_MOTIONS = "all"
-MOTION = ("excitation", "record", "motion")
-COMBINE = ("product", "zip")
-MAX_SCENES = 1000  # scenes of one family
-MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
-MAX_KEYS = 20  # keys that run
-BOUNDS = "isolator.bounds"
+MOTION_KEY = ("excitation", "record", "motion")
+COMBINATIONS = ("product", "zip")
+MAX_SCENES = 1000  # a family has at most so many scenes
+MAX_BODIES_IN_ALL = 50_000  # all scenes of a family together have at most so many bodies
+MAX_KEYS = 20  # at most so many keys of a file may have several values
+BOUNDS_KEY = "isolator.bounds"
 BOUND_NAMES = ("lower bound", "upper bound")
 BOUND_FACTOR = Range(0.01, 100.0)
-BOUND_DIGITS = 12  # digits of a coefficient of a bound: 0.075, not 0.07500000000000001
+BOUND_DIGITS = 12  # digits to which a bound's coefficient is rounded: 0.075, not 0.07500000000000001
 
 Value = float | int | str
-Files = dict[str, str]  # names of the files of a record by direction
-Numbers = dict[str, float]  # a whole table of numbers, as that of friction
+Files = dict[str, str]  # file names of one record by direction
+Numbers = dict[str, float]  # the numbers of one table, such as that of friction
 
 
 @dataclass(frozen=True)
 class Family:
     """
-    The scenes of one file.
+    The scenes of one file, one for each combination of the values of its keys.
 
     Attributes
     ----------
@@ -124,14 +124,14 @@ class Family:
         >>> family.to_xarray(results)["mu"].dims
         ('scene', 'body')
         """
-        import xarray as xr  # loaded on first use
+        import xarray as xr  # xarray is loaded on first use
 
         if len(results) != len(self.scenes):
             raise ValueError(
                 f"results: {len(results)}: must be as many as the scenes of the family, {len(self.scenes)}"
             )
         data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
-        data.attrs = {}  # each result has a cost of its own
+        data.attrs = {}  # the results differ in their cost, so no common one is left
         shorts = [key.rpartition(".")[2] for key in self.columns]
         names = [
             key if re.search(r"\.\d", key) or shorts.count(short) > 1 else short
@@ -145,7 +145,7 @@ class Family:
         return data.set_index(scene=names).unstack("scene") if len(every) == len(results) > 1 else data
 
 
-@takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
+@require_type(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_family(
     source: str | Path, amplitude: float | None = None, bounds: tuple[float, float] | None = None
 ) -> Family:
@@ -177,19 +177,19 @@ def load_family(
     2
     """
     label = str(source)
-    return family_of(with_bounds(scene_tables(scene_text(source), label), bounds), label, amplitude)
+    return make_family(with_bounds(scene_tables(scene_text(source), label), bounds), label, amplitude)
 
 
 def with_bounds(data: dict[str, Any], bounds: tuple[float, float] | None) -> dict[str, Any]:
-    """Return the tables of a file with these factors of friction as `isolator.bounds`; as they are without any."""
+    """Return the tables of a file with these two factors of friction as `isolator.bounds`; unchanged for None."""
     isolator = data.get("isolator")
     if bounds is None or not isinstance(isolator, dict):
         return data
     return {**data, "isolator": {**isolator, "bounds": [*bounds]}}
 
 
-def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
-    """Return the family of tables; label: their file, for errors and records. Raises as `load_family`."""
+def make_family(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
+    """Return the family that a file's tables define; `label` names the file in errors. Raises as `load_family`."""
     name, combine = Path(label).stem, data.get("combine")
     tables, bounds, running = _find_running_keys(data, label)
     _check_combine(label, combine, running)
@@ -200,7 +200,7 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     inner = list(zip(*steps) if combine == "zip" else product(*steps))
     rows = [(*outer, *row) for outer in product(*(range(len(key.values)) for key in bounds)) for row in inner]
     _check_bodies(label, tables.get("bodies"), len(rows))
-    scenes = [scale_loading(_make_member(tables, label, name, list(zip(keys, row))), amplitude) for row in rows]
+    scenes = [scale_loading(_make_member_scene(tables, label, name, list(zip(keys, row))), amplitude) for row in rows]
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(keys)}
     values = [", ".join(key.texts[step] for key, step in zip(keys, row)) for row in rows]
     return Family(
@@ -213,23 +213,27 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     )
 
 
-def _find_running_keys(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_Key], list[_Key]]:
-    """Return the tables of the scenes, the bounds of friction, none or one key, and the keys that run in the file."""
+def _find_running_keys(
+    data: dict[str, Any], label: str
+) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter]]:
+    """Return the tables of the scenes, the bounds of friction if given, and all keys with several values."""
     tables = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
     try:
-        tables, bounds = _take_bounds(tables, label)
+        tables, bounds = _separate_bounds(tables, label)
     except SceneError as wrong:
-        raise _with_other_faults(wrong, data, label) from None
-    places = list(islice(running_values((), tables), MAX_KEYS + 1))
+        raise _add_other_errors(wrong, data, label) from None
+    places = list(islice(find_varied_keys((), tables), MAX_KEYS + 1))
     if len(places) > MAX_KEYS:
         path, table = places[-1]
         raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
     motions = _motion_names(tables, label)
-    return tables, bounds, [_Key(label, path, table, motions) for path, table in places]
+    return tables, bounds, [_VariedParameter(label, path, table, motions) for path, table in places]
 
 
-def _make_member(tables: dict[str, Any], label: str, name: str, chosen: Sequence[tuple[_Key, int]]) -> Scene:
-    """Return the scene in which each of the keys has the value of its step. Raises SceneError."""
+def _make_member_scene(
+    tables: dict[str, Any], label: str, name: str, chosen: Sequence[tuple[_VariedParameter, int]]
+) -> Scene:
+    """Return the scene in which each of the chosen keys has the value of its step. Raises SceneError."""
     changed = tables
     for key, step in chosen:
         changed = _replace_value(changed, key.path, key.listed[step])
@@ -238,34 +242,34 @@ def _make_member(tables: dict[str, Any], label: str, name: str, chosen: Sequence
         return make_scene(changed, label, f"{name}[{texts}]")
     except SceneError as error:
         first, _ = chosen[0]
-        if isinstance(first, _Bounds) and error.key.startswith("isolator.friction"):
-            raise _as_written(error, changed, tables, label, first.values) from None
+        if isinstance(first, _FrictionBoundsKey) and error.key.startswith("isolator.friction"):
+            raise _locate_bound_error(error, changed, tables, label, first.values) from None
         raise
 
 
-def _with_other_faults(wrong: SceneError, data: dict[str, Any], label: str) -> SceneError:
-    """Return the error of wrong bounds with what else is wrong in the file."""
+def _add_other_errors(wrong: SceneError, data: dict[str, Any], label: str) -> SceneError:
+    """Return the error of wrong bounds together with all other errors of the file."""
     own = {key: value for key, value in data["isolator"].items() if key != "bounds"}
     try:
-        family_of({**data, "isolator": own}, label)
+        make_family({**data, "isolator": own}, label)
     except SceneError as error:
         return SceneError(label, wrong.key, wrong.value, wrong.rule, (error, *error.others))
     return wrong
 
 
-def _as_written(
+def _locate_bound_error(
     error: SceneError, tables: dict[str, Any], data: dict[str, Any], label: str, factors: Sequence[Value]
 ) -> SceneError:
-    """Return the error of a scene with the friction of a bound: of the file as written, or else of the bounds."""
+    """Return the error of a scene with a bound of friction as one of the file as written, or else of the bounds."""
     try:
         make_scene({**tables, "isolator": {**tables["isolator"], "friction": data["isolator"]["friction"]}}, label, "")
     except SceneError as own:
         return own
-    return SceneError(label, BOUNDS, factors, f"makes {error.key} = {brief(error.value)}, which {error.rule}")
+    return SceneError(label, BOUNDS_KEY, factors, f"makes {error.key} = {quote(error.value)}, which {error.rule}")
 
 
-class _Key:
-    """Key that runs: its place, its values, and their texts in names."""
+class _VariedParameter:
+    """A key with several values: its path in the tables, its values, and their texts in names of scenes."""
 
     def __init__(
         self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Mapping[Any, str]
@@ -273,25 +277,25 @@ class _Key:
         self.path, self.table = path, table
         self.name = ".".join(map(str, path))
         self.short = short_key(self.name)
-        self.listed = _values_of_key(label, self.name, table)
-        self.values: list[Value] = [text_of_table(value) if isinstance(value, dict) else value for value in self.listed]
-        self.texts = [printable(text) for text in _texts_of_values(label, self.name, self.listed)]
-        named = path == MOTION and set(self.values) <= set(motions)
+        self.listed = _list_values_of_key(label, self.name, table)
+        self.values: list[Value] = [word_table(value) if isinstance(value, dict) else value for value in self.listed]
+        self.texts = [printable(text) for text in _word_values(label, self.name, self.listed)]
+        named = path == MOTION_KEY and set(self.values) <= set(motions)
         self.labels = [printable(motions[value]) for value in self.values] if named else self.texts
-        self.entries = [f"{self.short}={text}" for text in self.texts]  # parts of the names of scenes
+        self.entries = [f"{self.short}={text}" for text in self.texts]  # parts of scene names, such as friction=0.2
 
 
-class _Bounds(_Key):
-    """Both bounds of friction: a key that is none of the scene, with the friction of either."""
+class _FrictionBoundsKey(_VariedParameter):
+    """The lower and upper bound of friction as a varied key, which sets the whole table of friction."""
 
     def __init__(self, factors: Sequence[float], frictions: Sequence[Any]) -> None:
-        self.path, self.name, self.listed = ("isolator", "friction"), BOUNDS, frictions
+        self.path, self.name, self.listed = ("isolator", "friction"), BOUNDS_KEY, frictions
         self.values = [*factors]
         self.texts = self.labels = self.entries = [*BOUND_NAMES]
 
 
-def _take_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_Key]]:
-    """Return the tables without `isolator.bounds`, and these bounds, none or one. Raises SceneError."""
+def _separate_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_VariedParameter]]:
+    """Return the tables without `isolator.bounds`, and a list of the key of these bounds, if any. Raises SceneError."""
     isolator = data.get("isolator")
     if not isinstance(isolator, dict) or "bounds" not in isolator:
         return data, []
@@ -299,26 +303,26 @@ def _take_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list
     pair = isinstance(factors, list) and len(factors) == 2 and all(_is_number(factor) for factor in factors)
     if not (pair and factors[0] < factors[1] and all(factor in BOUND_FACTOR for factor in factors)):
         rule = "must be two factors of friction, the smaller first, from 0.01 to 100, as [0.8, 1.5]"
-        raise SceneError(label, BOUNDS, factors, rule)
-    if not (_is_number(friction) or isinstance(friction, dict)) or any(running_values(("friction",), friction)):
-        rule = f"multiplies one friction: isolator.friction is {brief(friction)}, give a number or slow, fast and rate"
-        raise SceneError(label, BOUNDS, factors, rule)
+        raise SceneError(label, BOUNDS_KEY, factors, rule)
+    if not (_is_number(friction) or isinstance(friction, dict)) or any(find_varied_keys(("friction",), friction)):
+        rule = f"multiplies one friction: isolator.friction is {quote(friction)}, give a number or slow, fast and rate"
+        raise SceneError(label, BOUNDS_KEY, factors, rule)
     own = {**data, "isolator": {key: value for key, value in isolator.items() if key != "bounds"}}
-    return own, [_Bounds(factors, [_scale_friction(friction, factor) for factor in factors])]
+    return own, [_FrictionBoundsKey(factors, [_scale_friction(friction, factor) for factor in factors])]
 
 
 def _scale_friction(friction: Any, factor: float) -> Any:
-    """Return a friction with its coefficients times a factor; what else its table holds stays."""
+    """Return a friction with its coefficients times a factor and all its other keys unchanged."""
     if not isinstance(friction, dict):
         return float(f"{friction * factor:.{BOUND_DIGITS}g}")
     coefficients = {key: friction[key] for key in ("slow", "fast") if _is_number(friction.get(key))}
     return {**friction, **{key: _scale_friction(value, factor) for key, value in coefficients.items()}}
 
 
-def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
-    """Check that `combine` fits the keys that run. Raises SceneError."""
-    if combine is not None and combine not in COMBINE:
-        raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINE)}")
+def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter]) -> None:
+    """Check that the key `combine` fits the number of varied keys and of their values. Raises SceneError."""
+    if combine is not None and combine not in COMBINATIONS:
+        raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")
     if combine is not None and len(running) < 2:
         raise SceneError(label, "combine", combine, "two or more keys must run: remove this key")
     if combine is None and len(running) > 1:
@@ -334,7 +338,7 @@ def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
 
 
 def _check_bodies(label: str, bodies: Any, scenes: int) -> None:
-    """Refuse a family with too many bodies before its scenes are made. Raises SceneError."""
+    """Raise SceneError for a family with too many bodies, before its scenes are made."""
     count = len(bodies) if isinstance(bodies, list) else 0
     if count * scenes > MAX_BODIES_IN_ALL:
         rule = (
@@ -344,7 +348,7 @@ def _check_bodies(label: str, bodies: Any, scenes: int) -> None:
 
 
 def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """Return the tables with the numbers of all motions of a suite in place of `motion = "all"`. Raises SceneError."""
+    """Return the tables with the numbers of all motions of a suite for `motion = "all"`. Raises SceneError."""
     excitation = data.get("excitation")
     record = excitation.get("record") if isinstance(excitation, dict) else None
     if not (isinstance(record, dict) and "suite" in record and record.get("motion") == ALL_MOTIONS):
@@ -356,11 +360,11 @@ def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
     if len(motions) > MAX_SCENES:
         rule = f"{len(motions)} motions: a family has at most {MAX_SCENES} scenes: take a part of the suite"
         raise SceneError(label, "excitation.record.suite", record["suite"], rule)
-    return _replace_value(data, MOTION, {"values": motions})
+    return _replace_value(data, MOTION_KEY, {"values": motions})
 
 
 def _motion_names(data: dict[str, Any], label: str) -> dict[int, str]:
-    """Return names of the motions of a suite by number; none without a suite."""
+    """Return the names of the motions of a suite by their numbers; an empty table without a suite."""
     try:
         record = data["excitation"]["record"]
         return motion_names(record["suite"], Path(label).parent, record.get("components"))
@@ -368,7 +372,7 @@ def _motion_names(data: dict[str, Any], label: str) -> dict[int, str]:
         return {}
 
 
-def _values_of_key(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:
+def _list_values_of_key(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:
     if set(table) == VALUES:
         return _check_listed_values(label, f"{key}.values", table["values"])
     if set(table) != RANGE:
@@ -385,13 +389,13 @@ def _values_of_key(label: str, key: str, table: dict[str, Any]) -> Sequence[Valu
         )
     spaced = [
         float(f"{value:.12g}") for value in np.linspace(ends[0], ends[1], steps)
-    ]  # 0.06, not 0.060000000000000005
+    ]  # rounded to 12 digits: 0.06, not 0.060000000000000005
     whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in spaced)
     return [int(value) for value in spaced] if whole else spaced
 
 
 def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | Files | Numbers]:
-    kinds = (_is_number, lambda value: isinstance(value, str), _is_files, _is_table)
+    kinds = (_is_number, lambda value: isinstance(value, str), _is_table_of_files, _is_table_of_numbers)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MAX_SCENES):
         rule = f"must be a list of 1 to {MAX_SCENES} finite numbers, or of texts, or of tables of files or numbers"
@@ -399,12 +403,12 @@ def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | 
     return list(values)
 
 
-def _is_files(value: Any) -> bool:
-    named = map(name_of_file, files_by_axis(value).values())
+def _is_table_of_files(value: Any) -> bool:
+    named = map(file_name, files_by_axis(value).values())
     return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in named)
 
 
-def _is_table(value: Any) -> bool:
+def _is_table_of_numbers(value: Any) -> bool:
     return isinstance(value, dict) and len(value) > 0 and all(map(_is_number, value.values()))
 
 
@@ -412,11 +416,11 @@ def _is_number(value: Any) -> bool:
     return math.isfinite(as_float(value))
 
 
-def _texts_of_values(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> list[str]:
-    """Return the values as names show them: short, but no two alike. A path is named by its file."""
+def _word_values(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> list[str]:
+    """Return short texts of values for names of scenes, no two alike; a path becomes a file name. Raises SceneError."""
     for digits in range(4, 18):
         texts = [
-            text_of_table(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"
+            word_table(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"
             for v in values
         ]
         if len(set(texts)) == len(texts):

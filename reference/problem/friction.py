@@ -19,7 +19,7 @@ from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
 from reference.problem.validation import FRICTIONS
 from reference.support.arguments import Range
 
-LEAST_LOAD = 1e-6  # share of the weight: friction depends no further on a smaller normal force
+LEAST_LOAD = 1e-6  # normal force over the weight below which friction depends on it no further
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,13 @@ class Heat:
 
     @classmethod
     def of(cls, radius: float, conductivity: float, diffusivity: float, initial: float, supports: int) -> Heat:
-        """Return the heat of equal sliders with round contacts of this radius, m; in W/(m K), m^2/s and degrees C."""
+        """Return the heat law of equal sliders with round contacts of this radius, m; W/(m K), m^2/s and degrees C."""
         area = supports * math.pi * radius**2
         return cls(initial, math.sqrt(diffusivity / math.pi) / (conductivity * area), 0.5 * math.sqrt(math.pi) * radius)
 
     @staticmethod
     def factor(temperature: ArrayLike) -> NDArray[np.float64]:
-        """Return the coefficient at a temperature, degrees C, over that stated."""
+        """Return the friction coefficient at a temperature, degrees C, over the stated one."""
         return 0.79 * (0.7 ** (0.02 * np.asarray(temperature)) + 0.4)
 
 
@@ -93,8 +93,8 @@ class DryFriction:
 
     @property
     def needs_load(self) -> bool:
-        """True if the normal force decides more than the size of friction: its coefficient, or when it slides."""
-        return self.by_load or self.elastic
+        """True if a model needs the normal force for the coefficient of friction, or for the onset of sliding."""
+        return self.depends_on_load or self.elastic
 
     @property
     def elastic(self) -> bool:
@@ -103,22 +103,22 @@ class DryFriction:
 
     @property
     def varies(self) -> bool:
-        """True if the coefficient depends on the speed."""
+        """True if the coefficient depends on the slip speed."""
         return self.rate > 0.0 and self.slow != self.fast
 
     @property
     def constant(self) -> bool:
-        """True if the coefficient depends on neither speed nor load nor heat."""
+        """True if the coefficient depends on neither speed nor load nor temperature."""
         return not self.varies and self.exponent == 0.0 and self.heat is None
 
     @property
-    def by_load(self) -> bool:
+    def depends_on_load(self) -> bool:
         """True if the coefficient depends on the normal force, directly or by the heat of friction under it."""
         return self.exponent != 0.0 or self.heat is not None
 
     @property
     def kind(self) -> str:
-        """Name of the law in texts: "Coulomb" friction, or "dry" where the coefficient depends on anything."""
+        """Name of the law in texts: "Coulomb" for a constant coefficient, "dry" for any other."""
         return "Coulomb" if self.constant else "dry"
 
     @property
@@ -148,19 +148,19 @@ class DryFriction:
         return coefficient if self.exponent == 0.0 else coefficient * np.maximum(load, LEAST_LOAD) ** self.exponent
 
     def coefficient_at(self, speed: float, load: float) -> float:
-        """Return the coefficient at one slip speed and load, as `at` does, for loops over single contacts."""
+        """Return the coefficient at one slip speed, m/s, and load over the weight, for loops over contacts."""
         coefficient = self.slow - (self.fast - self.slow) * math.expm1(-self.rate * speed)
         return coefficient if self.exponent == 0.0 else coefficient * max(load, LEAST_LOAD) ** self.exponent
 
     def steepness(self, speed: ArrayLike) -> NDArray[np.float64]:
-        """Return the size of the derivative of the coefficient by the slip speed, under the weight."""
+        """Return the size of the derivative of the coefficient by the slip speed, s/m, under the weight."""
         steepness: NDArray[np.float64] = (
             abs(self.fast - self.slow) * self.rate * np.exp(-self.rate * np.asarray(speed, dtype=float))
         )
         return steepness
 
     def in_unit_of_speed(self, unit: float) -> DryFriction:
-        """Return the law for slip speeds in another unit, given in m/s."""
+        """Return the law for slip speeds in another unit; unit: that unit in m/s."""
         return replace(self, rate=self.rate * unit)
 
 
@@ -185,12 +185,12 @@ class Heating(Table):
 
 class VelocityFriction(Table):
     """
-    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them, or that yields.
+    Dry friction that yields, or that depends on the slip speed, the normal force or its own heat.
 
     The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
 
-    # Without friction at rest nothing ever stops, which is no dry friction.
+    # Without friction at rest the platform would never stop: such a law is no dry friction.
     slow: Positive = key("coefficient at rest", Range(1e-9, 1e3), default=REQUIRED)
     fast: NonNegative | None = key(
         "coefficient at high speed, above or below slow; without it and rate, slow at every speed", Range(0.0, 1e3)
@@ -235,7 +235,7 @@ class VelocityFriction(Table):
 
 
 def kind_of_friction(friction: Any) -> str:
-    """Return the form that a friction is meant to have."""
+    """Return the form that the user means a friction to have: a constant or a table."""
     return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
 
 
@@ -247,7 +247,7 @@ Friction = Annotated[
 
 def law_of_friction(stated: float | VelocityFriction | None, weight: float, sliders: int) -> DryFriction:
     """
-    Return the law of dry friction that a scene states under a weight, N; without friction where it states none.
+    Return the law of dry friction that a scene states under a weight, N; one without friction if it states none.
 
     A `reference_load` refers the coefficients to another load. The heat of `heating` spreads over all sliders. A
     `yield_displacement` is that under the weight.

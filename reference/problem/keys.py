@@ -1,4 +1,4 @@
-"""Keys with their meaning and range, of which every table of a scene file is made; comparison of tables."""
+"""Declaration of the keys of all tables of a scene file, with meaning and range, and comparison of tables."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from pydantic import (
     model_validator,
 )
 
-from reference.problem.validation import PlacedError
+from reference.problem.validation import LocatedError
 from reference.support.arguments import Range
 from reference.support.plain_values import as_hashable, as_plain_values
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
-# Models, or others, that read a key
+# Readers of a key: models, or other parts of the program
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
 ENSEMBLE = "`ensemble --check`"
-REQUIRED = ...  # default of a key that a file must have
+REQUIRED = ...  # stands as default for a key that every file must have
 
 
 def key(
@@ -50,7 +50,7 @@ def key(
 
 
 def range_of(table: type[Table], name: str) -> Range:
-    """Return the range of a key of a table."""
+    """Return the range of numbers that a key of a table may have."""
     return Range(*_schema_of_key(table, name)["range"])
 
 
@@ -59,7 +59,7 @@ def _schema_of_key(table: type[Table], name: str) -> dict[str, Any]:
 
 
 def _numbers_in(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], float]]:
-    """Iterate over the numbers of a value and of its lists, with the place of each."""
+    """Iterate over the numbers in a value and in its nested lists, with the indices of each."""
     if isinstance(value, list):
         for n, part in enumerate(value):
             yield from _numbers_in(part, (*place, n))
@@ -67,8 +67,8 @@ def _numbers_in(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple
         yield place, value
 
 
-def in_range(allowed: Range) -> AfterValidator:
-    """Return the rule that a number lies within a range."""
+def range_validator(allowed: Range) -> AfterValidator:
+    """Return the validator that raises an error for a number outside a range."""
 
     def check(value: float) -> float:
         if value not in allowed:
@@ -87,7 +87,7 @@ def _check_text(text: str) -> str:
 Text = Annotated[str, AfterValidator(_check_text)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
-# JSON has no infinity: there it is the text "inf"
+# JSON has no infinity: an infinite radius is the text "inf" there
 Radius = Annotated[
     float,
     Field(gt=0.0, allow_inf_nan=True),
@@ -96,15 +96,15 @@ Radius = Annotated[
 
 
 class Table(BaseModel):
-    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
+    """One table of the scene file: unknown keys, wrong types and numbers outside their range raise an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
+    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays and do not enter the hash
 
     @model_validator(mode="before")
     @classmethod
     def _make_plain(cls, table: Any) -> Any:
-        """Replace arrays, tuples and numbers of numpy by those of a file."""
+        """Replace arrays, tuples and numbers of NumPy by lists and numbers as in a file."""
         if not isinstance(table, dict):
             return table
         return {key: value if key in cls.long_keys else as_plain_values(value) for key, value in table.items()}
@@ -117,7 +117,7 @@ class Table(BaseModel):
             allowed = Range(*said["range"])
             for place, number in _numbers_in(value):
                 if number not in allowed:
-                    raise PlacedError(place, number, allowed.rule)
+                    raise LocatedError(place, number, allowed.rule)
         return value
 
     def __eq__(self, other: object) -> bool:

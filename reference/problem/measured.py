@@ -1,4 +1,4 @@
-"""Measured peaks of a scene, which a report compares with those of the models."""
+"""Measured peaks of a scene, which a report compares with the peaks of the models."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pydantic import AfterValidator, Field, model_validator
 from reference.problem.keys import REPORT, REQUIRED, NonNegative, Table, Text, key
 from reference.support.arguments import Range
 
-OF_BODIES = {"mu": 1, "acceleration": 1, "drift": 2, "torsion": 1}  # number of the first body that has the quantity
-OF_ISOLATOR = (
+BODY_QUANTITIES = {"mu": 1, "acceleration": 1, "drift": 2, "torsion": 1}  # number of the first body with the quantity
+ISOLATOR_QUANTITIES = (
     "displacement",
     "residual",
     "base_shear",
@@ -24,7 +24,7 @@ OF_ISOLATOR = (
     "friction_energy",
     "damping_energy",
 )
-QUANTITIES = (*OF_BODIES, *OF_ISOLATOR)
+QUANTITIES = (*BODY_QUANTITIES, *ISOLATOR_QUANTITIES)
 
 
 def _check_quantity(quantity: str) -> str:
@@ -35,13 +35,13 @@ def _check_quantity(quantity: str) -> str:
 
 
 class Measured(Table):
-    """One measured peak."""
+    """One peak measured in a test."""
 
     quantity: Annotated[str, AfterValidator(_check_quantity)] = key(
         f"what was measured: {', '.join(QUANTITIES)}", models=REPORT, default=REQUIRED
     )
     body: int | None = key(
-        f"number of the body, 1 is the platform: of {', '.join(OF_BODIES)} alone; a drift is of the body above",
+        f"number of the body, 1 is the platform: of {', '.join(BODY_QUANTITIES)} alone; a drift is of the body above",
         Range(1, 10_000),
         models=REPORT,
     )
@@ -61,7 +61,7 @@ class Measured(Table):
 
     @model_validator(mode="after")
     def _check_body(self) -> Measured:
-        first = OF_BODIES.get(self.quantity)
+        first = BODY_QUANTITIES.get(self.quantity)
         if first is None and self.body is not None:
             raise ValueError(f"{self.quantity} is of the isolator: remove body")
         if first is not None and (self.body is None or self.body < first):

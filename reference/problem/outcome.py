@@ -1,4 +1,4 @@
-"""Named outcomes of one point, shared by both sides, and advice for those that are not ok."""
+"""Named outcomes of one phase pair, shared by both sides, and advice for those that are not ok."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 class Outcome(StrEnum):
     """
-    End of the run of one phase pair.
+    Outcome of the run of one phase pair.
 
     Anything but OK means that `mu` is NaN or its error above the tolerance. `ADVICE` has what to try.
 

@@ -1,4 +1,4 @@
-"""Phase pairs (alpha_1, alpha_2) of the loading: their check, and grids of them."""
+"""Phase pairs (alpha_1, alpha_2) of the loading: checks of them, and grids of them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from reference.problem.ranges import PHASE
 from reference.support.arguments import Range, check_array, check_whole_number
 
 Array = NDArray[np.float64]
-POINTS = Range(1, 10_000)  # phases per axis
+POINTS_PER_AXIS = Range(1, 10_000)  # number of phases per axis
 
 
 def check_phases(phases: ArrayLike) -> Array:
     """
-    Return phase pairs (M, 2), rad, as a contiguous array, beyond a full turn reduced to (-pi, pi]. Raises ValueError.
+    Return phase pairs (M, 2), rad, as a contiguous array; a phase beyond a full turn moves to (-pi, pi]. ValueError.
 
     Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given.
     """
@@ -70,11 +70,11 @@ def grid_axes(phases: Array) -> tuple[Array, Array] | None:
 
 def phase_axis(points: int) -> Array:
     """
-    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad, the same bits on every axis that has them.
+    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad; axes that share a phase have the same bits of it.
 
     They follow from the fraction k / points in lowest terms. Raises ValueError for no whole number from 1 to 10,000.
     """
-    steps = np.arange(check_whole_number("points", points, POINTS))
+    steps = np.arange(check_whole_number("points", points, POINTS_PER_AXIS))
     shared = np.gcd(steps, points)
     axis: Array = 2.0 * np.pi * (steps // shared) / (points // shared)
     return axis

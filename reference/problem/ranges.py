@@ -1,5 +1,5 @@
 """
-The range of every argument of both sides, and of what is no key of a scene; `keys.key` states those of keys.
+Ranges of the arguments of both sides and of other numbers that are no key of a scene; `keys.key` has those of keys.
 
 Inside its range a value is answered, or refused under a named outcome; outside it is refused in one line that states
 the range. The ranges are far wider than any isolator: they end where double precision or the work would.
@@ -12,24 +12,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.support.arguments import Range, brief, check_array
+from reference.support.arguments import Range, check_array, quote
 
 Array = NDArray[np.float64]
 
 MAX_SUPPORTS = 1000
-SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # place of a support along x and y
-DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # damper of a link along one axis
-MAX_CYCLES = 1e6  # shortest periods of loading and pendulum in the duration
+SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # coordinate of a support along x or y
+DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # coefficient of a link's damper along one axis
+MAX_CYCLES = 1e6  # the duration has at most so many of the shortest periods of loading and pendulum
 
-# rad; beyond, neighboring double-precision numbers are more than 1.2e-10 rad apart, the strictest tolerance
+# beyond these phases two neighboring double-precision numbers are 1.2e-10 rad apart, the strictest tolerance
 PHASE = Range(-1e6, 1e6, "rad")
 REGULARIZATION = Range(1e-12, 1e6, "m/s")
 CUTOFF = Range(1e-15, 1e6, "m/s")
-POSITION = Range(-1e12, 1e12, "m")  # displacement of an initial state
+POSITION = Range(-1e12, 1e12, "m")  # displacement in an initial state
 VELOCITY = Range(-1e9, 1e9, "m/s")
 TOLERANCE = Range(1e-10, 0.1)
 
-LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits; the ground is at rest
+LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits, so the ground counts as at rest
 
 
 def check_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
@@ -40,7 +40,7 @@ def check_state(initial: Any, bodies: int, radius: float, travel: float | None =
     try:
         x, v = check_array("initial", initial.position, rule), check_array("initial", initial.velocity, rule)
     except AttributeError:
-        raise ValueError(f"initial = {brief(initial)}: must be a reference.problem.State") from None
+        raise ValueError(f"initial = {quote(initial)}: must be a reference.problem.State") from None
     if x.shape != (bodies, 2) or v.shape != (bodies, 2):
         raise ValueError(f"initial: {rule}")
     for values, allowed in ((x, POSITION), (v, VELOCITY)):

@@ -1,4 +1,4 @@
-"""The two readings of (5.1), and the law of friction that a result rests on, in words."""
+"""The two readings of (5.1), and the friction law of a result, in words."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ AS_INTEGRATED = "as integrated"
 LITERAL_SUPREMUM = "literal supremum"
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
 BOTH_READINGS = "in both readings"
-"""What is the same as integrated and as literal supremum, as no friction is dry."""
+"""Reading of a factor without dry friction, which is the same as integrated and as literal supremum."""
 DEFAULT_V_REG = 1e-3
-"""Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity, on both sides alike."""
+"""Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity on both sides."""
 DEFAULT_V_C = 1e-3
 """Slip speed v_c, m/s, above which an integration with steps of about 1 ms sees the motion."""
-FINER = 0.1
-"""Second v_reg over the first where the effect of regularization is estimated: nine tenths of one in proportion."""
+SECOND_V_REG_RATIO = 0.1
+"""Second v_reg over the first where two runs estimate the effect of regularization: they show 0.9 of it."""
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
@@ -35,7 +35,7 @@ def describe_law(
     effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> str:
     """
-    Describe the law of friction of a result, and what its error leaves out.
+    Describe the friction law of a result, and what part of the difference between laws its error leaves out.
 
     effect: what a tenth of v_reg changes in mu and in the displacement, m, where that was computed.
     """
@@ -54,4 +54,4 @@ def describe_law(
         return f"{law} friction"
     factor, displacement = (f"{np.nanmax(np.abs(part)):.2g}" for part in effect)
     changes = f"mu changes by up to {factor} and the displacement by up to {displacement} m"
-    return f"{law} friction; from there to v_reg = {FINER * regularization:g} m/s {changes}"
+    return f"{law} friction; from there to v_reg = {SECOND_V_REG_RATIO * regularization:g} m/s {changes}"

@@ -1,16 +1,16 @@
-"""What was read of the recorded motion of a scene."""
+"""Description of the recorded motion of a scene."""
 
 from __future__ import annotations
 
-from reference.problem.scene import Scene, takes_scene
+from reference.problem.scene import Scene, require_scene
 from reference.problem.tables import Record
 from reference.records.description import RecordDescription, describe_samples
 
 
-@takes_scene
+@require_scene
 def describe_record(scene: Scene) -> RecordDescription:
     """
-    Return what was read of a recorded motion, with warnings where it is hardly meant so.
+    Return what was read of a recorded motion, with warnings about values that are hardly intended.
 
     Parameters
     ----------

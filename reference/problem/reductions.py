@@ -1,5 +1,5 @@
 """
-What a scene does not require, and why: the one place in which work is left out, decided from the scene alone.
+Parts of the computation that a scene does not need, with the reason, decided from the scene alone.
 
 Each reduction is exact: with and without it a point has the same mu within the error estimates. Both sides and the
 study ask here, and nowhere else; `full=True` (`--full`) asks nothing and computes everything.
@@ -16,17 +16,17 @@ from reference.problem.excitation import exponents
 from reference.problem.scene import Scene
 from reference.support.constants import GRAVITY
 
-# rad in the whole motion: links that vibrate more often are integrated at less cost than summed
+# rad: where the fastest vibration turns by more in the whole motion, integration costs less than summation
 MAX_VIBRATION_ANGLE = 2e5
-RECORDED = "a recorded motion: no harmonics, no phases"
+RECORDED_REASON = "a recorded motion: no harmonics, no phases"
 
-MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned
-LOAD_SHIFT_FACTOR = 2.0  # times the shift of the supports' load on a level sphere: covers a sphere that is not level
+MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned about the vertical
+LOAD_SHIFT_FACTOR = 2.0  # safety factor on the shift of the load of the supports, which is computed for a level sphere
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """Part of the work that a scene may let be left out, and why, or what forbids it. True where it may."""
+    """Answer whether a scene permits leaving out a part of the work, with the reason; true where it does."""
 
     allowed: bool
     reason: str
@@ -35,19 +35,19 @@ class Reduction:
         return self.allowed
 
 
-def half_turn(scene: Scene) -> Reduction:
-    """Find whether adding pi to both phases turns the motion by half a turn about the vertical: same mu."""
+def has_half_turn_symmetry(scene: Scene) -> Reduction:
+    """Find whether adding pi to both phases turns the motion by half a turn about the vertical, with the same mu."""
     if scene.recorded:
-        return Reduction(False, RECORDED)
+        return Reduction(False, RECORDED_REASON)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading: every phase pair is its own")
     return Reduction(True, "no vertical loading: adding pi to both phases turns the motion by half a turn")
 
 
-def own_axes(scene: Scene) -> Reduction:
-    """Find whether adding pi to either phase alone mirrors the motion: same mu."""
-    if not half_turn(scene):
-        return half_turn(scene)
+def has_one_axis_per_harmonic(scene: Scene) -> Reduction:
+    """Find whether adding pi to either phase alone mirrors the motion, with the same mu."""
+    if not has_half_turn_symmetry(scene):
+        return has_half_turn_symmetry(scene)
     used = scene.amplitudes[:2] != 0.0
     if (used.sum(axis=0) <= 1).all() and (used.sum(axis=1) <= 1).all():
         return Reduction(
@@ -57,7 +57,7 @@ def own_axes(scene: Scene) -> Reduction:
 
 
 def body_cannot_tilt(scene: Scene) -> Reduction:
-    """Find whether nothing turns the body of the spatial model: (vi) holds, and the translational one answers."""
+    """Find whether the body of the spatial model cannot turn (vi), so that the translational model gives its motion."""
     # All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
     # shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the
     # ring. The weight of a second body shifts with its displacement across the direction of sliding, and turns the
@@ -79,7 +79,7 @@ def body_cannot_tilt(scene: Scene) -> Reduction:
     if scene.friction_coefficient > 0.0:
         if scene.lubricated:
             return Reduction(False, "lubricated: the friction that shifts the supports' load has no limit")
-        if scene.dry_friction.by_load:
+        if scene.dry_friction.depends_on_load:
             return Reduction(False, "friction that depends on the load: unequal loads twist the platform")
         shift = scene.friction_coefficient * (scene.radius + isolator.sphere_radius)
         if not LOAD_SHIFT_FACTOR * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
@@ -87,10 +87,10 @@ def body_cannot_tilt(scene: Scene) -> Reduction:
     return Reduction(True, "one body, its center level with the depressions: it does not turn")
 
 
-def planar(scene: Scene) -> Reduction:
-    """Find whether the motion stays in one vertical plane (4.7): `in_plane` then has half of the coordinates."""
+def is_planar(scene: Scene) -> Reduction:
+    """Find whether the motion stays in one vertical plane (4.7), where `turn_loading_to_x` halves the coordinates."""
     if scene.recorded:
-        return Reduction(False, RECORDED)
+        return Reduction(False, RECORDED_REASON)
     x, y = scene.amplitudes[:2]
     if not np.abs(scene.amplitudes).max() < MAX_TURNABLE_ACCELERATION:
         return Reduction(False, "loads that may overflow when turned")
@@ -107,32 +107,32 @@ def planar(scene: Scene) -> Reduction:
     )
 
 
-def planar_chain(scene: Scene) -> Reduction:
+def has_planar_chain(scene: Scene) -> Reduction:
     """Find whether the bodies above the platform need no coordinates across the plane of motion."""
     if len(scene.bodies) == 1:
         return Reduction(False, "one body: none above it whose coordinates could be left out")
-    return planar(scene)
+    return is_planar(scene)
 
 
-def in_plane(scene: Scene) -> Scene:
+def turn_loading_to_x(scene: Scene) -> Scene:
     """Return a planar scene turned about the vertical so that its loading acts along x: the same mu for every body."""
     table = scene.model_dump(exclude_none=True)
     horizontal = scene.amplitudes[:2]
-    if not horizontal[0].any():  # along y: the links' y becomes their x
+    if not horizontal[0].any():  # the loading acts along y: what links have along y becomes theirs along x
         for body in table["bodies"][1:]:
-            for key in ("period", "stiffness", "damping"):  # bars and ratios of damping are the same in x and y
+            for key in ("period", "stiffness", "damping"):  # bars and damping ratios are the same along x and y
                 if isinstance(body.get(key), list):
                     body[key] = body[key][::-1]
     direction = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
     length = float(np.hypot(*direction))
     along = direction @ horizontal / length if length > 0.0 else np.zeros(2)
-    table["excitation"].pop("scale", None)  # it is in the amplitudes
+    table["excitation"].pop("scale", None)  # the amplitudes include the scale
     table["excitation"]["amplitudes"] = [along.tolist(), [0.0, 0.0], scene.amplitudes[2].tolist()]
     return Scene.model_validate(table)
 
 
-def mirror_symmetric(scene: Scene) -> Reduction:
-    """Find whether supports and bodies are their own mirror images: the spatial model has the loading's symmetries."""
+def is_mirror_symmetric(scene: Scene) -> Reduction:
+    """Find whether supports and bodies are their own mirror images, which gives mu the symmetries of the loading."""
     supports = scene.isolator.supports or 0
     if scene.offsets.any():
         return Reduction(False, "a center of mass off the axis: mirrored, it is another one")
@@ -150,22 +150,22 @@ def mirror_symmetric(scene: Scene) -> Reduction:
     )
 
 
-def unused_harmonics(scene: Scene) -> list[int]:
-    """Return the harmonics without any amplitude, 0 for alpha_1, 1 for alpha_2: their phase changes nothing."""
+def find_unused_harmonics(scene: Scene) -> list[int]:
+    """Return the harmonics whose amplitudes are zero, 0 for alpha_1, 1 for alpha_2: their phases change nothing."""
     if scene.recorded:
         return [0, 1]
     return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
 
 
-def no_friction(scene: Scene) -> Reduction:
-    """Find whether no law of friction is left to regularize or to resolve: such models repeat the exact equations."""
+def has_no_friction_law(scene: Scene) -> Reduction:
+    """Find whether no friction is left to regularize or to resolve, so that such models repeat the exact equations."""
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "friction")
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
 
 
-def linear(scene: Scene) -> Reduction:
-    """Find whether the small equations (4.3)-(4.4) are linear: a sum of one complex motion per harmonic."""
+def is_linear(scene: Scene) -> Reduction:
+    """Find whether the small equations (4.3)-(4.4) are linear, so that the motion is a sum of one per harmonic."""
     # A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) also keeps the term f_c u (p . v) / rho.
     if scene.lubricated and scene.friction_coefficient > 0.0:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
@@ -174,18 +174,18 @@ def linear(scene: Scene) -> Reduction:
     if scene.damping.any():
         return Reduction(False, "damped links: the sum is one of undamped modes")
     if scene.recorded:
-        return Reduction(False, RECORDED)
+        return Reduction(False, RECORDED_REASON)
     if scene.amplitudes[2].any():
         return Reduction(False, "vertical loading: it is no part of the sum and varies the pendulum's stiffness")
-    if not fastest_rate(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
+    if not bound_fastest_rate(scene) * scene.duration <= MAX_VIBRATION_ANGLE:
         return Reduction(False, f"more than {MAX_VIBRATION_ANGLE:g} rad of the fastest vibration: cheaper to step over")
     return Reduction(True, "no friction, no vertical loading: the small equations are linear, the surface is a sum")
 
 
-def fastest_rate(scene: Scene) -> float:
-    """Return an upper bound of every angular frequency and rate of decay in the small equations, rad/s."""
+def bound_fastest_rate(scene: Scene) -> float:
+    """Return an upper bound on every angular frequency and decay rate of the small equations, rad/s."""
     below = np.vstack([np.full((1, 2), scene.total_mass * GRAVITY / scene.radius), scene.stiffness])
     above = np.vstack([scene.stiffness, np.zeros((1, 2))])
-    natural = math.sqrt(float((2.0 * (below + above) / scene.masses[:, None]).max()))  # Gershgorin
+    natural = math.sqrt(float((2.0 * (below + above) / scene.masses[:, None]).max()))  # bound by Gershgorin's circles
     load = exponents(scene)
     return max(natural, float(load.imag.max()), float(-load.real.min()))

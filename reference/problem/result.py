@@ -1,4 +1,4 @@
-"""Results of both sides."""
+"""Results of both sides: amplification factors, trajectories, and the basis of their errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.scene import Scene
-from reference.support.arguments import brief, check_choice, takes
+from reference.support.arguments import check_choice, quote, require_type
 from reference.support.drawing import draw_motion, draw_surface, escape_for_matplotlib
 from reference.support.html_table import html_table, text_of_number
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-PER_POINT = ("instant", "cap_share", "displacement", "displacement_effect")  # numbers of a phase pair
-DRAWN = {
+POINT_FIELDS = ("instant", "cap_share", "displacement", "displacement_effect")  # fields with a number per phase pair
+AXIS_LABELS = {
     "position": "displacement against the plate, m",
     "velocity": "velocity against the plate, m/s",
     "absolute_acceleration": "absolute acceleration, m/s$^2$",
@@ -139,7 +139,7 @@ class Amplification:
         -------
         Amplification
         """
-        per_point = {name: getattr(self, name) for name in (*PER_POINT, "status")}
+        per_point = {name: getattr(self, name) for name in (*POINT_FIELDS, "status")}
         per_body = {name: getattr(self, name) for name in ("mu", "error", "phases", "regularization_effect")}
         points = {name: array.reshape(shape) for name, array in per_point.items()}
         rows = {name: array.reshape(*shape, array.shape[-1]) for name, array in per_body.items()}
@@ -164,7 +164,7 @@ class Amplification:
         >>> data["mu"].dims, data["alpha1"].attrs["units"]
         (('alpha1', 'alpha2', 'body'), 'rad')
         """
-        import xarray as xr  # loaded on first use
+        import xarray as xr  # xarray is loaded on first use
 
         dims, alpha = phase_coordinates(self.phases)
         factor, seconds = {"units": "1"}, {"units": "s"}
@@ -209,7 +209,7 @@ class Amplification:
         """
         bodies = self.mu.shape[-1]
         if not (isinstance(body, int) and 1 <= body <= bodies):
-            raise ValueError(f"body = {brief(body)}: must be a whole number from 1 to {bodies}")
+            raise ValueError(f"body = {quote(body)}: must be a whole number from 1 to {bodies}")
         grid = grid_axes(self.phases)
         if grid is None:
             rule = "must be a grid of at least 2 x 2 phases, as phase_grid(8) is"
@@ -297,13 +297,13 @@ class Trajectory:
 
     @property
     def support_force(self) -> Array:
-        """Normal force of every single support, (T, K), N; (T, 0) in a model that has none."""
+        """Normal force of each support, (T, K), N; (T, 0) in a model without single supports."""
         force = self.extra.get("support_force", np.empty((len(self.time), 0)))
         return force if force.shape[1] > 1 else force[:, :0]  # a single contact is the whole isolator
 
     @property
     def vertical_rotation(self) -> Array:
-        """Rotation of every body about the vertical, (T, N), rad; (T, 0) in a model whose bodies do not turn."""
+        """Rotation of each body about the vertical, (T, N), rad; (T, 0) in a model whose bodies do not turn."""
         turns = self.extra.get("turns", np.empty((len(self.time), 0, 3)))
         return turns[:, :, 2]
 
@@ -335,7 +335,7 @@ class Trajectory:
         >>> data["position"].dims, data["position"].attrs["units"]
         (('time', 'body', 'axis'), 'm')
         """
-        import xarray as xr  # loaded on first use
+        import xarray as xr  # xarray is loaded on first use
 
         vector = ("time", "body", "axis")
         variables: dict[str, tuple[Any, Array, str]] = {
@@ -386,14 +386,14 @@ class Trajectory:
         >>> import reference
         >>> axes = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7)).plot()
         """
-        label = DRAWN[check_choice("quantity", quantity, list(DRAWN))]
+        label = AXIS_LABELS[check_choice("quantity", quantity, list(AXIS_LABELS))]
         return draw_motion(self.time, getattr(self, quantity), self.stick, label, self.scene.title, axes)
 
 
 @dataclass(frozen=True)
 class Accuracy:
     """
-    Basis of the errors of a motion: the same motion, computed less accurately.
+    Basis of the errors of a motion: less accurate runs of the same motion.
 
     Attributes
     ----------
@@ -453,5 +453,7 @@ class State:
     velocity: Array
 
 
-takes_motion = takes(Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return")
+require_motion = require_type(
+    Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return"
+)
 """Decorator of functions whose first argument is a motion."""

@@ -17,26 +17,26 @@ from reference.problem.acceptance import Acceptance, DemandLimits, Limits
 from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
-from reference.problem.chain_modes import solve_chain
-from reference.problem.changed_values import change_of, name_with_changes, put_value, value_at
+from reference.problem.chain_modes import solve_chain_modes
+from reference.problem.changed_values import name_change, name_with_changes, put_value, value_at
 from reference.problem.friction import DryFriction, Heating, VelocityFriction, law_of_friction
 from reference.problem.keys import NONE, REQUIRED, Positive, Table, Text, exactly_one, key, range_of
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES
-from reference.problem.supports import on_one_line, ring_places, static_shares
+from reference.problem.supports import are_on_one_line, ring_positions, static_shares
 from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, Superstructure, kind_of_excitation
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
-from reference.records.loading import with_samples
-from reference.records.samples import take_zero_line
-from reference.support.arguments import Range, as_float, takes
+from reference.records.loading import load_record_samples
+from reference.records.samples import subtract_zero_line
+from reference.support.arguments import Range, as_float, require_type
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000
-MIN_STATIC_SHARE = 1e-9  # least share of the weight on a support: one with less carries nothing
-MAX_SUPPORT_DEFLECTION = 0.1  # share of the radius by which supports may give way under the weight
-DERIVED_ROUNDING = 1e-12  # relative rounding of a value that follows from others
+MIN_STATIC_SHARE = 1e-9  # support load over the weight: a support with a smaller share carries nothing
+MAX_SUPPORT_DEFLECTION = 0.1  # the supports may give way under the weight by at most this share of the radius
+DERIVED_ROUNDING = 1e-12  # relative rounding error of a value that is computed from other values
 
 
 class Scene(Table):
@@ -95,18 +95,18 @@ class Scene(Table):
     @model_validator(mode="before")
     @classmethod
     def _read_record(cls, data: Any) -> Any:
-        """Read the samples of a record that is named or given as arrays; `load_scene` has read those of its file."""
+        """Read the samples of a record that is given by name or as arrays; `load_scene` has read those of its file."""
         table = data.get("excitation") if isinstance(data, dict) else None
         if not isinstance(table, dict) or "record" not in table or "samples" in table:
             return data
         try:
-            return with_samples(data, "")
+            return load_record_samples(data, "")
         except SceneError as error:
             raise MisfitError(error.key, error.value, error.rule) from None
 
     @model_validator(mode="after")
-    def _check_together(self) -> Scene:
-        """Check what no table can check alone."""
+    def _check_all_tables(self) -> Scene:
+        """Check what no table can check by itself."""
         self._check_links()
         self._check_bars()
         self._check_superstructure()
@@ -146,7 +146,7 @@ class Scene(Table):
                 raise MisfitError(f"bodies.{number}.bars: weight on each bar in N", each, rule)
 
     def _check_superstructure(self) -> None:
-        """Check that there are links for the damping of the superstructure, and that no body states its own."""
+        """Check that the damping of the superstructure has links to act on, and that no body states its own damping."""
         ratio, (_, *others) = self._first_mode_ratio, self.bodies
         if ratio is None:
             return
@@ -158,14 +158,14 @@ class Scene(Table):
                 raise MisfitError(f"bodies.{number}.damping", body.damping, rule)
 
     def _check_derived(self) -> None:
-        """Check that values which follow from several others are within their ranges."""
+        """Check that values computed from several keys are within their ranges."""
         for name, (value, span) in self._derive_values().items():
             lowest, highest = span.lowest * (1.0 - DERIVED_ROUNDING), span.highest * (1.0 + DERIVED_ROUNDING)
             if not (lowest <= value <= highest or value in span):
                 raise MisfitError(name, value, span.rule)
 
     def _derive_values(self) -> dict[str, tuple[float, Range]]:
-        """Return the values that follow from several others, by what an error calls them, with their ranges."""
+        """Return the values computed from several keys with their ranges, by their names in an error."""
         derived = {
             "isolator: radius in m": (self.radius, range_of(Isolator, "radius")),
             "bodies: total mass in kg": (self.total_mass, range_of(Body, "mass")),
@@ -188,7 +188,7 @@ class Scene(Table):
         return derived
 
     def _check_duration(self) -> None:
-        """Check that the motion has no more periods than a run follows."""
+        """Check that the motion has no more periods than a run can follow."""
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
             shortest = min(shortest, *self.excitation.periods)
@@ -197,7 +197,7 @@ class Scene(Table):
             raise MisfitError("duration", self.duration, rule)
 
     def _check_isolator(self) -> None:
-        """Check that travel and compliance of the supports are small against the radius."""
+        """Check that the travel and the compliance of the supports are small against the radius."""
         travel, bearings = self.isolator.travel, self.isolator.support_stiffness
         if travel is not None and not travel < self.radius:
             raise MisfitError("isolator.travel", travel, f"must be below the radius, rho = {self.radius:.6g} m")
@@ -217,7 +217,7 @@ class Scene(Table):
             return
         if len(np.unique(places, axis=0)) < len(places):
             raise MisfitError("isolator.supports", supports, "two supports are at the same place: remove one of them")
-        if on_one_line(places):
+        if are_on_one_line(places):
             raise MisfitError("isolator.supports", supports, "the supports are on one line: move one of them off it")
         shares = static_shares(places, self.center_of_mass)
         if not shares.min() > MIN_STATIC_SHARE:
@@ -226,7 +226,7 @@ class Scene(Table):
             raise MisfitError("bodies: center of mass of all [x, y] in m", self.center_of_mass.tolist(), rule)
 
     def _check_measured(self) -> None:
-        """Check that a measured peak belongs to a body, and to phases where the scene has them."""
+        """Check that each measured peak belongs to a body of the scene, and states phases if the scene has them."""
         phased = isinstance(self.excitation, Excitation)
         for number, peak in enumerate(self.measured or ()):
             if peak.body is not None and peak.body > len(self.bodies):
@@ -239,7 +239,7 @@ class Scene(Table):
                 raise MisfitError(f"measured.{number}.phases", peak.phases, rule)
 
     def _check_upright(self) -> None:
-        """Check that bars which give way hold the bodies upright."""
+        """Check that flexible bars hold the bodies upright."""
         giving = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.axial_stiffness]
         heights = [body.height for body in self.bodies if body.height is not None]
         if not giving or len(heights) < len(self.bodies):
@@ -298,10 +298,10 @@ class Scene(Table):
         changes = []
         for name, value in values.items():
             before = value_at(data, str(name))
-            # a key inside a table that is given, too, must not change the caller's table
+            # a key inside a table that is given as well must not change the caller's table
             own = deepcopy(value) if isinstance(value, dict | list) else value
             put_value(self.name, data, str(name), own, KEYS)
-            changes.append(change_of(str(name), before, own))
+            changes.append(name_change(str(name), before, own))
         if "name" not in values:
             data["name"] = name_with_changes(self.name, changes)
         try:
@@ -316,7 +316,7 @@ class Scene(Table):
             return self.isolator.radius
         assert self.isolator.period is not None
         pace = self.isolator.period / (2.0 * math.pi)
-        return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises
+        return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises an error
 
     @property
     def flat(self) -> bool:
@@ -325,7 +325,7 @@ class Scene(Table):
 
     @property
     def displacement_limit(self) -> float:
-        """Horizontal displacement of the platform at which a motion ends, m: the travel, or rho without one."""
+        """Horizontal displacement of the platform at which a motion ends, m: the travel, or rho without a travel."""
         return self.radius if self.isolator.travel is None else self.isolator.travel
 
     @cached_property
@@ -335,8 +335,8 @@ class Scene(Table):
 
     @property
     def total_mass(self) -> float:
-        """m_sum of (3.2), kg: the contact carries every body."""
-        return sum(self.masses.tolist())  # inf without a warning where it overflows
+        """Total mass m_sum of (3.2), kg, which the contact carries."""
+        return sum(self.masses.tolist())  # a sum of Python floats becomes inf without a warning where it overflows
 
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:
@@ -352,15 +352,15 @@ class Scene(Table):
 
     @property
     def bar_links(self) -> list[BarLink | None]:
-        """The links of bars that give way in every direction, from below; None for any other link."""
+        """Links of bars that give way in every direction, from below; None for a link of any other kind."""
         return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property
     def damping(self) -> NDArray[np.float64]:
         """Link damping c_{i+1,i} in x and y, (N-1, 2), N s/m; row i links body i and body i + 1."""
         if (ratio := self._first_mode_ratio) is not None:
-            # D0 = beta C0 has the modal damping ratios beta omega / 2
-            first = [solve_chain(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T]
+            # a matrix D0 = beta C0 has the modal damping ratios beta omega / 2
+            first = [solve_chain_modes(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T]
             proportional: NDArray[np.float64] = 2.0 * ratio / np.array(first) * self.stiffness
             return proportional
         rows = [
@@ -371,18 +371,18 @@ class Scene(Table):
 
     @property
     def _first_mode_ratio(self) -> float | None:
-        """Damping ratio of the first fixed-base mode that the scene states; None without one."""
+        """Damping ratio of the first fixed-base mode as the scene states it; None if it states none."""
         return None if self.superstructure is None else self.superstructure.damping
 
     @property
     def support_places(self) -> NDArray[np.float64] | None:
-        """Places of the supports in the plane, (K, 2), m, about the axis of the links; None if the scene has none."""
+        """Horizontal coordinates of the supports, (K, 2), m, from the axis of the links; None if the scene has none."""
         supports, ring = self.isolator.supports, self.isolator.ring
         if isinstance(supports, list):
             return np.array(supports)
         if supports is None or ring is None:
             return None
-        return ring_places(supports, ring)
+        return ring_positions(supports, ring)
 
     @property
     def support_radius(self) -> float | None:
@@ -393,7 +393,7 @@ class Scene(Table):
 
     @cached_property
     def offsets(self) -> NDArray[np.float64]:
-        """Horizontal places of the centers of mass from the axis of the links, (N, 2), m."""
+        """Horizontal coordinates of the centers of mass from the axis of the links, (N, 2), m."""
         return np.array([body.offset or (0.0, 0.0) for body in self.bodies], dtype=float)
 
     @cached_property
@@ -403,7 +403,7 @@ class Scene(Table):
 
     @property
     def center_of_mass(self) -> NDArray[np.float64]:
-        """Horizontal place of the center of mass of all bodies from the axis of the links, (2,), m."""
+        """Horizontal coordinates of the center of mass of all bodies from the axis of the links, (2,), m."""
         place: NDArray[np.float64] = self.masses / self.total_mass @ self.offsets
         return place
 
@@ -422,7 +422,7 @@ class Scene(Table):
             return self.isolator.lubrication
         return self.dry_friction.largest
 
-    @property
+    @cached_property
     def dry_friction(self) -> DryFriction:
         """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
         sliders = 1 if self.support_places is None else len(self.support_places)
@@ -430,16 +430,29 @@ class Scene(Table):
 
     @property
     def yield_displacement(self) -> float:
-        """Elastic displacement at which friction slides under the weight, m; 0 for rigid friction."""
+        """Elastic displacement after which friction slides under the weight, m; 0 for rigid friction."""
         return self.friction_coefficient * self.total_mass * GRAVITY / self.dry_friction.stiffness
 
     def require_rigid_friction(self, user: str) -> None:
-        """Raise SceneError where friction yields, for a `user` of the scene that has rigid friction only."""
+        """Raise SceneError if friction yields; `user` names the part of the program that needs rigid friction."""
         table = self.isolator.friction
         if isinstance(table, VelocityFriction) and self.dry_friction.elastic:
             name = "initial_stiffness" if table.yield_displacement is None else "yield_displacement"
             rule = f"{user} has friction that is rigid before it slides: remove this key"
             raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
+
+    def with_yield_displacement(self, way: float) -> Scene:
+        """Return the scene, of the same name, with friction that yields at `way`, m; 0: rigid, as without the keys."""
+        friction = self.isolator.friction
+        if not isinstance(friction, VelocityFriction) or (way == 0.0 and not self.dry_friction.elastic):
+            return self if way == 0.0 else self._with_friction({"slow": friction, "yield_displacement": way})
+        stated = friction.model_dump(exclude_none=True, exclude={"initial_stiffness", "yield_displacement"})
+        if way > 0.0:
+            return self._with_friction({**stated, "yield_displacement": way})
+        return self._with_friction(stated if len(stated) > 1 else friction.slow)
+
+    def _with_friction(self, friction: object) -> Scene:
+        return self.with_values({"isolator.friction": friction, "name": self.name})
 
     @property
     def has_dry_friction(self) -> bool:
@@ -448,7 +461,7 @@ class Scene(Table):
 
     @property
     def recorded(self) -> bool:
-        """True if a recorded motion takes the place of the two frequencies: then there are no phases."""
+        """True if a recorded motion takes the place of the two frequencies, so that there are no phases."""
         return isinstance(self.excitation, Record)
 
     @cached_property
@@ -462,7 +475,7 @@ class Scene(Table):
             raise ValueError(f"{self.name}: a recorded motion has no amplitudes, periods, decay or phases")
         matrix = np.zeros((3, 2))
         matrix[: len(self.excitation.amplitudes)] = self.excitation.amplitudes
-        with np.errstate(over="ignore"):  # refused by validation
+        with np.errstate(over="ignore"):  # validation refuses infinite amplitudes
             return matrix * (1.0 if self.excitation.scale is None else self.excitation.scale)
 
     @cached_property
@@ -476,8 +489,8 @@ class Scene(Table):
             return np.zeros((0, 4))
         knots = np.array(self.excitation.samples)
         if self.excitation.detrend is not None:
-            take_zero_line(knots, self.excitation.detrend)
-        with np.errstate(over="ignore"):  # refused by validation
+            subtract_zero_line(knots, self.excitation.detrend)
+        with np.errstate(over="ignore"):  # validation refuses infinite accelerations
             knots[:, 1:] *= self.excitation.scale
         if knots[-1, 1:].any():
             knots = np.vstack([knots, [2.0 * knots[-1, 0] - knots[-2, 0], 0.0, 0.0, 0.0]])
@@ -485,7 +498,7 @@ class Scene(Table):
 
     @property
     def largest_acceleration(self) -> float:
-        """The largest entry of the amplitude matrix, or the largest sample of a record along any axis, m/s^2."""
+        """Largest entry of the amplitude matrix, or largest sample of a record along any axis, m/s^2."""
         return float(np.abs(self.record[:, 1:] if self.recorded else self.amplitudes).max())
 
     def with_amplitude(self, amplitude: float) -> Scene:
@@ -556,7 +569,7 @@ class Scene(Table):
         return self.with_values({**values, "name": name_with_changes(self.name, ["softened"] * bool(unloaded))})
 
     def digest(self) -> str:
-        """Return the hash of everything that enters a result, for stores of results and for provenance."""
+        """Return the hash of everything that affects a result, for stored results and for provenance."""
         return self._digest
 
     @cached_property
@@ -569,7 +582,7 @@ class Scene(Table):
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
-takes_scene = takes(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
+require_scene = require_type(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
 """Decorator of functions whose first argument is a scene."""
 
 

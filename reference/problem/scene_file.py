@@ -13,18 +13,18 @@ from pydantic import ValidationError
 
 from reference.problem.scene import KEYS, Scene
 from reference.problem.validation import first_scene_error
-from reference.records.loading import EXAMPLES, OF_TWO_FREQUENCIES, SET_BY_THE_READER, shipped_examples, with_samples
-from reference.support.arguments import takes
+from reference.records.loading import EXAMPLES, READER_KEYS, TWO_FREQUENCY_KEYS, load_record_samples, shipped_examples
+from reference.support.arguments import require_type
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
 
-RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table whose value runs
-LARGEST = 2**22  # bytes of a scene file
-MAX_NESTING = 10  # tables and lists within one another in a scene file
-OF_RECORDS = (*OF_TWO_FREQUENCIES, *SET_BY_THE_READER)  # keys of [excitation] that the reader of records checks
-AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # in place of one that was not read
+RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table that gives a key several values
+MAX_BYTES = 2**22  # a scene file has at most so many bytes
+MAX_NESTING = 10  # a scene file nests at most so many tables and lists in one another
+RECORD_KEYS = (*TWO_FREQUENCY_KEYS, *READER_KEYS)  # keys of [excitation] that the reader of records checks
+RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # for an unreadable record
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
-# A key of that many parts is nested too deep, and the parser's work grows as the square of their number.
+# A key of that many parts is nested too deep, and the parser's time grows as the square of their number.
 LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NESTING}}}", re.ASCII)
 
 
@@ -61,7 +61,7 @@ def example_scenes() -> list[str]:
     return shipped_examples()
 
 
-@takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
+@require_type(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     """
     Read a scene.
@@ -98,21 +98,21 @@ def scale_loading(scene: Scene, amplitude: float | None) -> Scene:
 
 
 def scene_text(source: str | Path) -> bytes:
-    """Read the text of a built-in scene or a file. Raises SceneError if there is none."""
+    """Return the text of a built-in scene or of a file. Raises SceneError if there is none."""
     label = str(source)
     if label in example_scenes():
         return (EXAMPLES / f"{label}.toml").read_bytes()
     if label in builtin_scenes():
         return (resources.files("reference.problem") / "scenes" / f"{label}.toml").read_bytes()
     try:
-        return read_file(source, LARGEST)
-    except (OSError, ValueError) as error:  # ValueError: no path at all, such as one with a null byte
+        return read_file(source, MAX_BYTES)
+    except (OSError, ValueError) as error:  # ValueError: the text is no path, such as one with a null byte
         reason = getattr(error, "strerror", None) or error
         rule = f"{reason}; give a TOML file or one of {', '.join(builtin_scenes() + example_scenes())}"
         raise SceneError(label, "scene", label, rule) from None
 
 
-@takes(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
+@require_type(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
 def parse_scene(text: bytes, label: str) -> Scene:
     '''
     Return the scene in a text.
@@ -152,13 +152,13 @@ def parse_scene(text: bytes, label: str) -> Scene:
         raise SceneError(label, "combine", data["combine"], remedy)
     if isinstance(isolator := data.get("isolator"), dict) and "bounds" in isolator:
         raise SceneError(label, "isolator.bounds", isolator["bounds"], rule.format("remove this key"))
-    for path, table in running_values((), data):
+    for path, table in find_varied_keys((), data):
         raise SceneError(label, ".".join(map(str, path)), table, rule.format("give one value"))
     return make_scene(data, label, Path(label).stem)
 
 
 def scene_tables(text: bytes, label: str) -> dict[str, Any]:
-    """Return the tables of a scene file, not validated. Raises SceneError if they cannot be read."""
+    """Return the tables of a scene file without validation. Raises SceneError if they cannot be read."""
     try:
         decoded = text.decode("utf-8-sig")
         data: dict[str, Any] | None = None if LONG_KEY.search(decoded) else tomllib.loads(decoded)
@@ -166,7 +166,7 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
         raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
     if data is None or _is_deeper(data, MAX_NESTING):
         raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
-    if data and data.keys().isdisjoint((*KEYS[""], "combine")):  # whatever it is, none of it is shown
+    if data and data.keys().isdisjoint((*KEYS[""], "combine")):  # an error shows nothing of a file that may be anything
         raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(KEYS[''])}")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
@@ -174,13 +174,13 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
 
 
 def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
-    """Make the scene of tables, with its record read; `label` names it in errors. Raises SceneError."""
+    """Return the scene of these tables after reading its record; `label` names it in errors. Raises SceneError."""
     unread = None
     try:
-        tables = with_samples(data, label)
-    except SceneError as error:  # found with whatever else is wrong
-        others = {key: value for key, value in data["excitation"].items() if key not in OF_RECORDS}
-        tables = {"duration": 1.0, **data, "excitation": {**others, **AT_REST}}
+        tables = load_record_samples(data, label)
+    except SceneError as error:  # the error is reported with all others of the scene
+        others = {key: value for key, value in data["excitation"].items() if key not in RECORD_KEYS}
+        tables = {"duration": 1.0, **data, "excitation": {**others, **RECORD_AT_REST}}
         unread = error
     try:
         scene = Scene.model_validate({**tables, "name": name})
@@ -191,13 +191,13 @@ def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
     return scene
 
 
-def running_values(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
-    """Iterate over the places in the tables at which a value runs, with the inline table that says how."""
+def find_varied_keys(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
+    """Iterate over the paths in the tables at which a key has several values, with the inline table that gives them."""
     if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
         yield path, value
     elif isinstance(value, dict | list):
         for key, part in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from running_values((*path, key), part)
+            yield from find_varied_keys((*path, key), part)
 
 
 def _is_deeper(data: Any, levels: int) -> bool:

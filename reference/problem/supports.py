@@ -1,4 +1,4 @@
-"""Places of the supports of the platform, and their loads at rest."""
+"""Positions of the supports of the platform, and their loads at rest."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MIN_EXTENT_RATIO = 1e-6  # least extent of the places across a line over that along it
+MIN_WIDTH_RATIO = 1e-6  # Supports whose width is below this share of their length lie on one line.
 
 
-def ring_places(count: int, radius: float) -> Array:
-    """Return places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
+def ring_positions(count: int, radius: float) -> Array:
+    """Return the positions (count, 2), m, of supports on a ring, at angles 2 pi (k + 1/2) / count."""
     angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
     return radius * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def static_shares(places: Array, center: Array) -> Array:
     """
-    Return the shares (K,) of a weight on equally stiff supports: N_k = c0 + c1 x_k + c2 y_k, in balance with it.
+    Return the shares (K,) of a weight that equally stiff supports carry: N_k = c0 + c1 x_k + c2 y_k in balance with it.
 
     places: (K, 2), m, not on one line. center: (2,), m, where the weight acts. Negative where a support would pull.
 
@@ -32,7 +32,7 @@ def static_shares(places: Array, center: Array) -> Array:
     return shares
 
 
-def on_one_line(places: Array) -> bool:
-    """Return True if places (K, 2) span no area in double precision."""
+def are_on_one_line(places: Array) -> bool:
+    """Return True if positions (K, 2) span no area in double precision."""
     extents = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
-    return bool(extents[1] <= MIN_EXTENT_RATIO * extents[0])
+    return bool(extents[1] <= MIN_WIDTH_RATIO * extents[0])

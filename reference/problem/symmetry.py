@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.problem.phases import phase_grid
-from reference.problem.reductions import half_turn, own_axes, unused_harmonics
+from reference.problem.reductions import find_unused_harmonics, has_half_turn_symmetry, has_one_axis_per_harmonic
 from reference.problem.result import Amplification
 from reference.problem.scene import Scene
 
@@ -20,17 +20,17 @@ Array = NDArray[np.float64]
 
 
 def find_half_turns(scene: Scene) -> NDArray[np.intp]:
-    """Return the half turns that shift both phases without a change of mu, (K, 2); the first is no shift."""
+    """Return the shifts of both phases by 0 or pi that leave mu unchanged, (K, 2); the first is no shift."""
     turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
-    return turns if own_axes(scene) else turns[: 2 if half_turn(scene) else 1]
+    return turns if has_one_axis_per_harmonic(scene) else turns[: 2 if has_half_turn_symmetry(scene) else 1]
 
 
 def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """Return the index of the pair solved for every pair 2 pi k / grid, (grid^2,), alpha2 running fastest."""
+    """Return the index of the solved pair for every pair 2 pi k / grid, (grid^2,), where alpha2 runs fastest."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = find_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
-    images[..., unused_harmonics(scene)] = 0
+    images[..., find_unused_harmonics(scene)] = 0
     first: NDArray[np.intp] = (grid * images[..., 0] + images[..., 1]).min(axis=1)
     return first
 
@@ -44,7 +44,7 @@ def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
 def complete_surface(
     scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]
 ) -> tuple[Array, Array, list[str]]:
-    """Return mu and error (grid, grid, N) on phases 2 pi k / grid from the fewest pairs, and every status met."""
+    """Return mu and error (grid, grid, N) on phases 2 pi k / grid from the fewest pairs, and all their statuses."""
     phases, taken = distinct_pairs(scene, grid)
     answer = solve(scene, phases)
     return answer.mu[taken], answer.error[taken], sorted(set(map(str, answer.status)))

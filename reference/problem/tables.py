@@ -31,12 +31,12 @@ from reference.problem.keys import (
     Table,
     Text,
     exactly_one,
-    in_range,
     key,
+    range_validator,
 )
 from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_POSITION
 from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
-from reference.records.samples import check_samples, files_by_axis, name_of_file
+from reference.records.samples import check_samples, file_name, files_by_axis
 from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
 
@@ -55,7 +55,7 @@ def _kind_of_damping(value: Any) -> str:
 
 Damping = Annotated[
     Annotated[float, Tag(DAMPINGS[0])]
-    | Annotated[list[Annotated[float, in_range(DAMPING_COEFFICIENT)]], Tag(DAMPINGS[1])],
+    | Annotated[list[Annotated[float, range_validator(DAMPING_COEFFICIENT)]], Tag(DAMPINGS[1])],
     Discriminator(_kind_of_damping),
     BeforeValidator(_check_damping),
 ]
@@ -63,7 +63,7 @@ Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 NonNegativePair = Annotated[list[NonNegative], Field(min_length=2, max_length=2)]
 Edges = Annotated[list[Positive], Field(min_length=3, max_length=3)]
-Position = Annotated[list[Annotated[float, in_range(SUPPORT_POSITION)]], Field(min_length=2, max_length=2)]
+Position = Annotated[list[Annotated[float, range_validator(SUPPORT_POSITION)]], Field(min_length=2, max_length=2)]
 Supports = Annotated[
     Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORTS[0])]
     | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORTS[1])],
@@ -138,7 +138,7 @@ class Isolator(Table):
         return len(self.supports) if isinstance(self.supports, list) else self.supports
 
 
-MIN_SPREAD_BARS = 3  # fewer bars around the axis bend more easily about one direction than about another
+MIN_SPREAD_BARS = 3  # a ring of fewer bars bends more easily about one direction than about another
 
 
 class Bars(Table):
@@ -180,11 +180,11 @@ class Bars(Table):
 
     @property
     def stiffness(self) -> float:
-        """k = 12 n E J / l^3, N/m: (2.3) with the factor 12 where it belongs; without load."""
+        """Stiffness of the link without load, k = 12 n E J / l^3, N/m: (2.3) with its factor 12 put right."""
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
     def factors(self, load: float) -> LoadFactors:
-        """Return the factors of stiffness under a load on all bars together, N; 1 without `load_effect`."""
+        """Return the stiffness factors of the bars under a load, N, on all together; 1 without `load_effect`."""
         if self.load_effect is None:
             return load_factors(0.0)
         return load_factors(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
@@ -249,7 +249,7 @@ class Superstructure(Table):
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 
-    # From about 1e150 m/s^2 on the outcome is "non-finite load".
+    # from about 1e150 m/s^2 on the outcome is "non-finite load"
     amplitudes: Annotated[list[Pair], Field(min_length=2, max_length=3)] = key(
         "amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics",
         Range(-1e308, 1e308, "m/s^2"),
@@ -271,7 +271,7 @@ Samples = Annotated[
 
 
 class Record(Table):
-    """Recorded ground acceleration in place of the two frequencies: where it is from, and its samples."""
+    """Recorded ground acceleration in place of the two frequencies: its files and its samples."""
 
     long_keys = frozenset({"samples", "origin"})
 
@@ -286,19 +286,19 @@ class Record(Table):
         'zero line that is taken off every direction before it is scaled: "mean" of the samples, or "linear", their '
         "straight line of least squares; none without it"
     )
-    origin: list[str] = Field(default_factory=list)  # files and what was noticed in them, no key of a scene file
+    origin: list[str] = Field(default_factory=list)  # files of the record and notes about them; no key of a scene file
     samples: Samples  # (K, 4), s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
 
     @property
     def files(self) -> str:
-        """File names of the record, for titles and tables; suite and number of a motion of a suite."""
+        """File names of the record for titles and tables, or suite and number of its motion."""
         if isinstance(self.record, dict) and "suite" in self.record:
             normalized = ", normalized" if self.record.get("normalized") else ""
             return f"{Path(str(self.record['suite'])).name} {self.record['motion']}{normalized}"
-        return ", ".join(Path(str(name_of_file(file))).name for file in files_by_axis(self.record).values())
+        return ", ".join(Path(str(file_name(file))).name for file in files_by_axis(self.record).values())
 
 
 def kind_of_excitation(excitation: Any) -> str:
-    """Return the form that an excitation is meant to have."""
+    """Return the form that the user means an excitation to have: two frequencies or a recorded motion."""
     recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
     return EXCITATIONS[int(recorded)]

@@ -1,4 +1,4 @@
-"""The errors that pydantic finds in a scene, in the words and in the order of the scene file."""
+"""Errors that pydantic finds in a scene, in the words and in the order of the scene file."""
 
 from __future__ import annotations
 
@@ -9,17 +9,25 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from reference.support.scene_error import IS_REQUIRED, ONE_SURFACE, MisfitError, SceneError, keys_of_table, unknown_key
+from reference.support.scene_error import (
+    IS_REQUIRED,
+    ONE_SURFACE_HINT,
+    MisfitError,
+    SceneError,
+    keys_of_table,
+    unknown_key,
+)
 
-# Forms of a table or key with several: pydantic puts the one that was meant into the place of an error
+# Names of the forms of a table or key: pydantic puts the name of the intended form into the location of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
 ALONG_AXES = {  # form of keys of a body
     "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
 }  # fmt: skip
-LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list here means several surfaces
-LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}  # limit in pydantic's words
+LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list means several sliding surfaces
+# Pydantic's name of the limit
+LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
 MISSING = {
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
@@ -27,8 +35,8 @@ MISSING = {
 DAMPINGS = ("damping ratio", "damping coefficients")
 
 
-class PlacedError(ValueError):
-    """A number that is not allowed, with its place in the lists of its key."""
+class LocatedError(ValueError):
+    """A number that is not allowed, with its indices in the nested lists of its key."""
 
     def __init__(self, place: tuple[int, ...], value: float, rule: str) -> None:
         self.place, self.value, self.rule = place, value, rule
@@ -43,28 +51,28 @@ def first_scene_error(
     unread: SceneError | None = None,
 ) -> SceneError:
     """
-    Return the first error of a scene, with the others behind it, in the words of the scene file.
+    Return the first error of a scene, which carries all others, in the words of the scene file.
 
     keys: of every table, by its name. tables: of the file, for the order; pydantic's order without. unread: the error
     of a record that could not be read, which pydantic does not know.
     """
     found = invalid.errors(include_url=False)
     unknown = {error["loc"][:-1] for error in found if error["type"] == "extra_forbidden"}
-    # a misspelt key is unknown and its right name is missing: the first says more
+    # A misspelt key is unknown and its right name is missing: the first error says more.
     said = [error for error in found if not (error["type"] == "missing" and error["loc"][:-1] in unknown)]
     without_loading = any(error["type"] == "missing" and error["loc"] == ("excitation",) for error in said)
-    if without_loading:  # a record would bring its duration along
+    if without_loading:  # a record would give the duration as well
         said = [error for error in said if error["type"] != "missing" or error["loc"] != ("duration",)]
     errors = [_word_error(file, error, keys) for error in said] + ([unread] if unread else [])
     errors = list({(error.key, error.rule): error for error in errors}.values())
     if tables is not None:
-        errors.sort(key=lambda error: _place_in(tables, error.key))
+        errors.sort(key=lambda error: _position_in_file(tables, error.key))
     first, *others = errors
     return SceneError(file, first.key, first.value, first.rule, others)
 
 
-def _place_in(tables: Any, key: str) -> list[int]:
-    """Return the place of a dotted key in the file, for the order of errors; behind everything where it has none."""
+def _position_in_file(tables: Any, key: str) -> list[int]:
+    """Return the position of a dotted key in the file, by which errors are ordered; a missing key comes last."""
     place = []
     for part in key.split("."):
         if isinstance(tables, Mapping) and part in tables:
@@ -85,7 +93,7 @@ def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
     forms = EXCITATIONS + SUPPORTS + FRICTIONS + DAMPINGS
     place = [part for part in error["loc"] if part not in forms]
-    if isinstance(misfit, PlacedError):
+    if isinstance(misfit, LocatedError):
         return SceneError(file, ".".join(map(str, [*place, *misfit.place])), misfit.value, misfit.rule)
     key = ".".join(map(str, place)) or "scene"
     if error["type"] == "extra_forbidden":
@@ -96,8 +104,8 @@ def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     if error["type"] in ("dataclass_type", "model_type"):
         rule = "must be a table of keys"
-    if error["type"] in LENGTHS:
-        limit, end = LENGTHS[error["type"]]
+    if error["type"] in LENGTH_ERRORS:
+        limit, end = LENGTH_ERRORS[error["type"]]
         found, allowed = error["ctx"]["actual_length"], error["ctx"][limit]
         asked = ALONG_AXES.get(str(place[-1]), f"a list of {end} {allowed}")
         body = (
@@ -107,5 +115,5 @@ def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
     if key in LISTS_OF_SURFACES and isinstance(error["input"], list):
-        rule = f"must be a number: {ONE_SURFACE}"
+        rule = f"must be a number: {ONE_SURFACE_HINT}"
     return SceneError(file, key, error["input"], rule)

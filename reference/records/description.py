@@ -1,4 +1,4 @@
-"""What was read of a recorded motion: size, peaks, zero line, and warnings where a record is hardly meant so."""
+"""Description of a recorded motion as it was read: size, peaks, zero line, and warnings about unlikely values."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ import numpy as np
 from reference.records.samples import AXES, Array
 from reference.support.constants import GRAVITY
 
-LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.005  # g; 0.005 g is 0.05 m/s^2
-IN_G = (
+LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.005  # g: peaks outside these limits give a warning; 0.005 g is 0.05 m/s^2
+G_UNIT_QUESTION = (
     'values in g that are called m/s^2? Write [g] in the head of the file, or unit = "g" beside a plain text, '
     "which motions.csv has in its column unit"
 )
-UNEVEN = 0.01  # relative difference of steps from which a column of times counts as uneven
-FEW_SAMPLES = 100  # samples, below which no zero line is judged
-# Share of the largest velocity of a record that its last may have: at most 0.07 in 289 public records
-SHARE_OF_PEAK_VELOCITY = 0.2
-CLIPPED = 4  # equal samples in a row, at the largest size, that count as clipped
-FLAT = 1e-9  # relative difference below which samples count as equal
+MAX_STEP_VARIATION = 0.01  # relative difference of two steps above which a column of times counts as uneven
+MIN_SAMPLES = 100  # with fewer samples no zero line is judged
+# A final velocity above this share of the largest gives a warning; 289 public records have at most 0.07
+MAX_FINAL_VELOCITY_SHARE = 0.2
+MIN_CLIPPED_SAMPLES = 4  # so many equal samples in a row at the peak count as clipped
+EQUAL_SAMPLE_TOLERANCE = 1e-9  # relative difference below which two samples count as equal
 
 
 @dataclass(frozen=True)
 class DirectionRead:
     """
-    One direction of a record as read, without scale and detrend.
+    One direction of a record as read, before scale and detrend.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class DirectionRead:
 
     @property
     def mean_over_peak(self) -> float:
-        """The mean over the peak; 0 of a direction at rest."""
+        """Ratio of the mean to the peak; 0 for a direction at rest."""
         return self.mean / self.peak if self.peak > 0.0 else 0.0
 
 
@@ -96,7 +96,7 @@ class RecordDescription:
 
     @property
     def lines(self) -> list[str]:
-        """The description as lines of text."""
+        """Return the description as lines of text."""
         along = {line[0]: line[3:] for line in self.origin if line[1:3] == ": " and line[0] in AXES}
         return [
             self._head,
@@ -112,7 +112,7 @@ class RecordDescription:
 
     @property
     def short_lines(self) -> list[str]:
-        """The description as one line of text, and one for every warning."""
+        """Return the description as one line of text, and a line for each warning."""
         peaks = ", ".join(f"{one.axis} {one.peak / GRAVITY:.3g} g" for one in self.directions)
         return [f"{self._head}, peaks {peaks or 'none'}", *(f"  Warning: {line}" for line in self.warnings)]
 
@@ -134,7 +134,7 @@ class RecordDescription:
 def describe_samples(
     title: str, origin: Sequence[str], samples: Array, scale: float = 1.0, detrend: str | None = None
 ) -> RecordDescription:
-    """Return what is said of samples (K, 4), s and m/s^2, as read; scale and detrend: what the scene does with them."""
+    """Return the description of samples (K, 4), s and m/s^2, as read; scale and detrend: as the scene applies them."""
     time, steps = samples[:, 0], np.diff(samples[:, 0])
     step = float(np.median(steps))
     read, warnings = [], []
@@ -146,15 +146,15 @@ def describe_samples(
                 peak, mean = float(np.abs(values).max()), float(values.mean())
                 fastest, last = float(np.abs(velocity).max()), float(velocity[-1])
                 read.append(DirectionRead(axis, peak, mean, fastest, last, float(gains.sum())))
-                warnings += _warnings_of(read[-1], values, velocity, time, detrend)
+                warnings += _list_warnings(read[-1], values, velocity, time, detrend)
     largest = max((one.peak for one in read), default=0.0) / GRAVITY
     if largest > LARGEST_PEAK:
         warnings.append(f"the peak is {largest:.4g} g, above {LARGEST_PEAK:g} g: is the unit right?")
     elif largest < SMALLEST_PEAK:
-        warnings.append(f"the peak is {largest:.4g} g, below {SMALLEST_PEAK:g} g: {IN_G}")
+        warnings.append(f"the peak is {largest:.4g} g, below {SMALLEST_PEAK:g} g: {G_UNIT_QUESTION}")
     if samples[:, 1].any() and np.array_equal(samples[:, 1], samples[:, 2]):
         warnings.append("x and y have the same samples: one file for both?")
-    if np.ptp(steps) > UNEVEN * step:
+    if np.ptp(steps) > MAX_STEP_VARIATION * step:
         warnings.append(f"the steps are not equal: {steps.min():.4g} to {steps.max():.4g} s")
     duration = float(time[-1])
     return RecordDescription(
@@ -162,22 +162,22 @@ def describe_samples(
     )
 
 
-def _warnings_of(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
-    """Return warnings of what is hardly meant in one direction."""
+def _list_warnings(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
+    """Return warnings about values of one direction that are hardly intended."""
     warnings = []
-    # Velocity less its chord is what remains when the mean is taken off. Noise, a walk from rest, ends about as far
-    # from zero as it strays from the chord; a zero line that was left in ends far beyond: its velocity grows with time.
+    # Velocity less its chord is what remains without the mean. Noise, a walk from rest, ends about as far
+    # from zero as it strays from the chord; with a zero line left in it ends far beyond: its velocity grows with time.
     strayed = float(np.abs(velocity - velocity[-1] * time / time[-1]).max())
-    drifts = abs(one.final_velocity) > SHARE_OF_PEAK_VELOCITY * strayed
-    if drifts and len(values) >= FEW_SAMPLES and detrend is None:
+    drifts = abs(one.final_velocity) > MAX_FINAL_VELOCITY_SHARE * strayed
+    if drifts and len(values) >= MIN_SAMPLES and detrend is None:
         warnings.append(
             f"{one.axis} ends at {one.final_velocity:+.3g} m/s with a mean of {one.mean:+.3g} m/s^2 "
             f"({100.0 * abs(one.mean_over_peak):.2g} % of its peak): a zero line left in? "
             'detrend = "mean" or "linear" in [excitation] takes it off'
         )
-    at_limit = np.abs(values) >= one.peak * (1.0 - FLAT)
+    at_limit = np.abs(values) >= one.peak * (1.0 - EQUAL_SAMPLE_TOLERANCE)
     ends = np.flatnonzero(np.diff(np.concatenate([[0], at_limit.astype(int), [0]])))
     longest = int((ends[1::2] - ends[::2]).max(initial=0))
-    if longest >= CLIPPED:
+    if longest >= MIN_CLIPPED_SAMPLES:
         warnings.append(f"{one.axis} stays at its peak of {one.peak:.4g} m/s^2 for {longest} samples: clipped?")
     return warnings

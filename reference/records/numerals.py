@@ -1,4 +1,4 @@
-"""Texts, units and numbers of record files: what is read alike in every format."""
+"""Texts, units and numbers of record files, read in the same way in every format."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import re
 from collections.abc import Iterable, Sequence
 
 from reference.records.samples import MAX_ACCELERATION, RecordError
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-MAX_LINE, MAX_CELL = 1000, 100  # letters of a line that is looked at as a whole, and of a number
-MAX_HEADER_LINES = 100  # lines of which a header is sought in the first
+MAX_LINE, MAX_CELL = 1000, 100  # letters of a line that is searched, and of a number
+MAX_HEADER_LINES = 100  # a header is sought in so many lines from the first
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
 UNITS |= {"cm/s²": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "ft/s^2": 0.3048}
 UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"
@@ -20,15 +20,15 @@ SPELLED_UNIT = re.compile(
     r"(m|cm|mm|in|inch|inches|ft|feet)[ .*]?(?:/ ?\(?s(?:ec)?(?:\^?2|²| ?/ ?s(?:ec)?)\)?| ?s\^?-2)"
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
-GLUED = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
-NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
-WORD = re.compile(r"[^\W\d_]{2,}")  # letters in a row: a line with them is no line of numbers
-PLAIN = {*"0123456789+-.eE \t"}
+NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
+NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+WORD = re.compile(r"[^\W\d_]{2,}")  # two letters in a row: a line with them is no line of numbers
+NUMBER_LETTERS = {*"0123456789+-.eE \t"}
 
 
 def decode_text(content: bytes) -> str:
     """
-    Return the text of a file: UTF-8, UTF-16, or single bytes where it is neither. Raises RecordError.
+    Return the text of a file in UTF-8 or UTF-16, or else of single bytes. Raises RecordError.
 
     Only letters of ASCII carry a meaning, and the sign for a square, so that single bytes may be read as Latin 1.
     """
@@ -54,7 +54,7 @@ def quote_name(name: str) -> str:
 
 
 def unit_factor(unit: str) -> float | None:
-    """Return the factor to m/s^2 of a unit in any common spelling; None for an unknown one."""
+    """Return the factor to m/s^2 of a unit in any common spelling; None for an unknown unit."""
     text = " ".join(unit.lower().replace("**", "^").split()).strip(" .")
     if text in UNITS:
         return UNITS[text]
@@ -66,29 +66,29 @@ def unit_factor(unit: str) -> float | None:
 
 
 def parse_number(line: int, cell: str) -> float:
-    """Return a number of a line of a file. Raises RecordError."""
-    if NOT_FINITE.fullmatch(cell):
+    """Return the number in a cell of a line of a file. Raises RecordError."""
+    if NOT_FINITE_NUMBER.fullmatch(cell):
         raise RecordError(f"line {line}: {cell}: must be finite")
     if "**" in cell:
         lost = "a Fortran field that has overflowed, its value is lost: take the record from its source"
-        raise RecordError(f"line {line}: {brief(cell)}: {lost}")
+        raise RecordError(f"line {line}: {quote(cell)}: {lost}")
     if len(cell) > MAX_CELL or not NUMBER.fullmatch(cell):
-        raise RecordError(f"line {line}: {brief(cell)}: must be a number of at most {MAX_CELL} letters")
+        raise RecordError(f"line {line}: {quote(cell)}: must be a number of at most {MAX_CELL} letters")
     value = float(cell.lower().replace("d", "e"))
     if abs(value) > MAX_ACCELERATION:
-        raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")
+        raise RecordError(f"line {line}: {quote(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")
     return value
 
 
 def parse_fields(line: int, text: str) -> list[float]:
     """
-    Return the numbers of a line of Fortran fields, apart also where no blank is between them. Raises RecordError.
+    Return the numbers of a line of Fortran fields, also where no blank separates them. Raises RecordError.
 
     Two numbers without a blank are told apart by the sign of the second, where both have a decimal point.
     """
     values = []
     for cell in text.split():
-        parts = [] if NUMBER.fullmatch(cell) or len(cell) > MAX_LINE else GLUED.findall(cell)
+        parts = [] if NUMBER.fullmatch(cell) or len(cell) > MAX_LINE else NUMBER_IN_RUN.findall(cell)
         signed = all(part[0] in "+-" for part in parts[1:])
         if len(parts) > 1 and signed and "".join(parts) == cell:
             values += [parse_number(line, part) for part in parts]
@@ -98,10 +98,10 @@ def parse_fields(line: int, text: str) -> list[float]:
 
 
 def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
-    """Return the numbers of lines that have nothing else, as most files do; None where each must be looked at."""
+    """Return the numbers of lines that have nothing else, as in most files; None if each line must be examined."""
     text = " ".join(lines)
     cells = text.split()
-    if not set(text) <= PLAIN or max(map(len, cells), default=0) > MAX_CELL:
+    if not set(text) <= NUMBER_LETTERS or max(map(len, cells), default=0) > MAX_CELL:
         return None
     try:
         values = list(map(float, cells))
@@ -111,13 +111,15 @@ def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
 
 
 def holds_numbers(line: str) -> bool:
-    """Tell whether a line is one of data: not blank and without a word, which `nan` and `inf` are not."""
-    return bool(line.strip()) and not any(not NOT_FINITE.fullmatch(word) for word in WORD.findall(line[:MAX_LINE]))
+    """Return True for a line of data: not blank and without words other than `nan` and `inf`."""
+    return bool(line.strip()) and not any(
+        not NOT_FINITE_NUMBER.fullmatch(word) for word in WORD.findall(line[:MAX_LINE])
+    )
 
 
 def read_values(lines: Sequence[str], first: int, count: int, stated: str) -> tuple[list[float], tuple[str, ...]]:
     """
-    Return exactly `count` numbers of the lines, which begin with line number `first`, and notes. Raises RecordError.
+    Return exactly `count` numbers from lines that start at line number `first` of the file, and notes. RecordError.
 
     stated: what the header says of the count. Lines with words behind the last value are no data.
     """

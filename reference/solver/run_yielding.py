@@ -72,6 +72,59 @@ EVENT_TIME = 1e-12  # time before an event that is none, in units of RunSettings
 
 
 @compiled
+def try_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float, held: bool) -> int:
+    """Solve the equations of one step; return their outcome, UNSOLVED for one that is too short."""
+    if is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
+        return UNSOLVED
+    load_step(system, work, h)
+    guess_from_last_step(work, h)
+    code: int = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
+    return code
+
+
+@compiled
+def aim_at_event(
+    system: System, work: Workspace, contact: int, settings: RunSettings, h: float, aims: int, begun: bool
+) -> tuple[float, bool]:
+    """Return the share of a step after which the phase ends, 0 at its start, 1 for the whole, and if it ends there."""
+    if aims > 0:
+        shift = shift_to_event(system, work, contact, h)
+        near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMS
+        return 1.0 if shift == NEVER or near else 1.0 + shift, shift != NEVER
+    portion = locate_event(system, work, contact, h, begun)
+    reached = portion * h <= EVENT_TIME * settings.period
+    return 0.0 if reached else min(portion, 1.0), reached
+
+
+@compiled
+def accept_step(
+    system: System, work: Workspace, record: StepRecord, contact: int, h: float, angle: float, factor: float
+) -> bool:
+    """Make the end of the step the new state; return whether the travel is reached in it."""
+    work.edges[0], work.edges[1] = 0.0, 1.0
+    reached = instant_of_travel(system, work, contact, h)
+    if angle > MIN_DRIFT_ANGLE:
+        add_drift(system, work, h, angle)
+    commit_step(system, work, record, h, contact, 1)
+    commit_force(work)
+    if reached < inf:
+        work.time = reached
+        return True
+    adapt_length(work, h, factor)
+    return False
+
+
+@compiled
+def change_contact(system: System, work: Workspace, record: StepRecord, contact: int, since: float) -> int:
+    """Begin the phase that follows a phase since an instant; return its contact."""
+    if contact == ELASTIC:
+        record_stick(record, since, work.time)
+    following = PLASTIC if contact == ELASTIC else ELASTIC
+    begin_yielding(system, work, following, contact == PLASTIC)
+    return following
+
+
+@compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
     """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s, as `integrate` does."""
     # The gates of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
@@ -83,20 +136,10 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
     while remaining_time(system, work, settings) > 0.0 and work.time <= until:
         if not count_step(work, settings):
             return classify_failure(system, work, contact, settings, STEP_LIMIT)
-        h = propose_plain_length(system, work, settings)
-        if aims > 0 and h < shorter:
-            aims = 0  # the event is beyond a kink of the loading
-        h = min(h, shorter)
-        if begun:
-            h = min(h, BEGINNING * work.length)
-        held = idle > MAX_IDLE_PHASES
-        if held:
-            h = min(h, HOLDING_TIME * settings.period)
-        code = UNSOLVED
-        if not is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
-            load_step(system, work, h)
-            guess_from_last_step(work, h)
-            code = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
+        held, h = idle > MAX_IDLE_PHASES, propose_plain_length(system, work, settings)
+        aims = 0 if h < shorter else aims  # the event is beyond a kink of the loading
+        h = min(h, shorter, BEGINNING * work.length if begun else inf, HOLDING_TIME * settings.period if held else inf)
+        code = try_step(system, work, contact, settings, h, held)
         if code != SOLVED:
             if is_too_short(work, contact, settings, h, code):
                 return classify_failure(system, work, contact, settings, code)
@@ -113,39 +156,17 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
         if not error <= settings.tolerance:
             work.length, shorter, aims = min(MAX_SHORTENING, factor) * h, inf, 0
             continue
-        ends, reached_event = False, False
-        if aims > 0:
-            shift = shift_to_event(system, work, contact, h)
-            near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMS
-            if shift != NEVER and not near:
-                shorter, aims = h * (1.0 + shift), aims + 1
-                continue
-            ends = shift != NEVER
-        elif not held:
-            portion = locate_event(system, work, contact, h, begun)
-            reached_event = portion * h <= EVENT_TIME * settings.period
-            ends = reached_event
-            if not ends and portion < 1.0:
-                shorter, aims = h * portion, 1
-                continue
-        if not reached_event:
-            work.edges[0], work.edges[1] = 0.0, 1.0
-            reached = instant_of_travel(system, work, contact, h)
-            if angle > MIN_DRIFT_ANGLE:
-                add_drift(system, work, h, angle)
-            commit_step(system, work, record, h, contact, 1)
-            commit_force(work)
-            if reached < inf:
-                work.time = reached
+        share, ends = (1.0, False) if held else aim_at_event(system, work, contact, settings, h, aims, begun)
+        if share != 0.0 and share != 1.0:
+            shorter, aims = h * share, aims + 1
+            continue
+        if share > 0.0:
+            if accept_step(system, work, record, contact, h, angle, factor):
                 return TRAVEL
-            adapt_length(work, h, factor)
             idle, begun, shorter, aims = 0, aims == 0 and h == shorter, inf, 0
         if ends:
-            if contact == ELASTIC:
-                record_stick(record, since, work.time)
-            following = PLASTIC if contact == ELASTIC else ELASTIC
-            begin_yielding(system, work, following, contact == PLASTIC)
-            contact, idle, begun, shorter, aims, since = following, idle + 1, True, inf, 0, work.time
+            contact = change_contact(system, work, record, contact, since)
+            idle, begun, shorter, aims, since = idle + 1, True, inf, 0, work.time
     if contact == ELASTIC:
         record_stick(record, since, work.time)
     return SOLVED

@@ -157,7 +157,7 @@ def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
         "friction": scene.friction_coefficient if scene.lubricated else dry.slow,
         "rise": dry.fast - dry.slow if dry.varies else 0.0,
         "rate": dry.rate if dry.varies else 0.0,
-        "exponent": dry.exponent if dry.by_load and not smooth else None,
+        "exponent": dry.exponent if dry.depends_on_load and not smooth else None,
         "stiffness": float(dry.stiffness / mass),
         "v_reg": 0.0 if v_reg is None else float(v_reg),
         "heat": np.array([] if heat is None else [heat.initial, heat.rise * mass, heat.cover]),

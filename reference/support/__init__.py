@@ -1,1 +1,1 @@
-"""Tools that all packages share: checks of arguments, errors, files, how commands end, builds, drawings, tables."""
+"""Tools that all packages share: checks of arguments, errors, files, command endings, builds, drawings, tables."""

@@ -1,4 +1,4 @@
-"""Checks of the arguments of public functions: each raises one line that states what is wrong and the rule."""
+"""Checks of the arguments of public functions, which raise one line that states what is wrong and the rule."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Rest = ParamSpec("Rest")
+Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
-LONGEST = 80  # letters of a value in an error
-MISSING = object()  # stands for an argument that is not given
+MAX_QUOTED_LETTERS = 80  # an error quotes at most so many letters of a value
+MISSING = object()  # stands for an argument that the caller has not given
 
 
 @dataclass(frozen=True)
 class Range:
-    """Finite numbers from `lowest` to `highest`, both included, in `unit`; inf as well where it is `or_infinite`."""
+    """Finite numbers from `lowest` to `highest`, both included, in `unit`; with `or_infinite` also inf."""
 
     lowest: float
     highest: float
@@ -32,12 +32,12 @@ class Range:
 
     @property
     def text(self) -> str:
-        """The range as it stands in a table."""
+        """The range as a table shows it."""
         return f"{self.lowest:g} to {self.highest:g}{', or inf' if self.or_infinite else ''}"
 
     @property
     def rule(self) -> str:
-        """The range as the end of an error message."""
+        """The range as the end of an error message states it."""
         unit = f" {self.unit}" if self.unit else ""
         if self.or_infinite:
             return f"must be positive, from {self.lowest:g} to {self.highest:g}{unit}, or inf"
@@ -49,17 +49,19 @@ class Range:
         return bool(self.lowest <= value <= self.highest) or (self.or_infinite and value == math.inf)
 
 
-def takes(kind: type | UnionType, rule: str) -> Callable[[Callable[Rest, Result]], Callable[Rest, Result]]:
-    """Have a function raise TypeError, one line that ends with `rule`, if its first argument is not a `kind`."""
+def require_type(
+    kind: type | UnionType, rule: str
+) -> Callable[[Callable[Parameters, Result]], Callable[Parameters, Result]]:
+    """Return a decorator that raises TypeError, a line that ends with `rule`, if the first argument is not a `kind`."""
 
-    def with_check(function: Callable[Rest, Result]) -> Callable[Rest, Result]:
+    def with_check(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
         name = next(iter(signature(function).parameters))
 
         @wraps(function)
-        def check_and_call(*args: Rest.args, **kwargs: Rest.kwargs) -> Result:
+        def check_and_call(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
             first = args[0] if args else kwargs.get(name, MISSING)
             if first is not MISSING and not isinstance(first, kind):
-                raise TypeError(f"{name} = {brief(first)}: {rule}")
+                raise TypeError(f"{name} = {quote(first)}: {rule}")
             return function(*args, **kwargs)
 
         return check_and_call
@@ -68,7 +70,7 @@ def takes(kind: type | UnionType, rule: str) -> Callable[[Callable[Rest, Result]
 
 
 def as_float(value: Any) -> float:
-    """Return a number as a float: inf for one beyond double precision, NaN for what is no number."""
+    """Return a number as a float: inf for one beyond double precision, NaN for anything that is no number."""
     try:
         return float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
     except OverflowError:
@@ -79,7 +81,7 @@ def check_number(name: str, value: Any, allowed: Range) -> float:
     """Return `value` as a float. Raises ValueError, one line, if it is not a number within the range."""
     number = as_float(value)
     if number not in allowed:
-        raise ValueError(f"{name} = {brief(value)}: {allowed.rule}")
+        raise ValueError(f"{name} = {quote(value)}: {allowed.rule}")
     return number
 
 
@@ -87,29 +89,29 @@ def check_whole_number(name: str, value: Any, allowed: Range) -> int:
     """Return `value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
     if not isinstance(value, Integral) or isinstance(value, bool) or as_float(value) not in allowed:
         rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
-        raise ValueError(f"{name} = {brief(value)}: {rule}")
+        raise ValueError(f"{name} = {quote(value)}: {rule}")
     return int(value)
 
 
 def check_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
     """Return `value` if it is one of the texts `allowed`. Raises ValueError, one line."""
     if not (isinstance(value, str) and value in allowed):
-        raise ValueError(f"{name} = {brief(value)}: must be one of {', '.join(allowed)}")
+        raise ValueError(f"{name} = {quote(value)}: must be one of {', '.join(allowed)}")
     return value
 
 
 def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
-    """Return `values` as a contiguous array of numbers, or raise ValueError, one line that ends with `rule`."""
+    """Return `values` as a contiguous array of numbers. Raises ValueError, one line that ends with `rule`."""
     if _is_masked(values):
         raise ValueError(f"{name}: has masked entries: {rule}")
     try:
         array = np.asarray(values)
-    except ValueError:  # uneven rows
+    except ValueError:  # the rows have different lengths
         array = np.empty(0, dtype=object)
-    except MemoryError:  # what claims to be longer than the memory holds
+    except MemoryError:  # the values claim to be longer than the memory
         raise ValueError(f"{name}: takes more memory than there is: {rule}") from None
     if array.dtype.kind not in "iuf":
-        raise ValueError(f"{name} = {brief(values)}: must be numbers: {rule}")
+        raise ValueError(f"{name} = {quote(values)}: must be numbers: {rule}")
     array = np.ascontiguousarray(array, dtype=float)
     if finite and not np.isfinite(array).all():
         raise ValueError(f"{name}: must be finite: {rule}")
@@ -117,23 +119,24 @@ def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Ar
 
 
 def _is_masked(values: Any) -> bool:
-    """Return True if an array, or one within lists, has masked entries."""
+    """Return True if an array, or an array within lists, has masked entries."""
     if isinstance(values, list | tuple):
         return any(map(_is_masked, values))
     return bool(np.ma.is_masked(values))
 
 
 def name_some(names: Sequence[str], most: int) -> str:
-    """Return the first `most` names, and how many more there are."""
+    """Return the first `most` names as text, with the number of further names."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(names[:most])}{more}"
 
 
-def brief(value: Any) -> str:
-    """Return the `repr` of a value in one line of at most LONGEST letters."""
+def quote(value: Any) -> str:
+    """Return the `repr` of a value in one line of at most MAX_QUOTED_LETTERS letters."""
     try:
-        text = repr(value[: 2 * LONGEST] if isinstance(value, str) else value)
-    except (ValueError, RecursionError):  # an integer of more digits than Python prints, tables thousands deep
+        text = repr(value[: 2 * MAX_QUOTED_LETTERS] if isinstance(value, str) else value)
+    # An integer has more digits than Python prints, or tables are nested thousands deep
+    except (ValueError, RecursionError):
         text = f"<{type(value).__name__}>"
     text = " ".join(text.split())
-    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    return text if len(text) <= MAX_QUOTED_LETTERS else text[: MAX_QUOTED_LETTERS - 3] + "..."

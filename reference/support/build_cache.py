@@ -1,5 +1,5 @@
 """
-Functions that numba compiles and keeps on disk, in the user's cache, under a hash of the source they are made from.
+Functions that numba compiles and caches on disk, in the user's cache, under a hash of their source files.
 
 Numba looks at the file of a function alone when it decides whether a build is still good, not at what it calls in other
 files. A build that belongs to all of these sources together cannot go stale. Nothing is ever written into the installed
@@ -24,13 +24,13 @@ import numba
 import platformdirs
 from numba.core.compiler import Compiler
 
-NAME = "phase-resonance"
+CACHE_NAME = "phase-resonance"
 njit: Any = numba.njit
 config: Any = numba.config
 
 
 class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]
-    """Compiler of numba without garbage collection: nearly all that it makes is in use to its end."""
+    """Compiler of numba without garbage collection: nearly all objects that it makes stay in use until its end."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
@@ -45,7 +45,7 @@ class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]
 
 def build_folder(sources: Path) -> Path | None:
     """Return the folder for builds of `sources`, below NUMBA_CACHE_DIR or in the user's cache; None without both."""
-    # Numba's own setting is not read: a file in the working directory may have made it, and builds are run.
+    # Numba's own setting is ignored: a file in the working directory may have set it, and cached builds are executed.
     named = os.environ.get("NUMBA_CACHE_DIR")
     parent = Path(named) if named else user_cache()
     if parent is None:
@@ -57,7 +57,7 @@ def build_folder(sources: Path) -> Path | None:
 
 
 class _AnnouncingCompiler(_CompilerWithoutCollection):
-    """Compiler that announces a long compilation in the user's own process; the command line shows those of workers."""
+    """Compiler that announces a long compilation in the user's process; in workers the command line announces it."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
@@ -68,7 +68,7 @@ class _AnnouncingCompiler(_CompilerWithoutCollection):
 
 def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
-    Decorate a function that numba compiles and keeps on disk.
+    Return a decorator that compiles a function with numba and caches it on disk.
 
     sources: all that it calls, usually `__file__`; slow: whether a line on standard error says that it is compiled.
     """
@@ -89,13 +89,13 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
 
 @cache
 def user_cache() -> Path | None:
-    """Return the user's cache of this project, else a private temporary directory; None without both."""
-    return _find_writable(platformdirs.user_cache_path(NAME, appauthor=False)) or _private_temporary()
+    """Return the user's cache folder of this project, else a private temporary directory; None if there is neither."""
+    return _find_writable(platformdirs.user_cache_path(CACHE_NAME, appauthor=False)) or _private_temporary()
 
 
 def _find_writable(folder: Path) -> Path | None:
     try:
-        if folder.is_absolute():  # not where the home directory is unknown
+        if folder.is_absolute():  # the path is relative where the home directory is unknown
             folder.mkdir(parents=True, exist_ok=True)
             return folder if os.access(folder, os.W_OK) else None
     except OSError:
@@ -104,9 +104,9 @@ def _find_writable(folder: Path) -> Path | None:
 
 
 def _private_temporary() -> Path | None:
-    """Return a temporary directory of the user alone: nothing that another user put there in advance is loaded."""
+    """Return a temporary directory of this user alone, so that no file in it comes from another user."""
     user = os.getuid() if hasattr(os, "getuid") else None
-    folder = Path(tempfile.gettempdir()) / (NAME if user is None else f"{NAME}-{user}")
+    folder = Path(tempfile.gettempdir()) / (CACHE_NAME if user is None else f"{CACHE_NAME}-{user}")
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
         status = folder.lstat()

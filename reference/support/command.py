@@ -1,5 +1,5 @@
 """
-How every command ends: its exit code, one line for whatever went wrong, and never a traceback on the terminal.
+Ending of every command: its exit code, one line for any error, and never a traceback on the terminal.
 
 Codes that are common to all commands: 2 for wrong input; 3 for an unexpected error, whose traceback goes to a file,
 and for a file or an output that cannot be written; 128 + number for a signal, 130 for Ctrl-C; 141 if whoever read the
@@ -24,12 +24,12 @@ from typing import Any, NoReturn, TextIO, cast
 from reference.support.scene_error import SceneError
 from reference.support.version import __version__
 
-UNEXPECTED, CLOSED = 3, 141
+UNEXPECTED_ERROR_CODE, CLOSED_OUTPUT_CODE = 3, 141
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 class StoppedError(KeyboardInterrupt):
-    """The run was asked to end by signal `number`."""
+    """Interrupt of the run by the signal `number`."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__(number)
@@ -37,7 +37,7 @@ class StoppedError(KeyboardInterrupt):
 
 
 class OutputError(Exception):
-    """Standard output takes nothing more. No OSError: it must not be taken for a file that cannot be written."""
+    """Error of standard output, which takes no more text; no OSError, which would mean an unwritable file."""
 
     def __init__(self, error: OSError) -> None:
         super().__init__(error.strerror or str(error))
@@ -49,14 +49,14 @@ class UsageError(ValueError):
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """A parser that raises UsageError in place of printing how the command is used; options are not shortened."""
+    """Parser that raises UsageError instead of printing the usage, and permits no shortened options."""
 
     def __init__(self, prog: str, description: str) -> None:
         super().__init__(prog=prog, description=description, allow_abbrev=False)
         self.add_argument("--version", action="version", version=f"phase-resonance {__version__}")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse words; "--" is the value of no option, which argparse would take for an empty list."""
+        """Return parsed words; "--" is no value of an option, for which argparse would take it as empty."""
         words = list(sys.argv[1:] if args is None else args)
         options = words[: words.index("--")] if "--" in words else words
         for option, _, value in (word.partition("=") for word in options if word.startswith("--")):
@@ -65,18 +65,18 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError, one line."""
+        """Raise UsageError with one line."""
         raise UsageError(f"command line: {message} (--help lists the options)")
 
 
 def run_command(main: Callable[[], int]) -> NoReturn:
     """Run `main`, a command of this project, and end the process with its exit code."""
-    if sys.stdout is None:  # closed by whoever started the command
+    if sys.stdout is None:  # whoever started the command has closed it
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
     output = sys.stdout
     if isinstance(output, io.TextIOWrapper):
         output.reconfigure(errors="backslashreplace")
-    sys.stdout = cast(TextIO, _Output(output))
+    sys.stdout = cast(TextIO, _CheckedStdout(output))
     try:
         with stop_on_signals():
             code = _exit_code_of(main)
@@ -88,9 +88,9 @@ def run_command(main: Callable[[], int]) -> NoReturn:
 
 @contextmanager
 def stop_on_signals() -> Iterator[None]:
-    """Raise StoppedError in the block at the first signal that ends a process, unless it is ignored."""
+    """Raise StoppedError in the block at the first signal that would end the process and is not ignored."""
     if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread may handle signals
+        yield  # only the main thread can handle signals
         return
     before = {number: signal.getsignal(number) for number in SIGNALS}
     heard = [number for number in SIGNALS if before[number] is not signal.SIG_IGN]
@@ -109,8 +109,8 @@ def stop_on_signals() -> Iterator[None]:
             signal.signal(number, before[number])
 
 
-class _Output:
-    """Standard output that says by an error of its own that it cannot be written."""
+class _CheckedStdout:
+    """Standard output that raises OutputError where it cannot be written."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -132,7 +132,7 @@ class _Output:
 
 
 def _exit_code_of(main: Callable[[], int]) -> int:
-    """Return the exit code of `main`, whatever it does."""
+    """Return the exit code of `main`, also after any exception."""
     try:
         for word in sys.argv[1:]:
             if any("\ud800" <= letter <= "\udfff" for letter in word):
@@ -140,8 +140,8 @@ def _exit_code_of(main: Callable[[], int]) -> int:
                 return 2
         try:
             code = main()
-        except SystemExit as end:  # argparse raises it
-            code = end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED
+        except SystemExit as end:  # argparse raises SystemExit
+            code = end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED_ERROR_CODE
         sys.stdout.flush()
         return code
     except SceneError as error:
@@ -152,15 +152,15 @@ def _exit_code_of(main: Callable[[], int]) -> int:
         return 128 + int(getattr(stop, "number", signal.SIGINT))
     except OutputError as error:
         _print_line(f"standard output cannot be written: {error}: the command ended early")
-        return CLOSED if error.closed else UNEXPECTED
+        return CLOSED_OUTPUT_CODE if error.closed else UNEXPECTED_ERROR_CODE
     except Exception as error:
         what = " ".join(f"{type(error).__name__}: {error}".split())
         _print_line(f"unexpected error: {what[:500]}; {_write_details()}")
-        return UNEXPECTED
+        return UNEXPECTED_ERROR_CODE
 
 
 def _write_details() -> str:
-    """Write the traceback of the error at hand to a file; return where it is."""
+    """Write the traceback of the present exception to a file; return the path of the file."""
     text = f"{sys.argv}\n{sys.version}\n{traceback.format_exc()}"
     try:
         handle, name = tempfile.mkstemp(prefix="phase-resonance-", suffix=".log")
@@ -172,12 +172,12 @@ def _write_details() -> str:
 
 
 def _print_line(line: str) -> None:
-    with suppress(Exception):  # nobody listens
+    with suppress(Exception):  # nobody may be reading the terminal
         print(line, file=sys.stderr, flush=True)
 
 
 def _flush_at_last(output: TextIO) -> None:
-    """Leave nothing for the interpreter to complain about at its end."""
+    """Flush the output, or close it, so that the interpreter has no error to print at its end."""
     for stream in (output, sys.stderr):
         try:
             if stream is not None:

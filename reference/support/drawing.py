@@ -14,25 +14,25 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
-MAX_TIME_POINTS = 20_000  # points of a drawn line
+COLORS = "cividis"  # readable alike with and without color vision deficiency, and in print
+MAX_TIME_POINTS = 20_000  # a drawn line has at most so many points
 
 
 def escape_for_matplotlib(text: str) -> str:
-    """Escape a text of a scene for matplotlib, which would read dollar signs as the marks of a formula."""
+    """Return a text of a scene for matplotlib, with dollar signs escaped that would begin a formula."""
     return text.replace("$", r"\$")
 
 
 def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: str, axes: Axes | None) -> Axes:
     """
-    Draw heights (A, B) over alpha_1 (A,) and alpha_2 (B,), rad, under a title, with a color bar that has the label.
+    Draw heights (A, B) over alpha_1 (A,) and alpha_2 (B,), rad, with a title and a color bar with the label.
 
     A surface on axes with the projection "3d", a map on other ones.
     """
     axes = _new_axes("3d") if axes is None else axes
     if axes.name == "3d":
         first, second = np.meshgrid(*grid, indexing="ij")
-        ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # its faces have means of their corners
+        ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # the colors of faces are means of their corners
         image = axes.plot_surface(first, second, height, cmap=COLORS, rcount=200, ccount=200, linewidth=0.2, **ends)  # type: ignore[attr-defined]
         axes.set_zlabel(label)  # type: ignore[attr-defined]
         axes.figure.colorbar(image, ax=axes, label=label, shrink=0.6, pad=0.12)
@@ -40,7 +40,7 @@ def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: st
         image = axes.pcolormesh(*grid, height.T, cmap=COLORS, shading="nearest")
         axes.figure.colorbar(image, ax=axes, label=label)
         axes.set_aspect("equal")
-    pad = 10.0 if axes.name == "3d" else 4.0  # points: tick labels of a surface are wide
+    pad = 10.0 if axes.name == "3d" else 4.0  # points: the tick labels of a surface are wide
     axes.set_xlabel(r"$\alpha_1$, rad", labelpad=pad)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=pad)
     for axis, phases in zip((axes.xaxis, axes.yaxis), grid):
@@ -50,8 +50,8 @@ def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: st
 
 
 def _mark_quarter_turns(axis: Axis, span: float) -> None:
-    """Set the ticks of an axis in rad to multiples of pi / 2, written as "π/2"; none of them on a short axis."""
-    from matplotlib.ticker import FuncFormatter, MultipleLocator  # loaded on first use
+    """Set the ticks of an axis in rad to multiples of pi / 2, written as "π/2"; no ticks on a short axis."""
+    from matplotlib.ticker import FuncFormatter, MultipleLocator  # matplotlib is loaded on first use
 
     if 0.9 * np.pi <= span <= 8.0 * np.pi:
         axis.set_major_locator(MultipleLocator(0.5 * np.pi))
@@ -60,7 +60,7 @@ def _mark_quarter_turns(axis: Axis, span: float) -> None:
 
 def write_half_turns(phase: float) -> str:
     """
-    Write a multiple of pi / 2.
+    Return the text of a multiple of pi / 2.
 
     >>> [write_half_turns(quarters * np.pi / 2.0) for quarters in (-1, 0, 1, 2, 3, 4)]
     ['-π/2', '0', 'π/2', 'π', '3π/2', '2π']
@@ -90,7 +90,7 @@ def draw_motion(
 
 
 def _new_axes(projection: str | None) -> Axes:
-    import matplotlib.pyplot as plt  # loaded on first use
+    import matplotlib.pyplot as plt  # matplotlib is loaded on first use
 
     axes: Axes = plt.figure(layout="constrained").add_subplot(projection=projection)
     return axes

@@ -1,5 +1,5 @@
 """
-Files and directories that appear whole or not at all, and never in the place of what somebody else wrote; and how a
+Files and directories that appear whole or not at all, and replace nothing that somebody else wrote; and reading of a
 file that somebody else may have written is read.
 
 A file is written under a temporary name in the folder of its place and renamed. A directory is written in a staging
@@ -26,11 +26,11 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-# Prefix of temporary files and staging directories; a file of the user may have it, too: MARK decides
-TEMPORARY = ".phase-resonance-"
-MARK = "staging.json"  # file in a staging directory that says what it is and for which place
-CHUNK = 2**20  # bytes read at once
-NEW = "new"  # directory in a staging directory, for the files that are being written
+# Prefix of temporary files and staging directories; a user's file may have it as well, so that MARK decides
+TEMPORARY_PREFIX = ".phase-resonance-"
+MARK_FILE = "staging.json"  # file in a staging directory that names the program and the path for which it was made
+CHUNK_BYTES = 2**20  # bytes read at once
+NEW = "new"  # directory in a staging directory for the files being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
@@ -45,7 +45,7 @@ def read_file(file: str | Path, largest: int) -> bytes:
             raise OSError(errno.EINVAL, "not a regular file", str(file))
         content = bytearray()
         size = status.st_size
-        while size <= largest and (part := os.read(handle, CHUNK)):  # it may grow meanwhile
+        while size <= largest and (part := os.read(handle, CHUNK_BYTES)):  # the file may grow while it is read
             content += part
             size = len(content)
         if size > largest:
@@ -56,7 +56,7 @@ def read_file(file: str | Path, largest: int) -> bytes:
 
 
 def write_atomically(file: Path, content: bytes) -> None:
-    """Write a file of our own, whole or not at all, in place of the one that is there. Raises OSError."""
+    """Write a file of this program, whole or not at all, in place of the old one. Raises OSError."""
     part = _write_part(file, content)
     try:
         os.replace(part, file)
@@ -66,7 +66,7 @@ def write_atomically(file: Path, content: bytes) -> None:
 
 
 def write_new(file: Path, content: bytes) -> Path:
-    """Write a file under the name given, or the next free one (`run-2.gif`); the file written. Raises OSError."""
+    """Write a file under this name, or the next free one such as `run-2.gif`; return its path. Raises OSError."""
     part = _write_part(file, content)
     try:
         for place in iterate_names(file):
@@ -79,7 +79,7 @@ def write_new(file: Path, content: bytes) -> Path:
 
 
 def iterate_names(place: Path) -> Iterator[Path]:
-    """Iterate over `place` itself, then the same name numbered from 2, before its suffix."""
+    """Iterate over `place` itself, then the same name with numbers from 2 before its suffix."""
     yield place
     number = 2
     while True:
@@ -89,7 +89,7 @@ def iterate_names(place: Path) -> Iterator[Path]:
 
 @contextmanager
 def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
-    """Hold the lock of a directory for the block; yields whether it is held, which may fail without `wait` or locks."""
+    """Hold the lock of a directory for the block; yield whether it is held, which may fail without `wait` or locks."""
     handle = -1
     try:
         if fcntl is not None:
@@ -97,7 +97,7 @@ def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
                 handle = os.open(folder, os.O_RDONLY)
         held = False
         if handle >= 0:
-            with suppress(OSError):  # held, or a file system without locks
+            with suppress(OSError):  # the lock is held by another process, or the file system has no locks
                 fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
                 held = True
         yield held
@@ -108,11 +108,11 @@ def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
 
 @contextmanager
 def staging_directory(place: Path) -> Iterator[Path]:
-    """Make a locked directory next to `place` for the block, with an empty directory NEW in it."""
-    folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY))
+    """Make a locked directory next to `place` for the block, with an empty directory NEW in it; yield its path."""
+    folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY_PREFIX))
     with hold_lock(folder, wait=False):
         try:
-            write_atomically(folder / MARK, _content_of_mark(folder, place))
+            write_atomically(folder / MARK_FILE, _content_of_mark(folder, place))
             (folder / NEW).mkdir()
             yield folder
         finally:
@@ -120,19 +120,19 @@ def staging_directory(place: Path) -> Iterator[Path]:
 
 
 def find_abandoned_staging(place: Path) -> Iterator[Path]:
-    """Iterate over the staging directories of `place` that belong to no living process, each locked meanwhile."""
+    """Iterate over staging directories of `place` whose process has ended, each locked for the loop's body."""
     with suppress(OSError):
         for folder in sorted(place.parent.iterdir()):
-            if folder.name.startswith(TEMPORARY) and not folder.is_symlink() and _is_marked(folder, place):
+            if folder.name.startswith(TEMPORARY_PREFIX) and not folder.is_symlink() and _is_marked(folder, place):
                 with hold_lock(folder, wait=False) as held:
                     if held:
                         yield folder
 
 
 def clear_staging(folder: Path) -> None:
-    """Remove a staging directory of our own, but nothing that somebody else has put there."""
+    """Remove a staging directory of this program, without anything that somebody else has put into it."""
     shutil.rmtree(folder / NEW, ignore_errors=True)
-    _remove_file(folder / MARK)
+    _remove_file(folder / MARK_FILE)
     with suppress(OSError):
         folder.rmdir()
 
@@ -143,14 +143,14 @@ def _content_of_mark(folder: Path, place: Path) -> bytes:
 
 def _is_marked(folder: Path, place: Path) -> bool:
     try:
-        return read_file(folder / MARK, CHUNK) == _content_of_mark(folder, place)
+        return read_file(folder / MARK_FILE, CHUNK_BYTES) == _content_of_mark(folder, place)
     except OSError:
         return False
 
 
 def _write_part(file: Path, content: bytes) -> Path:
-    """Write a temporary file with the content next to `file` and return it. Raises OSError."""
-    part = file.with_name(f"{TEMPORARY}{os.getpid()}-{secrets.token_hex(6)}")
+    """Write a temporary file with the content next to `file`; return its path. Raises OSError."""
+    part = file.with_name(f"{TEMPORARY_PREFIX}{os.getpid()}-{secrets.token_hex(6)}")
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
         with os.fdopen(handle, "wb") as stream:
@@ -162,12 +162,12 @@ def _write_part(file: Path, content: bytes) -> Path:
 
 
 def _move_to_free(part: Path, place: Path) -> None:
-    """Give a temporary file its name. Raises FileExistsError if something has it, even since a moment ago."""
+    """Give a temporary file its name. Raises FileExistsError if another file has just taken the name."""
     try:
         os.link(part, place)
     except FileExistsError:
         raise
-    except OSError:  # a file system without hard links: an empty file takes the name first
+    except OSError:  # the file system has no hard links: an empty file takes the name first
         os.close(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         os.replace(part, place)
 

@@ -1,4 +1,4 @@
-"""Values from Python as a scene file has them, and as a hash takes them."""
+"""Conversion of Python values to those of a scene file, and to those that can be hashed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 def as_plain_values(value: Any) -> Any:
     """
-    Return lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
+    Return lists and numbers of Python in place of arrays, tuples and numbers of NumPy, at any depth of lists.
 
     >>> as_plain_values((np.float64(0.5), np.arange(2)))
     [0.5, [0, 1]]
@@ -22,7 +22,7 @@ def as_plain_values(value: Any) -> Any:
 
 def as_hashable(value: Any) -> Hashable:
     """
-    Return tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
+    Return tuples and frozen sets in place of lists and tables, at any depth; equal values give equal ones.
 
     >>> hash(as_hashable({"a": [1.0]})) == hash(as_hashable({"a": [1]}))
     True

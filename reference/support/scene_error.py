@@ -1,4 +1,4 @@
-"""What is said of a wrong scene: one line with file, key, value and rule."""
+"""Errors of a wrong scene: one line with file, key, value and rule."""
 
 from __future__ import annotations
 
@@ -6,36 +6,41 @@ from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
-MAX_LETTERS = 300  # longest path or key that an error shows
-NEAR = 0.7  # ratio of letters that two spellings of one word share: words of other meanings share less
-IS_REQUIRED, IS_MISSING = "this key is required", "the table ["  # rules of what the file does not have
-YIELDS = (
+MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
+MIN_SPELLING_SIMILARITY = (
+    0.7  # spellings of one word share at least this ratio of their letters; words of other meanings share less
+)
+# Beginnings of rules about a missing key and a missing table
+IS_REQUIRED, IS_MISSING = "this key is required", "the table ["
+YIELDING_HINT = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
     "or yield_displacement = 0.001, m"
 )
-ONE_SURFACE = (
+ONE_SURFACE_HINT = (
     "one sliding surface is modeled: write radius and friction as one number each; two equal surfaces are one of the "
     "sum of their effective radii, a triple pendulum is not modeled (docs/guide/building.md)"
 )
-NO_DAMPER = (
+NO_DAMPER_HINT = (
     "the isolator has no damper but its friction: remove this key, or write lubrication in place of friction; "
     "damping belongs to a body, for the link below it"
 )
-EFFECTIVE = "write radius, the effective radius rho = R - r of the one sliding surface, m"
-FOLLOWS = "follows from radius, friction and the weight: remove this key"
-HINTS = {  # what a key of other programs is here, by its letters and digits, in one table or in every table
+EFFECTIVE_RADIUS_HINT = "write radius, the effective radius rho = R - r of the one sliding surface, m"
+DERIVED_KEY_HINT = "follows from radius, friction and the weight: remove this key"
+HINTS = {  # meaning here of keys of other programs, by their letters and digits, in one table or in any
     **dict.fromkeys(("bearings", "isolators"), "did you mean supports?"),
-    **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), YIELDS),
-    **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), YIELDS),
-    **dict.fromkeys(("triple", "double", "surfaces", "radii", "r1", "r2", "l1", "l2", "mu1", "mu2"), ONE_SURFACE),
-    **dict.fromkeys(("radius1", "radius2", "friction1", "friction2", "doublependulum", "triplependulum"), ONE_SURFACE),
-    **dict.fromkeys(("isolator.damping", "isolator.dampingratio", "isolator.zeta", "isolator.c"), NO_DAMPER),
+    **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), YIELDING_HINT),
+    **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), YIELDING_HINT),
+    **dict.fromkeys(("triple", "double", "surfaces", "radii", "r1", "r2", "l1", "l2", "mu1", "mu2"), ONE_SURFACE_HINT),
     **dict.fromkeys(
-        ("effectiveradius", "reff", "radiusofcurvature", "curvature", "effectivelength", "leff"), EFFECTIVE
+        ("radius1", "radius2", "friction1", "friction2", "doublependulum", "triplependulum"), ONE_SURFACE_HINT
     ),
-    **dict.fromkeys(("isolator.stiffness", "keff", "effectivestiffness", "k2", "effectivedamping"), FOLLOWS),
+    **dict.fromkeys(("isolator.damping", "isolator.dampingratio", "isolator.zeta", "isolator.c"), NO_DAMPER_HINT),
+    **dict.fromkeys(
+        ("effectiveradius", "reff", "radiusofcurvature", "curvature", "effectivelength", "leff"), EFFECTIVE_RADIUS_HINT
+    ),
+    **dict.fromkeys(("isolator.stiffness", "keff", "effectivestiffness", "k2", "effectivedamping"), DERIVED_KEY_HINT),
     **dict.fromkeys(("isolator.mu", "frictioncoefficient", "coefficientoffriction"), "write friction, without unit"),
     **dict.fromkeys(("displacementcapacity", "dmax", "umax", "maxdisplacement"), "write travel, m"),
     **dict.fromkeys(("bodies.dampingratio", "bodies.zeta", "bodies.xi"), "write damping, as a ratio of critical"),
@@ -56,7 +61,7 @@ HINTS = {  # what a key of other programs is here, by its letters and digits, in
 
 class SceneError(ValueError):
     """
-    A scene that cannot be used. `str(error)` is one line: file, key, value, rule, and those of the other errors.
+    Error for a scene that cannot be used; `str(error)` is one line: file, key, value, rule, and further errors.
 
     Parameters
     ----------
@@ -79,15 +84,16 @@ class SceneError(ValueError):
     @property
     def _sentence(self) -> str:
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
-        value = "" if absent else f" = {brief(self.value)}"
+        value = "" if absent else f" = {quote(self.value)}"
         return f"{one_line(self.key)}{value}: {self.rule}"
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
-        return SceneError, (self.file, self.key, self.value, self.rule, self.others)  # worker processes send it home
+        # Worker processes send the error to the main process
+        return SceneError, (self.file, self.key, self.value, self.rule, self.others)
 
 
 class MisfitError(ValueError):
-    """Values that are wrong together, found after each was valid alone; `first_scene_error` words it."""
+    """Error for values that are wrong together though each is valid alone; `first_scene_error` words it."""
 
     def __init__(self, key: str, value: Any, rule: str) -> None:
         self.key, self.value, self.rule = key, value, rule
@@ -95,28 +101,28 @@ class MisfitError(ValueError):
 
 
 def one_line(text: str) -> str:
-    """Return the text, cut to MAX_LETTERS letters, or its Python literal if it would break the line."""
+    """Return a text, cut to MAX_LETTERS letters, or as a Python literal if it would break the line."""
     if len(text) > MAX_LETTERS:
         text = f"{text[: MAX_LETTERS - 3]}..."
     return text if text.isprintable() else repr(text)
 
 
 def printable(text: str) -> str:
-    """Return a name with every control character, which a terminal would obey, replaced."""
+    """Return a name with all control characters replaced, which a terminal would obey."""
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
 
 
 def keys_of_table(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
-    """Return the keys of a table: under its name, or under "*" where its name is free; none of what is no table."""
+    """Return the keys of a table, listed under its name or under "*" if its name is free; none for any other."""
     return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())
 
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
-    """Return the error for the dotted `key` where the keys `valid` belong: its meaning here or the nearest key."""
+    """Return the error for an unknown dotted `key` where `valid` keys belong: its meaning here, or the nearest key."""
     *table, last = [part for part in key.split(".") if not part.isdecimal()] or [""]
     letters = "".join(filter(str.isalnum, last[:MAX_LETTERS].lower()))
     if hint := HINTS.get(f"{'.'.join(table)}.{letters}", HINTS.get(letters)):
         return SceneError(file, key, value, f"unknown key; {hint}")
-    nearest = get_close_matches(last[:MAX_LETTERS].lower(), valid, n=2, cutoff=NEAR)
+    nearest = get_close_matches(last[:MAX_LETTERS].lower(), valid, n=2, cutoff=MIN_SPELLING_SIMILARITY)
     suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
     return SceneError(file, key, value, f"unknown key; {suggestion}")

@@ -1,3 +1,3 @@
-"""The version of the project: the one place where it stands. `pyproject.toml` reads it from here."""
+"""Version of the project, which stands only here: `pyproject.toml` reads it from this file."""
 
 __version__ = "0.1.0"

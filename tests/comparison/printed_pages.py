@@ -52,8 +52,8 @@ def as_printed(page: Page) -> Page:
     return page
 
 
-def lowest_text(sheet: PageObject) -> float:
-    """Height of the lowest text of a sheet above its lower edge, points; of the number of the page not."""
+def read_sheet(sheet: PageObject) -> tuple[str, float]:
+    """The letters of a sheet, and the height of the lowest text but the number of the page above its lower edge."""
     heights = [math.inf]
 
     def see(text: str, of_all: list[float], of_text: list[float], *rest: object) -> None:
@@ -61,8 +61,7 @@ def lowest_text(sheet: PageObject) -> float:
         if text.strip() and height > MARGIN / POINT:
             heights.append(height)
 
-    sheet.extract_text(visitor_text=see)
-    return min(heights)
+    return letters(sheet.extract_text(visitor_text=see)), min(heights)
 
 
 def printed_page(browser: Browser, file: Path) -> Printed:
@@ -70,8 +69,8 @@ def printed_page(browser: Browser, file: Path) -> Printed:
     page = opened(browser, file, LAPTOP).page
     sheets = PdfReader(BytesIO(page.pdf(prefer_css_page_size=True))).pages
     sizes = [(float(sheet.mediabox.width) * POINT, float(sheet.mediabox.height) * POINT) for sheet in sheets]
-    texts = [letters(sheet.extract_text()) for sheet in sheets]
-    filled = [1.0 - lowest_text(sheet) / float(sheet.mediabox.height) for sheet in sheets]
+    texts, lowest = zip(*map(read_sheet, sheets))
+    filled = [1.0 - height / float(sheet.mediabox.height) for sheet, height in zip(sheets, lowest)]
     cells = as_printed(page).evaluate(CELLS_OF_TABLES)
     page.close()
-    return Printed(sizes, texts, filled, cells)
+    return Printed(sizes, [*texts], filled, cells)

@@ -57,3 +57,30 @@ def test_opensees_states_the_step_from_which_on_mu_1_is_near_its_limit() -> None
     other["opensees"][name]["0.001 s"][0][1] = 0.07
     other["opensees"][name]["0.004 s"][0][1] = 0.5
     assert said.format("7.0") in yielding_friction.state_opensees(other)
+
+
+@pytest.mark.parametrize("place", range(4))
+def test_the_terms_of_the_element_state_the_worst_of_all_scenes(place: int) -> None:
+    said, term = yielding_friction.state_terms(FOUND), "the slope counts twice"
+    assert f"{term}: 0.6 %, 0.091 %, 0.52 %, 1.1 %;" in said
+    other = copy.deepcopy(FOUND)
+    other["terms"]["rows"]["fig3-II, times 1"][term][place][1] = 0.5
+    numbers = ["0.6 %", "0.091 %", "0.52 %", "1.1 %"]
+    numbers[place] = "50 %"
+    assert f"{term}: {', '.join(numbers)};" in yielding_friction.state_terms(other)
+
+
+def test_the_first_term_falls_with_the_square_of_the_slope() -> None:
+    assert "1.8 %, 0.45 %, 0.11 %: it falls with the power 2.0 of u/R." in yielding_friction.state_terms(FOUND)
+    other = copy.deepcopy(FOUND)
+    other["terms"]["rows"]["fig3-I, times 0.25"]["the platform does not rise"][0][1] = 0.0045
+    assert "1.8 %, 0.45 %, 0.45 %: it falls with the power 1.0 of u/R." in yielding_friction.state_terms(other)
+
+
+def test_the_table_has_mean_and_largest_of_every_column() -> None:
+    rows = [line.split(" | ") for line in yielding_friction.displacement_table().splitlines()]
+    row = FOUND["displacements"]["fig3-I, 5 %"]
+    [told] = [cells for cells in rows if cells[0] == "| fig3-I, 5 %"]
+    for head, column in (("rigid, literal supremum", "literal supremum"), ("u<sub>y</sub> = 0.01 mm", "1e-05")):
+        assert told[rows[0].index(head)] == "{:.3f} ({:.3f})".format(*row[column])
+    assert told[1] == "16 × 16"

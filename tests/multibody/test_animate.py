@@ -16,7 +16,7 @@ from PIL import Image
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
-from multibody.film import Look, arrange_boxes, choose_magnification, draw_film
+from multibody.film import FilmSettings, arrange_boxes, choose_magnification, draw_film
 from reference.problem import load_scene
 
 SHORT = """
@@ -173,7 +173,7 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(film_module, "FigureCanvasAgg", canvas)
     monkeypatch.setattr(film_module, "_encode_gif", gif)
-    draw_film(scene, motion, "spatial", Look(stretch=3.0, speed=0.5, rate=5), 3)
+    draw_film(scene, motion, "spatial", FilmSettings(stretch=3.0, speed=0.5, rate=5), 3)
     [figure] = made
     assert figure.get_suptitle().endswith(
         ": spatial model of the engine\ndisplacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"

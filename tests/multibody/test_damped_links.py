@@ -8,6 +8,9 @@ from scenes_at_hand import assert_within, forces_of_links
 from scipy.spatial.transform import Rotation
 
 import multibody
+import reference
+from multibody.integration.time_scales import fastest_damper_rate, shortest_period
+from multibody.models.assembly import assemble
 from multibody.models.depressions import angular_velocity_matrix
 from reference.problem import Scene, State, load_scene
 
@@ -105,3 +108,16 @@ def test_a_damped_body_off_the_axis_has_dampers_that_turn() -> None:
     scene = load_scene("fig3-I").with_values(values).with_amplitude(1.5)
     answer = multibody.amplification(scene, [(2.0, 0.7)], "spatial", 5e-3, tolerance=1e-4)
     assert_within(answer, [0.947956, 1.013365])
+
+
+@pytest.mark.parametrize("way", [1, -1], ids=["along x below", "along y above"])
+def test_steps_follow_the_fastest_swing_damper_and_harmonic_wherever_they_are(way: int) -> None:
+    stiff = [{"stiffness": [9e3, 40.0][::way], "damping": [0.0, 30.0][::way]}, {"stiffness": [20.0, 50.0]}][::way]
+    bodies = [{"mass": 2.0}, {"mass": 3.0, **stiff[0]}, {"mass": 0.7, **stiff[1]}]
+    scene = load_scene("fig3-I").with_values({"bodies": bodies, "excitation.decay": [0.2, 3.0][::way]})
+    model = assemble(scene, "translational", 1e-3)
+    assert shortest_period(scene, model) * model.units.time == pytest.approx(reference.modes(scene).period.min())
+    assert model.ground.decay_rate == pytest.approx(3.0 * model.units.time)
+    link, damper = np.eye(3)[:2] - np.eye(3)[1:], np.diag([30.0, 0.0][::way])
+    rate = np.linalg.eigvals((link.T @ damper @ link) / scene.masses[:, None]).real.max() * model.units.time
+    assert rate <= fastest_damper_rate(scene, model.units) * (1.0 + 1e-12) <= 2.0 * rate

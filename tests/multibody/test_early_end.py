@@ -11,7 +11,7 @@ from random_buildings import random_building, under_a_record
 import multibody
 from multibody.integration import look_ahead
 from multibody.integration.adaptive import Checkpoint, Integration, continue_run
-from multibody.integration.chunk import find_first_ends, find_last_near, largest_distance
+from multibody.integration.chunk import find_last_row_near_peak, find_rim_exit_rows, largest_distance
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _choose_early_stop
@@ -53,7 +53,7 @@ def test_no_peak_is_lost_by_stopping_early(model: str, seeds: range, longest: fl
     stopped = 0
     for scene, phase, v_reg in (random_scene(seed, longest) for seed in seeds):
         early, whole = (
-            refine(PhasePair(scene, assemble(scene, model, v_reg), phase, whole=full), TOLERANCE)
+            refine(PhasePair(scene, assemble(scene, model, v_reg), phase, in_full=full), TOLERANCE)
             for full in (False, True)
         )
         assert early.outcome == whole.outcome
@@ -75,12 +75,12 @@ CONTACT = DRAW.normal(size=(STEPS, 12))  # of three
 def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share: float) -> None:
     at_rim, is_open = ACCELERATIONS[:, 2] >= rim, (CONTACT[:, 0::4] >= 0.0).all(axis=1)
     expected = tuple(int(np.append(holds, True).argmax()) for holds in (at_rim, is_open))
-    assert find_first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
-    assert find_first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
+    assert find_rim_exit_rows(ACCELERATIONS, 2, rim, CONTACT) == expected
+    assert find_rim_exit_rows(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
     size, distance = np.abs(ACCELERATIONS[:, :2]), np.abs(ACCELERATIONS[:, 3])
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
-    assert find_last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
+    assert find_last_row_near_peak(size, sizes, distance, far) == (near[-1] if len(near) else -1)
 
 
 def test_the_largest_distance_is_that_between_the_instants_too() -> None:
@@ -126,7 +126,7 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
     record = {"record": "two bursts.csv", "samples": samples.tolist()}
     scene = load_scene("fig4-viscous").with_values({"duration": 12.0, "excitation": record})
     model = assemble(scene, "translational", None)
-    early, whole = (refine(PhasePair(scene, model, np.zeros(2), whole=full), TOLERANCE) for full in (False, True))
+    early, whole = (refine(PhasePair(scene, model, np.zeros(2), in_full=full), TOLERANCE) for full in (False, True))
     assert len(ends) == 4, "to the first quiet, ahead to the second burst, over it, ahead to the end"
     assert early.finest.peaks.instant.max() * units_of(scene).time > 5.0
     np.testing.assert_allclose(early.peaks, whole.peaks, rtol=1e-12)
@@ -147,6 +147,6 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
 
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])
 def test_a_run_close_to_its_travel_or_to_opening_goes_to_the_end(travel: float, load: float, stop: float) -> None:
-    run = EngineRun(PeakReader(1, math.inf), math.inf, max_displacement=0.499, min_load=load, last_large=2.0)
+    run = EngineRun(PeakReader(1, math.inf), math.inf, max_displacement=0.499, min_load=load, last_large_at=2.0)
     model: Any = SimpleNamespace(rim=1.0, travel=travel)
     assert _choose_early_stop(run, model, 1e-3) == pytest.approx(stop)

@@ -1,11 +1,14 @@
 """Reading the largest value between samples: smooth tops, corners of the law, and the error given for both."""
 
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from multibody.integration.peak import PeakReader, _alternating_part, _read_corner
+from multibody.integration.step_control import KINK_STEP_RATIO, StepControl
 
 TIME = np.arange(0.0, 1.0, 0.02)
 CHUNKS = pytest.mark.parametrize("chunks", [1, 2, 7, 16])
@@ -37,7 +40,7 @@ def test_the_error_of_a_parabola_is_that_of_a_cubic_signal(shift: float) -> None
     t = TIME - 0.5 - shift
     peaks = read(1.0 - 30.0 * t**2 + 40.0 * t**3)
     missed = abs(peaks.value[0] - 1.0)
-    assert 1e-7 < missed <= 1.2 * peaks.sampling[0] < 4.0 * missed
+    assert 1e-7 < missed <= 1.2 * peaks.sampling_error[0] < 4.0 * missed
 
 
 @CHUNKS
@@ -51,7 +54,7 @@ def test_a_corner_is_the_mean_of_what_both_sides_say(chunks: int, corner: float)
     decay = np.polyval(np.polyfit(t[behind], size[behind], 2), 0.0)
     assert peaks.instant[0] == pytest.approx(corner, abs=1e-12)
     assert peaks.value[0] == pytest.approx(0.5 * (1.0 + decay), abs=1e-9)
-    assert peaks.sampling[0] == pytest.approx(0.5 * abs(1.0 - decay), abs=1e-9)
+    assert peaks.sampling_error[0] == pytest.approx(0.5 * abs(1.0 - decay), abs=1e-9)
 
 
 @CHUNKS
@@ -62,8 +65,8 @@ def test_the_rate_of_slip_may_jump_at_the_corner(chunks: int, corner: float) -> 
     peaks = read(np.where(t < 0.0, 1.0 + 3.0 * t, 1.0 - 0.4 * t), slip, 1.0, chunks)
     # slip is a parabola on either side, of which one correction of the secant leaves h^3
     assert peaks.instant[0] == pytest.approx(corner, abs=1e-4)
-    assert abs(peaks.value[0] - 1.0) <= peaks.sampling[0] + 1e-12
-    assert peaks.sampling[0] < 5e-4
+    assert abs(peaks.value[0] - 1.0) <= peaks.sampling_error[0] + 1e-12
+    assert peaks.sampling_error[0] < 5e-4
 
 
 @CHUNKS
@@ -73,7 +76,7 @@ def test_a_sample_between_corners_has_the_change_as_error(chunks: int) -> None:
     slope = np.where(corners[0] > TIME, 2.0, np.where(corners[1] > TIME, 0.5, -3.0))
     peaks = read(1.0 + slope * (TIME - corners[0]), 1.0 + TIME[:, None] - corners, 1.0, chunks)
     assert peaks.instant[0] == pytest.approx(0.52)
-    assert peaks.sampling[0] == pytest.approx((2.0 - 0.5) * (0.52 - corners[0]))
+    assert peaks.sampling_error[0] == pytest.approx((2.0 - 0.5) * (0.52 - corners[0]))
 
 
 def test_two_instants_of_one_corner_are_part_of_its_error() -> None:
@@ -93,7 +96,7 @@ def test_a_rise_over_short_steps_is_not_taken_for_a_slope() -> None:
     peaks = PeakReader(1, np.inf)
     peaks.add(time, size[:, None], np.ones((len(time), 1)))
     assert peaks.value[0] == pytest.approx(size.max(), abs=1e-9)
-    assert peaks.sampling[0] < 1e-3
+    assert peaks.sampling_error[0] < 1e-3
 
 
 def test_samples_are_read_on_to_an_impact_behind_them() -> None:
@@ -105,7 +108,7 @@ def test_samples_are_read_on_to_an_impact_behind_them() -> None:
         peaks.read_until(instant)
         if on:
             assert peaks.instant[0] == instant
-            assert abs(peaks.value[0] - np.exp(2.0 * instant)) <= peaks.sampling[0] < 1e-2
+            assert abs(peaks.value[0] - np.exp(2.0 * instant)) <= peaks.sampling_error[0] < 1e-2
         else:
             assert peaks.value[0] == before
 
@@ -118,12 +121,14 @@ def test_samples_that_alternate_have_half_of_their_spread() -> None:
     """A later and larger peak of two that are read keeps what the error of the other leaves possible."""
     alternating = 0.01 * np.cos(np.pi * np.arange(len(TIME)))
     peaks = read(np.cos(TIME - 0.5) + alternating)
-    assert peaks.value[0] - 1.0 <= peaks.sampling[0] < 0.02
+    assert peaks.value[0] - 1.0 <= peaks.sampling_error[0] < 0.02
     early = np.where(TIME < 0.5, 1.0 - 40.0 * (TIME - 0.25) ** 2 + alternating, 1.0 - 40.0 * (TIME - 0.75) ** 2)
     early[TIME >= 0.5] += 0.011
     rough, smooth = read(np.where(TIME < 0.5, early, 0.0)), read(early, chunks=2)
     assert smooth.value[0] == pytest.approx(1.011, abs=1e-4)
-    assert smooth.value[0] + smooth.sampling[0] == pytest.approx(rough.value[0] + rough.sampling[0], abs=1e-9)
+    assert smooth.value[0] + smooth.sampling_error[0] == pytest.approx(
+        rough.value[0] + rough.sampling_error[0], abs=1e-9
+    )
 
 
 def test_what_a_longer_last_step_misses_counts_in_full() -> None:
@@ -132,3 +137,19 @@ def test_what_a_longer_last_step_misses_counts_in_full() -> None:
         at = np.array(time)
         size = 1.0 + 0.5 * at - 0.1 * at**2 + 0.02 * at**3 + [0.0, 0.0, 0.0, 0.0, 0.3]
         assert _alternating_part(at, size) == pytest.approx(0.3 * share)
+
+
+@pytest.mark.parametrize("way", [1, -1], ids=["first body", "second body"])
+def test_a_step_behind_a_kink_is_short_where_a_body_is_near_its_peak_and_a_contact_creeps(way: int) -> None:
+    ground = SimpleNamespace(knots=np.array([0.2, 0.6, 1.0]), near=1e-9)
+    model: Any = SimpleNamespace(ground=ground, corner=1e-2, relaxation=0.05)
+    level: Any = SimpleNamespace(error_floor=1e-3)
+    time = 0.1 * np.arange(11)
+    bent = 1.0 - 0.3 * (1.0 - np.exp(-np.maximum(time - 0.2, 0.0) / 0.07))
+    for slowest, peak, expected in ((1e-3, 1.001, 1.5), (2e-2, 1.001, 0.0), (1e-3, 2.0, 0.0)):
+        motion: Any = SimpleNamespace(
+            time=time, slip=np.column_stack([0.0 * time + 0.5, 0.0 * time + slowest])[:, ::way]
+        )
+        size, peaks = np.column_stack([bent, 1.0 + 0.1 * time])[:, ::way], np.array([peak, 1.0])[::way]
+        ratio = StepControl(model, level)._kink_step_ratio(motion, size, peaks, 0.075 * KINK_STEP_RATIO)
+        np.testing.assert_allclose(ratio, np.where(np.arange(11) == 3, expected, 0.0))

@@ -9,16 +9,16 @@ from scenes_at_hand import assert_agree
 import multibody
 from multibody import surface
 from reference.problem import Scene, load_scene
-from reference.problem.reductions import body_cannot_tilt, planar
+from reference.problem.reductions import body_cannot_tilt, is_planar
 
 PHASES = [(2.0, 0.7), (0.3, 1.1)]
 LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]}  # with the depressions
 ALONG_Y = {"excitation.amplitudes": [[0.0, 0.0], [1.0, 0.6]]}
 CASES: dict[str, tuple[Any, str, dict[str, Any]]] = {
-    "diagonal": (planar, "fig4-dry", {}),
-    "lubricated": (planar, "fig4-viscous", {}),
-    "oblique, vertical too": (planar, "fig4-dry", {"excitation.amplitudes": [[1.0, 0.5], [-0.8, -0.4], [0.5, 0.3]]}),
-    "links of two stiffnesses and dampers": (planar, "fig3-I", {**ALONG_Y, "bodies.1.damping": [0.2, 0.7]}),
+    "diagonal": (is_planar, "fig4-dry", {}),
+    "lubricated": (is_planar, "fig4-viscous", {}),
+    "oblique, vertical too": (is_planar, "fig4-dry", {"excitation.amplitudes": [[1.0, 0.5], [-0.8, -0.4], [0.5, 0.3]]}),
+    "links of two stiffnesses and dampers": (is_planar, "fig3-I", {**ALONG_Y, "bodies.1.damping": [0.2, 0.7]}),
     "level": (body_cannot_tilt, "fig3-I", LEVEL),
     "level, three supports": (body_cannot_tilt, "fig3-II", {**LEVEL, "isolator.supports": 3}),
 }

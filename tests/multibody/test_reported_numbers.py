@@ -77,7 +77,7 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
     ):
         for reading in (0.0, 0.007):
             peaks = peaks_of(*values)
-            peaks[-1].sampling[:] = reading
+            peaks[-1].sampling_error[:] = reading
             error = error_between_levels(peaks, LEVELS[: len(values)], MODEL)[0]
             assert error == pytest.approx(expected + reading + 1e-6 * values[-1], rel=1e-9)
 
@@ -188,7 +188,7 @@ def test_behind_an_impact_stretched_bars_balance_their_dampers() -> None:
     """Stiffness times stretch and damping times its rate: the jump of one makes up for that of the other."""
     law, lags = three_bodies_on_bars(), np.array([0.03, 0.07])
     before, after = np.random.default_rng(3).normal(size=(2, 18))
-    stretched = law.relax_bars(np.zeros(18), before, after, lags).reshape(3, 6)[:, :3]
+    stretched = law.unload_bar_dampers(np.zeros(18), before, after, lags).reshape(3, 6)[:, :3]
     jump = (after - before).reshape(3, 2, 3)
     for link, lag_of_link in enumerate(lags):
         end = np.array([0.0, 0.0, law.centers[link : link + 2, 2].mean()])

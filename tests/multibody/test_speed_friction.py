@@ -9,7 +9,9 @@ import reference
 from multibody.integration.constant_step import silence_engine
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
+from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, DryFriction, State, load_scene
+from reference.problem.friction import Heat
 
 V_REG = 1e-3
 
@@ -25,6 +27,28 @@ def test_a_motion_that_begins_moving_heats_from_its_start() -> None:
     assert np.ptp(expected) > 0.02
 
 
+@pytest.mark.parametrize(
+    ("begin", "end", "share"),
+    [
+        (0.0, 0.5, 0.6),
+        (0.5, 0.0, 0.6),
+        (0.2, 0.7, 0.2),
+        (0.1, 0.2, 1.0),
+        (0.6, 0.4, 0.0),
+        (0.2, 0.2, 1.0),
+        (0.4, 0.4, 0.0),
+    ],
+)
+def test_a_step_heats_for_the_share_in_which_it_covers_the_center(begin: float, end: float, share: float) -> None:
+    """Power that rises with the time for h = 0.64 s: the integral of its kernel is 4/3 P h^0.5."""
+    heat, power = SurfaceHeat(Heat(15.0, 0.3, 0.6), 3, 4.0, 0.8, 2.0), np.array([5.0, 0.0, 7.0])
+    heat.begin(0.0)
+    heat.step_to(0.5, 0.0 * power, begin)
+    np.testing.assert_allclose(
+        heat.temperature(1.3, power, end), 15.0 + 3.0 * 0.3 * share * 4.0 / 3.0 * 0.8 * power, rtol=2e-3
+    )
+
+
 def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
     """The slope of mu by the slip speed times the weight over the platform's mass, in units of the model."""
     law = DryFriction(0.03, 0.1, 20.0)
@@ -33,7 +57,7 @@ def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
     model = assemble(scene, "translational", V_REG)
     slip, unit = np.array([[0.02], [0.1]]), model.units.velocity
     slope = (law.at(slip[:, 0] + 1e-6) - law.at(slip[:, 0] - 1e-6)) / 2e-6 * unit
-    np.testing.assert_allclose(model.friction.feedback(slip / unit), 4.0 * slope, rtol=1e-6)
+    np.testing.assert_allclose(model.friction.friction_feedback_rate(slip / unit), 4.0 * slope, rtol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -12,18 +12,19 @@ import pytest
 
 import multibody
 from multibody.integration.engine_run import Budget, EngineRun
-from multibody.integration.level import COMPLIANCE_OF_CLOSED, COMPLIANCE_RATIO, REAL_WARPING_COMPLIANCE, Level
-from multibody.integration.level_runs import MAX_FIRST_SHARE
+from multibody.integration.level import COMPLIANCE_OF_CLOSED_SUPPORTS, COMPLIANCE_RATIO, REAL_WARPING_COMPLIANCE, Level
+from multibody.integration.level_runs import MAX_WORK_SHARE_OF_TRIAL
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
+from multibody.models import supports
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from reference.problem import Outcome, load_scene
 
 TOLERANCE = 1e-3
 STIFF, REAL = MIN_WARPING_COMPLIANCE, REAL_WARPING_COMPLIANCE
 SOFTER = -1.0  # in place of how far supports give way: a contact softer than that of the level
-NAMES = {STIFF: "s", REAL: "r", COMPLIANCE_OF_CLOSED: "c", SOFTER: "~"}
+NAMES = {STIFF: "s", REAL: "r", COMPLIANCE_OF_CLOSED_SUPPORTS: "c", SOFTER: "~"}
 STEPS = 1000  # of every run
 SCENE = load_scene("fig3-I")
 # of a contact that gets stiffer from level to level, and whose forces do not round
@@ -52,7 +53,7 @@ def result(platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK
     run = EngineRun(PeakReader(2, math.inf), math.inf, **{"work": STEPS, **more})
     run.peaks.value[:] = platform, 2.0
     run.peaks.instant[:] = 0.2, 0.3
-    run.last_open = 0.5 if opens else -math.inf
+    run.last_open_at = 0.5 if opens else -math.inf
     return run if outcome == Outcome.OK else run.terminate(outcome, 0.7)
 
 
@@ -70,13 +71,13 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
             springs = SOFTER if level.penetration > 1.01 * contacts[number] else level.warping_compliance
             done.asked += f" {number}{NAMES.get(springs, '')}"
             done.springs.append(springs)
-            done.work.append(budget.left)
+            done.work.append(budget.steps_left)
             run = runs(number, springs)
-            budget.left -= run.work
+            budget.steps_left -= run.work
             return run
 
         monkeypatch.setattr(PhasePair, "run_level", run_level)
-        pair = PhasePair(SCENE, MODEL, np.zeros(2), whole=True)
+        pair = PhasePair(SCENE, MODEL, np.zeros(2), in_full=True)
         done.answer = refine(pair, TOLERANCE, levels=planned, max_work=max_work)
         done.asked = done.asked.strip()
         return done
@@ -192,7 +193,7 @@ def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
 def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
     done = refined(failing(LIMIT, lambda number, springs: springs == STIFF), max_work=1e5)
     assert (done.asked, done.answer.outcome) == ("0s 0r 1r", OK)
-    assert done.work[:2] == [MAX_FIRST_SHARE * 1e5, 1e5 - STEPS]
+    assert done.work[:2] == [MAX_WORK_SHARE_OF_TRIAL * 1e5, 1e5 - STEPS]
 
 
 @pytest.mark.parametrize("softest_closed", [0.0, REAL], ids=["open on any", "open on softer ones only"])
@@ -227,3 +228,11 @@ def test_a_softer_contact_without_an_answer_leaves_the_error_open(refined: Any) 
     done = refined(runs, 3, stiffenings=1)
     assert (done.asked, done.answer.outcome) == ("0s 1s 2s 2~", BEYOND)
     np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [1.01, 0.015 * 1.001 + 1.01e-6])
+
+
+def test_springs_give_way_as_stated_and_do_not_ring() -> None:
+    """Under a weight of one on five supports; each carries a fifth of the mass."""
+    rest, damping = supports._sharing_springs(5, 3e-7, 7e-5)
+    np.testing.assert_allclose(0.2 / np.array(rest), [3e-8, 7e-5])
+    for stiffness, damper in zip(rest, damping):
+        np.testing.assert_allclose(np.roots([0.2, damper, stiffness]), -np.sqrt(stiffness / 0.2), rtol=1e-6)

@@ -53,8 +53,8 @@ class Element:
         return float(math.hypot(*y[8:]) * (self.initial - load * slope.mean()) / (self.friction * load) - 1.0)
 
     def peaks(self, duration: float) -> Any:
-        """Largest absolute accelerations of both bodies, m/s^2, and largest displacement, m, from rest."""
-        y, t, plastic, best = np.zeros(10), 0.0, False, np.zeros(3)
+        """Largest absolute accelerations of both bodies, m/s^2, displacement, m, and base shear, N, from rest."""
+        y, t, plastic, best = np.zeros(10), 0.0, False, np.zeros(4)
         while t < duration - 1e-12:
 
             def change(t: float, y: Any, plastic: bool) -> float:
@@ -66,8 +66,9 @@ class Element:
             for time in np.unique(np.linspace(found.t[:-1], found.t[1:], 5)):
                 state = found.sol(time)
                 rates, ground = self._rates(time, state, plastic), self.ground(time)
-                sizes = [math.hypot(*(rates[k : k + 2] + ground)) for k in (2, 6)]
-                best = np.maximum(best, [*sizes, math.hypot(*state[:2])])
+                both = [rates[k : k + 2] + ground for k in (2, 6)]
+                shear = math.hypot(*(self.masses @ np.array(both)))
+                best = np.maximum(best, [*(math.hypot(*each) for each in both), math.hypot(*state[:2]), shear])
             t, y = float(found.t[-1]), found.y[:, -1]
             if found.status == 1:
                 angle = y[8] if plastic else math.atan2(y[9], y[8])

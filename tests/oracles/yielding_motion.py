@@ -23,9 +23,12 @@ NEAR = 0.01  # share of the largest value so far by which samples may miss a pea
 
 
 class Peaks(NamedTuple):
-    """What a run reaches: accelerations (N,), m/s^2, displacement, m, energies, J, and the instants of all changes."""
+    """
+    What a run reaches: accelerations (N,), m/s^2, base shear, N, displacement, m, energies, J, the instants of changes.
+    """
 
     acceleration: Array
+    base_shear: float
     displacement: float
     dissipated: float
     imbalance: float
@@ -132,9 +135,11 @@ class Motion:
         return float(kinetic + springs + self.total * GRAVITY * height)
 
     def sizes(self, t: float, state: Array) -> Array:
-        """Sizes of the absolute accelerations, m/s^2, and the displacement of the platform, m: (N + 1,)."""
+        """Sizes of the absolute accelerations, m/s^2, base shear, N, and displacement of the platform, m: (N + 2,)."""
         total = self.accelerations(t, state)[0] + self.ground(t)
-        return np.array([*np.linalg.norm(total, axis=1), math.hypot(*state[:2])])
+        return np.array(
+            [*np.linalg.norm(total, axis=1), math.hypot(*(self.masses @ total[:, :2])), math.hypot(*state[:2])]
+        )
 
     def run(self, tolerance: float = 1e-10, start: Array | None = None, longest: float = 0.02) -> Peaks:
         """The whole motion, from rest or from a state (4 N + 3,)."""
@@ -143,7 +148,7 @@ class Motion:
         if start is not None:
             state[: len(start)] = start
         begin, slides, t, changes = self.energy(state), False, 0.0, []
-        best = np.zeros(self.count + 1)
+        best = np.zeros(self.count + 2)
         scale = np.concatenate(
             [np.full(n - 5, 1e-3), np.full(3, 1e-2 * self.slow * self.weight / self.k), [1e-3, 1e-3]]
         )
@@ -178,4 +183,33 @@ class Motion:
                 changes.append(t)
                 slides = not slides
         work = state[-1] - state[-2]
-        return Peaks(best[:-1], float(best[-1]), float(state[-2]), self.energy(state) - begin - work, changes, state)
+        *acceleration, shear, place = best.tolist()
+        lost, imbalance = float(state[-2]), self.energy(state) - begin - work
+        return Peaks(np.array(acceleration), shear, place, lost, imbalance, changes, state)
+
+
+class WithoutRise(Motion):
+    """
+    The same program under another normal force: that of a platform that does not rise, without vertical shaking.
+
+    twice: whether it also has the term of the slope twice, as an element with N = W + V u / R has.
+    """
+
+    def __init__(self, scene: Any, phase: tuple[float, float], twice: bool) -> None:
+        super().__init__(scene, phase)
+        self.twice = twice
+
+    def accelerations(self, t: float, state: Array) -> tuple[Array, float, float]:
+        """Those of the horizontal equations alone."""
+        x, v, e = self.split(state)
+        pulls = self.links * np.diff(x, axis=0) + self.dampers * np.diff(v, axis=0)
+        n, friction, force = self.normal(x[0]), self.k * e, np.zeros((self.count, 2))
+        force[:-1] += pulls
+        force[1:] -= pulls
+        contact = (self.weight + friction[2]) / n[2]  # N n_z = W + t_z
+        if self.twice:  # N = W + V . u / R, where V = N u / R + f, and t_z n_z = f . u / R
+            contact = (self.weight + n[2] * friction[2]) / n[2] ** 2
+        force[0] += contact * n[:2] - friction[:2]
+        a = np.zeros((self.count, 3))
+        a[:, :2] = force / self.masses[:, None] - self.ground(t)[:2]
+        return a, float(contact), self.slow * float(contact)

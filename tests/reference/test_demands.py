@@ -12,6 +12,7 @@ import multibody
 import reference
 from reference.measures import Demands, Estimate, demands
 from reference.measures.demand_reader import largest_displacement
+from reference.measures.peak_demands import list_demands
 from reference.problem import GRAVITY, Accuracy, Scene, State, Trajectory, ground_peak
 
 PHASE = (2.0, 0.7)
@@ -172,6 +173,8 @@ def test_a_motion_that_ends_early_has_a_status_and_no_numbers() -> None:
         answer = demands(motion)
         assert (answer.status, len(answer.acceleration), len(answer.drift)) == (status, 2, 1)
         assert np.isnan([(found.value, found.error) for found in estimates(answer).values()]).all()
+        of_bodies = {(name, body) for name, body, _ in list_demands(answer) if body}
+        assert {("acceleration", 1), ("acceleration", 2)} == of_bodies - {("drift", 2)} < of_bodies
 
 
 def held(place: float, force: float, rests: int, accuracy: Accuracy | None = None) -> Trajectory:

@@ -11,7 +11,7 @@ from chains import chain, refusal
 
 import reference
 from reference import Estimate, Estimates, Scene, SceneError, derivatives, sensitivity
-from reference.derivatives import SHARES, Sensitivity, describe_kink
+from reference.derivatives import FINITE_CHANGES, Sensitivity, describe_kink
 
 ONE_BODY = chain(0.25, 0.08, [2.0], (), [[1.5, 0.4], [0.3, 1.2]], duration=6.0)
 
@@ -125,8 +125,8 @@ def test_a_sentence_about_a_kink_says_place_sides_and_what_is_there() -> None:
 
 def test_finite_changes_stand_beside_the_derivative() -> None:
     found = along_friction(lambda friction: friction**2.0)
-    moved = AT * (1.0 + np.array(SHARES))
-    assert SHARES == (-0.05, -0.01, 0.01, 0.05)
+    moved = AT * (1.0 + np.array(FINITE_CHANGES))
+    assert FINITE_CHANGES == (-0.05, -0.01, 0.01, 0.05)
     np.testing.assert_allclose(found.change.value, moved**2.0 - AT**2.0, rtol=1e-12)
     np.testing.assert_allclose(found.change.error, 2e-9)
     assert (found.key, found.at) == (FRICTION, AT)

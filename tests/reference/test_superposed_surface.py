@@ -7,7 +7,7 @@ from chains import chain
 import reference
 from reference import surface
 from reference.problem import GRAVITY, Outcome, Scene, load_scene, phase_grid
-from reference.problem.reductions import linear
+from reference.problem.reductions import is_linear
 
 PHASES = np.vstack([(0.0, np.pi), phase_grid(4) + 0.1])
 TWO = {"masses": [1.0, 0.5], "stiffness": [[20.0, 30.0]], "amplitudes": [[0.3, 0.1], [-0.2, 0.2]], "duration": 6.0}
@@ -36,7 +36,7 @@ CHAINS = {"resonance without decay": chain(1.0, 0.0, amplitudes=0.05 * np.eye(2)
 @pytest.mark.parametrize("scene", CHAINS.values(), ids=CHAINS)
 def test_the_sum_is_the_integrated_surface_on_any_chain(scene):
     reduced, full = both(scene)
-    assert linear(scene)
+    assert is_linear(scene)
     assert reduced.status.tolist() == full.status.tolist()
     ok = full.status == "ok"
     assert ok.any()

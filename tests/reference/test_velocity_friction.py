@@ -75,7 +75,7 @@ def test_a_coefficient_depends_on_speed_and_load_as_stated():
     """fast - (fast - slow) exp(-rate v), times a power of the load, which counts from a millionth of the weight on."""
     law, cold = DryFriction(0.03, 0.06, 100.0, exponent=-0.5), 0.06 - 0.03 * np.exp(-1.0)
     np.testing.assert_allclose(law.at(0.01, [1.0, 4.0, 0.0]), cold * np.array([1.0, 0.5, 1000.0]))
-    assert (law.varies, law.constant, law.by_load) == (True, False, True)
+    assert (law.varies, law.constant, law.depends_on_load) == (True, False, True)
 
 
 def test_an_exponent_of_zero_gives_the_bits_of_plain_friction():

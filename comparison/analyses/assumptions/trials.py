@@ -124,7 +124,9 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
             uncertainty: tuple[float, ...] = ()
             if not reason:
                 stated = stated or ask(variation=None)
-                change, uncertainty = (tuple(rows[0].tolist()) for rows in change_of(ask(variation=variation), stated))
+                change, uncertainty = (
+                    tuple(rows[0].tolist()) for rows in name_change(ask(variation=variation), stated)
+                )
             of_key.append(DirectionTrial(scene.name, key, variation, change, uncertainty, reason, False))
         telling = [trial for trial in of_key if not trial.no_effect]
         worst = max(telling, key=lambda trial: np.nan_to_num(np.abs(trial.change), nan=np.inf).max(), default=None)
@@ -146,7 +148,7 @@ def follow_direction(
             if not tried:
                 raise
             return  # the scene can be no more uneven: a support would carry nothing
-        change, uncertainty = change_of(trial, plain)
+        change, uncertainty = name_change(trial, plain)
         tried.append((size, (np.abs(change) + uncertainty).max(axis=0)))
         yield trial
         size = next_size(tried, SMALLEST_SIZE[key], LARGEST_SIZE[key])
@@ -175,7 +177,7 @@ def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: fl
     return next((size for size in sorted(larger) if size > max(tried)[0]), None) if larger else None
 
 
-def change_of(trial: Trial, plain: Trial) -> tuple[Array, Array]:
+def name_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
     """Return the relative change (M, N) of mu against the first of the phase pairs of another trial, and its error."""
     base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base

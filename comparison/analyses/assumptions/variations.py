@@ -9,7 +9,12 @@ import numpy as np
 
 from comparison.result_types import result
 from reference.problem import Scene
-from reference.problem.reductions import half_turn, mirror_symmetric, own_axes, planar
+from reference.problem.reductions import (
+    has_half_turn_symmetry,
+    has_one_axis_per_harmonic,
+    is_mirror_symmetric,
+    is_planar,
+)
 
 ROUNDING = 1e-9  # share of the radius of the ring, or of a right angle: what is that close is in the plane
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
@@ -98,10 +103,10 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
     plane = plane_of_symmetry(scene)
     if plane is not None:  # an offset along the plane is blind
         start, turn, count = plane, math.pi / 2.0, DIRECTIONS + 1
-    elif own_axes(scene) and mirror_symmetric(scene):
+    elif has_one_axis_per_harmonic(scene) and is_mirror_symmetric(scene):
         start, turn, count = 0.0, math.pi / 2.0, DIRECTIONS
     else:
-        opposite = key == "oval" or bool(half_turn(scene))
+        opposite = key == "oval" or bool(has_half_turn_symmetry(scene))
         count = DIRECTIONS if opposite else 2 * DIRECTIONS
         start, turn = 0.0, (math.pi if opposite else 2.0 * math.pi) * (1.0 - 1.0 / count)
     directions = (start + turn * step / (count - 1) for step in range(count))
@@ -115,7 +120,7 @@ def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
         return ""  # bars that bend tilt what stands on them, in a plane as well
     if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):
         return TURNED_LINK
-    if scene.isolator.support_stiffness is not None or scene.dry_friction.by_load:
+    if scene.isolator.support_stiffness is not None or scene.dry_friction.depends_on_load:
         return ""  # unequal loads of the supports tilt the platform, or change the friction
     return "" if plane_of_symmetry(variation.of(scene)) is None else ONE_PLANE
 
@@ -139,7 +144,7 @@ def plane_of_symmetry(scene: Scene) -> float | None:
     what overturns in the plane, so that friction in proportion to them, all along the plane, has no moment about the
     vertical; and its sum is that of the whole weight, as in translation.
     """
-    if not planar(scene) or scene.support_places is None:
+    if not is_planar(scene) or scene.support_places is None:
         return None
     horizontal = scene.amplitudes[:2]
     if not horizontal.any():

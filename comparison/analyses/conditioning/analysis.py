@@ -9,6 +9,9 @@ there both engines climb alike.
 
 The small equations are cheap and answer on a whole grid. The engine answers at few phase pairs over the first periods;
 beside it stand the exact equations, with the same geometry, at the same pairs over the same periods.
+
+Friction that yields elastically before it slides has no stop. In a scene with it the yield displacement takes the
+place of the speed: the exact equations answer for several, its own among them, with two dampings of the links.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,7 +25,12 @@ import reference
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.models import REFERENCE_TOLERANCE, any_scene, has_dry_friction, has_spatial_data
+from comparison.study.models import (
+    REFERENCE_TOLERANCE,
+    has_dry_friction,
+    has_spatial_data,
+    has_yielding_friction,
+)
 from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
@@ -33,6 +41,9 @@ from reference.problem.symmetry import distinct_pairs
 MAX_GRID = 16  # phases per axis of the small equations
 SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # v_reg, m/s
+YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # yield displacements beside the scene's own, m
+MAX_YIELDING_GRID = 8  # phases per axis of the exact equations of friction that yields
+OTHER_DAMPING = 0.05  # ratio of critical of all links, where a scene has another; 0 where it has that
 FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no two related by a symmetry
 FEW_PERIODS = 3.0  # periods of the slower harmonic: the loading is strongest in them
 
@@ -45,12 +56,13 @@ class ConditioningCurve:
     body: Annotated[int, "number of the body; 1 is the platform"]
     model: Annotated[str, "small or exact equations; translational or spatial engine"]
     reading: Annotated[str, "of (5.1): as integrated, or literal supremum"]
-    speed: Literal["v_c", "v_reg"]
-    """v_c: only rest and faster slides count, set-valued friction; v_reg: friction is linear below this speed"""
+    speed: Literal["v_c", "v_reg", "u_y"]
+    """v_c: only rest and faster slides count, set-valued friction; v_reg: friction is linear below this speed; u_y: in
+    place of a speed, friction is elastic up to this displacement"""
     grid: Annotated[int, "phases per axis of a grid over a full turn; 0 for listed phase pairs"]
     pairs: Annotated[int, "phase pairs that mean and largest are of: those that answered at every speed"]
     duration: Annotated[float, "of the motion, s"]
-    v: Annotated[tuple[float, ...], "speeds, m/s, falling; 0 for the literal supremum"]
+    v: Annotated[tuple[float, ...], "speeds, m/s, or yield displacements, m, falling; 0 for the literal supremum"]
     mean: Annotated[tuple[Number, ...], "mean of mu over the phase pairs at each speed; null without an answer"]
     mean_error: Annotated[tuple[Number, ...], "numerical error estimate of the mean"]
     largest: Annotated[tuple[Number, ...], "largest mu of the phase pairs at each speed"]
@@ -64,23 +76,60 @@ class ConditioningCurve:
     is too coarse to tell"""
     base: Annotated[Literal["small", "exact"], "equations whose literal supremum relative_mean refers to"]
     reason: Annotated[Text, "why there is no value, or empty"] = ""
+    own: Annotated[float | None, "yield displacement of the scene, which is among `v`; null without one"] = None
+    damping: Annotated[float | None, "ratio of critical of every link; null: the scene's own damping"] = None
+
+
+def moves_in_space(scene: Scene) -> bool:
+    """Return whether rigid dry friction is asked of bodies that turn."""
+    return has_dry_friction(scene) and has_spatial_data(scene)
+
+
+def has_yielding_friction_below_links(scene: Scene) -> bool:
+    """Return whether friction yields and links may be damped otherwise."""
+    return has_yielding_friction(scene) and len(scene.bodies) > 1
 
 
 class Question(NamedTuple):
-    """What is asked for several speeds: which model, the argument that the speed is, and on a grid or at FEW."""
+    """
+    What is asked for several speeds: which model, the argument that the speed is, and on a grid or at FEW.
+
+    otherwise: whether the links are damped by another ratio than the scene's.
+    """
 
     model: str
     base: Mapping[str, Any]  # settings of the equations whose literal supremum the curve is relative to
     side: ModuleType
     settings: Mapping[str, Any]
-    argument: Literal["cutoff", "regularization"]
+    argument: Literal["cutoff", "regularization", "yield_displacement"]
     speeds: tuple[float, ...]
     on_grid: bool
-    applies: Callable[[Scene], bool] = any_scene
+    applies: Callable[[Scene], bool] = has_dry_friction
+    otherwise: bool = False
+
+    def speeds_of(self, scene: Scene) -> tuple[float, ...]:
+        """Return the speeds; of yield displacements the scene's own, too."""
+        own = self.own_yield(scene)
+        return self.speeds if own is None else tuple(sorted({*self.speeds, own}, reverse=True))
+
+    def own_yield(self, scene: Scene) -> float | None:
+        """Return the scene's yield displacement, m, where that is what varies."""
+        return float(f"{scene.yield_displacement:.9g}") if self.argument == "yield_displacement" else None
+
+    def damping_of(self, scene: Scene) -> float | None:
+        """Return the damping of the links in place of the scene's; None for that."""
+        return (0.0 if scene.damping.any() else OTHER_DAMPING) if self.otherwise else None
+
+    def answer(self, scene: Scene, phases: Array, speed: float) -> Any:
+        """Ask the model at one speed."""
+        if self.argument == "yield_displacement":
+            return self.side.amplification(scene.with_yield_displacement(speed), phases, **self.settings)
+        return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
 
 
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
 EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # ten times more accurate in fact
 IN_TRANSLATION = {"model": "translational", "tolerance": STUDY_TOLERANCE}
 IN_SPACE = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
 QUESTIONS = (
@@ -88,9 +137,17 @@ QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, True),
     Question("exact", EXACT, reference, EXACT, "cutoff", SPEEDS, False),
     Question("translational", EXACT, multibody, IN_TRANSLATION, "regularization", REGULARIZATIONS, False),
-    Question("spatial", EXACT, multibody, IN_SPACE, "regularization", REGULARIZATIONS, False, has_spatial_data),
+    Question("spatial", EXACT, multibody, IN_SPACE, "regularization", REGULARIZATIONS, False, moves_in_space),
+    Question("exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, True, has_yielding_friction),
+    Question(
+        "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, True, has_yielding_friction_below_links, True
+    ),
 )
-SYMBOLS: Mapping[str, Literal["v_c", "v_reg"]] = {"cutoff": "v_c", "regularization": "v_reg"}
+SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
+    "cutoff": "v_c",
+    "regularization": "v_reg",
+    "yield_displacement": "u_y",
+}
 
 Arguments = tuple[Scene, int, int]  # number of the question, phases per axis; 0 for FEW
 
@@ -127,22 +184,24 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
     """Return the curves of every body for one question; with set-valued friction the literal supremum, too."""
     scene, number, grid = task
     question = QUESTIONS[number]
-    answers = _ask_at_speeds(scene if grid else shorten_scene(scene, FEW_PERIODS), question, grid)
-    curves = [_make_curve(task, body, question.speeds, answers) for body in range(1, len(scene.bodies) + 1)]
-    if question.argument == "cutoff":
+    speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, FEW_PERIODS)
+    damping = question.damping_of(scene)
+    if damping is not None:
+        links = {f"bodies.{number}.damping": damping for number in range(1, len(scene.bodies))}
+        moving = moving.with_values(links | {"name": scene.name})
+    answers = _ask_at_speeds(moving, question, speeds, grid)
+    curves = [_make_curve(task, body, speeds, answers) for body in range(1, len(scene.bodies) + 1)]
+    if question.argument != "regularization":
         limit = answers._replace(mu=answers.supremum[None], error=answers.supremum_error[None])
         curves += [_make_curve(task, body, (0.0,), limit) for body in range(1, len(scene.bodies) + 1)]
     return curves
 
 
-def _ask_at_speeds(moving: Scene, question: Question, grid: int) -> _Answers:
+def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
     """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
     phases, taken = distinct_pairs(moving, grid) if grid else (FEW, np.arange(len(FEW)))
-    supremum = reference.amplification(moving, phases, **question.base)
-    listed = [
-        question.side.amplification(moving, phases, **question.settings, **{question.argument: speed})
-        for speed in question.speeds
-    ]
+    supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
+    listed = [question.answer(moving, phases, speed) for speed in speeds]
     mu, error = (np.stack([getattr(each, part) for each in listed]) for part in ("mu", "error"))
     known = np.isfinite(mu).all(axis=-1)  # (S, P); a speed at which no pair has an answer takes none from the others
     complete = known[known.any(axis=1)].all(axis=0) & np.isfinite(supremum.mu).all(axis=-1)
@@ -191,7 +250,7 @@ def _statistics_at_speed(
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:
     scene, number, _ = task
-    speeds = QUESTIONS[number].speeds
+    speeds = QUESTIONS[number].speeds_of(scene)
     rows = [_SpeedStatistics()] * len(speeds)
     return [_fill_curve(task, body, speeds, rows, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
 
@@ -214,24 +273,30 @@ def _fill_curve(
         v=speeds,
         base=question.base["equations"],
         reason=reason,
+        own=question.own_yield(scene),
+        damping=question.damping_of(scene),
         **columns,
     )
 
 
+def _grid_of(study: Study, question: Question) -> int:
+    """Return the largest nested grid of a study, phases per axis, that a question can afford."""
+    most = MAX_YIELDING_GRID if question.settings is YIELDING else MAX_GRID
+    return max((each for each in nested_grids(study.grid) if each <= most), default=most)
+
+
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Every question of every scene with phases and dry friction."""
+    """Every question of every scene with phases and dry friction, rigid or not."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return the scenes with the numbers of their questions; the grid is the largest nested one up to MAX_GRID."""
-        grid = max((each for each in nested_grids(study.grid) if each <= MAX_GRID), default=MAX_GRID)
+        """Return the scenes with the numbers of their questions and the phases per axis."""
         return [
-            (scene, number, grid if question.on_grid else 0)
+            (scene, number, _grid_of(study, question) if question.on_grid else 0)
             for scene in study.phased
-            if has_dry_friction(scene)
             for number, question in enumerate(QUESTIONS)
             if question.applies(scene)
         ]

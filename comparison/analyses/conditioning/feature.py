@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, ConditioningCurve
-from comparison.analyses.conditioning.statement import conditioning_line, speed_text
+from comparison.analyses.conditioning.statement import conditioning_line, name_damping, speed_text, yielding_line
 from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import Panel, json_numbers, make_panel
 from comparison.report.section import Report, Section
@@ -18,6 +18,7 @@ NAMES = {
     "spatial": "Exudyn, bodies that turn",
 }
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
+UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # in the order of the tables
 QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
 
 
@@ -25,7 +26,8 @@ def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
     """Two panels of mu_1 for each scene: the small equations over a grid; the engine and the exact equations."""
     panels = []
     for scene in dict.fromkeys(curve.scene for curve in curves):
-        own = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
+        every = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
+        own = [curve for curve in every if curve.speed != "u_y"]
         on_grid, at_few = ([curve for curve in own if (curve.grid > 0) == wanted] for wanted in (True, False))
         if on_grid:
             means = [_speed_line(curve, "mean", "mean", 0 if curve.speed == "v_c" else 2) for curve in on_grid]
@@ -36,6 +38,10 @@ def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
             series = [_speed_line(curve, "mean", NAMES[curve.model], COLORS[curve.model]) for curve in at_few]
             over = f"engine, {at_few[0].pairs} phase pairs, the first {at_few[0].duration:.2g} s"
             panels.append(_speed_panel(f"{scene}, {over}", "mean μ_1", series))
+        yields = [curve for curve in every if curve.speed == "u_y"]
+        if yields:
+            over = f"friction that yields, exact equations, {yields[0].grid} × {yields[0].grid} phases"
+            panels.append(_yield_panel(f"{scene}, {over}", yields))
     return panels
 
 
@@ -44,6 +50,25 @@ def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Pan
     return make_panel(
         title, label, {"title": "v_c or v_reg, m/s", "log": True}, {"title": quantity}, series, height=280
     )
+
+
+def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
+    """Mean and largest over the yield displacement, a color for each damping; literal suprema as level lines."""
+    dampings = [*dict.fromkeys(curve.damping for curve in curves)]
+    series: list[dict[str, Any]] = []
+    ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]
+    for curve in curves:
+        for number, quantity in enumerate(("mean", "largest")):
+            values, color = json_numbers(getattr(curve, quantity)), 2 * dampings.index(curve.damping) + number
+            name = f"{quantity}, {name_damping(curve)}"
+            if curve.reading == LITERAL_SUPREMUM:
+                name = f"{name}, rigid, {LITERAL_SUPREMUM}"
+                series.append({"name": name, "color": color, "x": ends, "y": values * 2, "dash": "5 3"})
+            else:
+                series.append({"name": name, "color": color, "x": list(curve.v), "y": values, "marks": True})
+    label = f"{title}: μ_1 over the yield displacement; " + "; ".join(line["name"] for line in series)
+    axes = {"title": "yield displacement u_y, m", "log": True}, {"title": "μ_1"}
+    return make_panel(title, label, *axes, series, height=280)
 
 
 def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) -> dict[str, Any]:
@@ -60,23 +85,27 @@ def _name_reading(curve: ConditioningCurve) -> str:
 
 
 def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, Any]]:
-    """One table for each kind of speed: a row for each curve and quantity, the literal supremum in the last column."""
+    """One table for each list of speeds: a row for each curve and quantity, the literal supremum in the last column."""
     suprema = {_owner_of_curve(curve): curve for curve in curves if curve.reading == LITERAL_SUPREMUM}
     tables = []
-    for speed in ("v_c", "v_reg"):
-        own = [curve for curve in curves if curve.speed == speed and curve.reading != LITERAL_SUPREMUM]
+    integrated = [curve for curve in curves if curve.reading != LITERAL_SUPREMUM]
+    for speed, v in sorted(dict.fromkeys((curve.speed, curve.v) for curve in integrated), key=_place_of_table):
         rows = [
-            _table_row(curve, quantity, suprema.get((curve.scene, curve.body, curve.base, curve.grid)))
-            for curve in own
+            _table_row(curve, quantity, suprema.get(_owner_of_curve(curve, curve.base)))
+            for curve in integrated
+            if (curve.speed, curve.v) == (speed, v)
             for quantity in QUANTITIES
         ]
-        if rows:
-            tables.append({"speed": speed, "heads": [*map(speed_text, own[0].v)], "rows": rows})
+        tables.append({"speed": speed, "unit": UNITS[speed], "heads": [*map(speed_text, v)], "rows": rows})
     return tables
 
 
-def _owner_of_curve(curve: ConditioningCurve) -> tuple[str, int, str, int]:
-    return curve.scene, curve.body, curve.model, curve.grid
+def _place_of_table(table: tuple[str, tuple[float, ...]]) -> int:
+    return [*UNITS].index(table[0])
+
+
+def _owner_of_curve(curve: ConditioningCurve, model: str = "") -> tuple[str, int, str, int, float | None]:
+    return curve.scene, curve.body, model or curve.model, curve.grid, curve.damping
 
 
 def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | None) -> dict[str, Any]:
@@ -85,7 +114,7 @@ def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCu
     errors = getattr(curve, quantity.removesuffix("_mean") + "_error")
     return {
         "curve": curve,
-        "name": NAMES[curve.model],
+        "name": NAMES[curve.model] + (f", {name_damping(curve)}" if curve.speed == "u_y" else ""),
         "phases": f"{curve.grid} × {curve.grid}" if curve.grid else f"{curve.pairs} pairs",
         "quantity": QUANTITIES[quantity],
         "cells": [(value, write(value)) for value in values] + ([(None, "")] if supremum is None else []),
@@ -116,6 +145,6 @@ FEATURE = Feature(
         "Conditioning of the literal supremum",
         "phase-resonance run makes it, of scenes with phases and dry friction",
         _section_context,
-        lead=lambda results: conditioning_line(FOUND.of(results)),
+        lead=lambda results: f"{conditioning_line(FOUND.of(results))} {yielding_line(FOUND.of(results))}".strip(),
     ),
 )

@@ -1,11 +1,11 @@
-"""The conditioning of mu_i in one sentence."""
+"""The conditioning of mu_i in one sentence, and what a yield displacement makes of mu_1 in another."""
 
 import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
 from comparison.wording import difference_with_error
-from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C
+from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
 ILL = 1e-3  # change of mu below DEEP: more than the engine's tolerance
@@ -36,6 +36,63 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     if abs(size) + error < ILL:
         return f"The literal supremum is well-conditioned: {values}."
     return f"Whether the literal supremum is ill-conditioned, {pairs} do not tell: {values}."
+
+
+def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
+    """
+    Return what mu_1 is at the yield displacement of every scene that has one, and how it changes with that.
+
+    Empty without such a scene. Sizes of the mean are relative to the literal supremum of rigid friction at the same
+    phases.
+    """
+    lines = []
+    for scene in dict.fromkeys(curve.scene for curve in result or () if curve.speed == "u_y"):
+        curves = [c for c in result or () if (c.scene, c.body, c.speed) == (scene, 1, "u_y") and c.pairs]
+        suprema = {curve.damping for curve in curves if curve.reading == LITERAL_SUPREMUM}
+        known = [curve for curve in curves if curve.reading != LITERAL_SUPREMUM and curve.damping in suprema]
+        lines += [_word_yielding(curve) for curve in known if curve.damping is None]
+        lines += [_word_other_damping(curve) for curve in known if curve.damping is not None]
+    return " ".join(lines)
+
+
+def _word_yielding(curve: ConditioningCurve) -> str:
+    assert curve.own is not None
+    place = curve.v.index(curve.own)
+    mean, largest = (
+        f"{values[place]:.5g} ± {errors[place]:.1g}"
+        for values, errors in ((curve.mean, curve.mean_error), (curve.largest, curve.largest_error))
+    )
+    size = _write_size(curve.relative_mean[place], curve.relative_error[place])
+    return (
+        f"Friction of {curve.scene} yields at {speed_text(curve.own)} m: mu_1 is {mean} in the mean of "
+        f"{curve.grid} × {curve.grid} phases and {largest} at most, the mean {size} from the literal supremum of rigid "
+        f"friction; {_word_range(curve)}."
+    )
+
+
+def _word_other_damping(curve: ConditioningCurve) -> str:
+    return f"With {name_damping(curve)}, {_word_range(curve)}."
+
+
+def _word_range(curve: ConditioningCurve) -> str:
+    """Say between which sizes, from the literal supremum, the mean lies over all yield displacements."""
+    low, high = (f(range(len(curve.v)), key=lambda place: curve.relative_mean[place]) for f in (min, max))
+    least, most = (_write_size(curve.relative_mean[place], curve.relative_error[place]) for place in (low, high))
+    return (
+        f"over yield displacements from {speed_text(curve.v[0])} to {speed_text(curve.v[-1])} m the mean is between "
+        f"{least} (at {speed_text(curve.v[low])} m) and {most} (at {speed_text(curve.v[high])} m) from it"
+    )
+
+
+def name_damping(curve: ConditioningCurve) -> str:
+    """
+    Name the damping of the links of a curve.
+
+    >>> from types import SimpleNamespace
+    >>> name_damping(SimpleNamespace(damping=0.05)), name_damping(SimpleNamespace(damping=None))
+    ('links damped by 5 %', 'links as stated')
+    """
+    return "links as stated" if curve.damping is None else f"links damped by {100.0 * curve.damping:g} %"
 
 
 def speed_text(speed: float) -> str:

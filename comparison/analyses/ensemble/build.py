@@ -20,7 +20,7 @@ from comparison.analyses.ensemble.statistics import (
 from comparison.json_file import finite_or_none
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from reference import describe_building
-from reference.building import horizontal_peak
+from reference.building import largest_horizontal_acceleration
 from reference.measures import effective_isolator, response_spectrum
 from reference.problem import GRAVITY, Outcome, Scene
 from reference.problem.tables import Record
@@ -96,7 +96,7 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
     found = []
     for motion, own in group_rows_by(members, "motion").items():
         member = own[0]
-        peak = horizontal_peak(member.scene) / member.scale
+        peak = largest_horizontal_acceleration(member.scene) / member.scale
         about = listed.get(motion)
         factor, magnitude = (about.factor, about.magnitude) if about else (1.0, None)
         known = motion, member.scene.duration, peak, factor * member.factor, magnitude
@@ -153,6 +153,7 @@ def read_building(scene: Scene) -> result.BuildingRead:
         radius=finite_or_none(scene.radius),
         friction=() if scene.lubricated else (scene.dry_friction.slow, scene.dry_friction.fast),
         travel=scene.isolator.travel,
+        sphere_radius=scene.isolator.sphere_radius,
         heights=None if building.heights is None else building.heights.tolist(),
         floors=[body.floor or "" for body in scene.bodies],
         friction_rate=None if scene.lubricated else scene.dry_friction.rate,

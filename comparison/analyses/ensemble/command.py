@@ -76,9 +76,9 @@ from comparison.study.costs import STARTING, WRITING, wall_seconds
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
 from comparison.verdicts import MET
 from reference.problem import Family, SceneError
-from reference.problem.families import family_of, with_bounds
+from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
-from reference.records.motion_lists import FILE as MOTIONS
+from reference.records.motion_lists import FILE_NAME as MOTIONS
 from reference.records.motion_lists import Motion, motion_list_text
 from reference.records.suites import list_motions
 from reference.support.files import write_new
@@ -131,7 +131,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.missing(ensemble.make_engine_tasks(chosen))
         if further:
-            write(results, ensemble.collect_points(results), print_equations)
+            write(results, ensemble.collect_points(results), print_equations, pending=len(chosen))
             display.extend(sum(task.seconds for task in further))
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
@@ -217,12 +217,14 @@ def write_ensemble(
     results: TaskResults,
     points: EnsemblePoints,
     show: Callable[[Console, EnsembleResult], None],
+    pending: int = 0,
 ) -> EnsembleResult:
     """Write the files of the ensemble, print its tables, write its page; return the result."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     scenes = {source: hashlib.sha256(scene_text(source)).hexdigest() for source in options.scenes}
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1), "scenes": scenes}
     result = build(points, run)
+    result = replace(result, engine=replace(result.engine, pending=pending))
     checks = check(result)
     result = replace(result, limits=list_verdicts(checks))
     files = {STORED.name: STORED.as_json(result)}
@@ -244,7 +246,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
             run["compute_seconds"],
             run["began"],
             [
-                JUnitCase(f"{each.key}: {each.what}", [] if each.verdict == MET else [word_check(each)])
+                JUnitCase(f"{each.key}: {each.title}", [] if each.verdict == MET else [word_check(each)])
                 for each in checks
                 if each.bound == bound
             ],
@@ -317,7 +319,7 @@ def make_suite_family(options: argparse.Namespace, source: str) -> Family:
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     if loading is not None:
         data["excitation"] = loading
-    return family_of(with_bounds(data, read_bounds(options)), source)
+    return make_family(with_bounds(data, read_bounds(options)), source)
 
 
 def _parser() -> CommandParser:

@@ -14,7 +14,7 @@ from comparison.runner.task import Task, execute
 from comparison.runner.task_results import TaskResults
 from comparison.verdicts import MET
 from reference.problem.acceptance import DemandLimits
-from reference.problem.families import family_of, with_bounds
+from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 
 
@@ -29,18 +29,18 @@ def check_demands(
     """Return a line for every demand that is not met; limits: in place of those of the file. Raises ValueError."""
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
-    members = list_members([family_of(with_bounds(data, bounds), str(source))])
+    members = list_members([make_family(with_bounds(data, bounds), str(source))])
     asked = read_demand_limits({member.structure: member.scene for member in members})
     for member in members:
         own = asked.get(member.structure, DemandLimits()).model_dump(exclude_none=True)
         asked[member.structure] = DemandLimits.model_validate({**own, **limits})
-    uplift = any(each.uplift is not None for each in asked.values())
+    by_engine = any(each.uplift is not None or each.support_displacement is not None for each in asked.values())
     before = None if stored is None else STORED.load(Path(stored))
     if stored is not None and before is None:
         raise ValueError(f"stored: {str(stored)!r} has no {STORED.name}: phase-resonance ensemble --out writes one")
     if before is None and not any(each.limits_by_key() for each in asked.values()):
         raise ValueError(f"no limit: give {', '.join(DemandLimits.limited)} or stored")
-    result = compute_ensemble(Ensemble(members), uplift)
+    result = compute_ensemble(Ensemble(members), by_engine)
     checks = check_limits(result, asked)
     checks += [] if before is None else compare_with_stored(result, before, within)
     return word_checks(checks) if any(check.verdict != MET for check in checks) else []

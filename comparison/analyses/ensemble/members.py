@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 
 from comparison.study.models import Model, has_spatial_data, why_not_spatial
 from reference.problem import Family, Scene, SceneError
-from reference.problem.families import BOUNDS
+from reference.problem.families import BOUNDS_KEY
+from reference.problem.keys import range_of
 from reference.problem.tables import Record
 
 SCALE_KEY = "excitation.scale"
@@ -40,8 +41,14 @@ def with_suite(
     scale = own.get("scale", 1.0)
     kept = {key: own[key] for key in ("detrend",) if key in own}
     loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **kept}
-    under_suite = {key: value for key, value in data.items() if key != "duration"} | {"excitation": loading}
-    return {"combine": "product", **under_suite}
+    under_suite = {key: value for key, value in data.items() if key != "duration" or _is_wrong_duration(value)}
+    return {"combine": "product", **under_suite, "excitation": loading}
+
+
+def _is_wrong_duration(value: Any) -> bool:
+    """Return whether a duration, which counts for nothing beside a suite, is to be refused with whatever is wrong."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return not (isinstance(value, dict) or (number and value in range_of(Scene, "duration")))
 
 
 def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
@@ -67,7 +74,7 @@ def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
 
 def _word_varied_value(family: Family, key: str, n: int) -> str:
     """Return the name and value of one varied key, which distinguishes a structure from others."""
-    return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
+    return family.labels[key][n] if key == BOUNDS_KEY else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
 def refuse_scenes_without_model_data(members: Sequence[EnsembleMember], model: Model) -> None:

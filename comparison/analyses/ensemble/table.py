@@ -9,7 +9,7 @@ from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import label_structures
 from comparison.analyses.ensemble.statistics import list_quantities
 from comparison.json_file import finite_or_none
-from reference.building import horizontal_peak
+from reference.building import largest_horizontal_acceleration
 
 # Spreadsheets take a cell that begins with one of these, even after white space, for a formula.
 FORMULA_STARTS = ("=", "+", "-", "@")
@@ -34,7 +34,7 @@ def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[di
             "model": point.model,
             "status": point.status,
             "factor [-]": member.factor,
-            "peak_ground_acceleration [m/s^2]": horizontal_peak(member.scene),
+            "peak_ground_acceleration [m/s^2]": largest_horizontal_acceleration(member.scene),
             "missing": "; ".join(missing),
         }
         for quantity, number in numbers.items():

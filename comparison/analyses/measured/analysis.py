@@ -32,7 +32,7 @@ from comparison.verdicts import (
 from reference.measures import Estimate, demands
 from reference.measures.peak_demands import unit_of
 from reference.problem import Outcome, Scene
-from reference.problem.measured import OF_BODIES, Measured
+from reference.problem.measured import BODY_QUANTITIES, Measured
 
 NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")
 
@@ -111,7 +111,8 @@ def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> 
 
 def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
     """Return the peaks of one model at one phase pair. Runs inside a worker process."""
-    scene, model, tolerance, phases, asked = task
+    stated, model, tolerance, phases, asked = task
+    scene = model.scene_of(stated)
     settings: dict[str, Any] = dict(model.settings)
     status = Outcome.OK.value
     known: dict[str, Any] = {}  # estimates by quantity; a value may be for the isolator, for every body, or None
@@ -122,7 +123,7 @@ def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
     if any(quantity != "mu" for quantity, _ in asked):
         motion = import_function(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
         known, status = vars(demands(motion)) | known, str(motion.status)
-    listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
+    listed = ((known[name], body - BODY_QUANTITIES.get(name, 0)) for name, body in asked)
     numbers = [(each[place] if isinstance(each, tuple) else each) or NO_SUCH_VALUE for each, place in listed]
     return [(number.value, number.error, number.reason or status) for number in numbers]
 

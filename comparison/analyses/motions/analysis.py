@@ -15,7 +15,7 @@ from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
 from comparison.wording import exception_line
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
-from reference.measures.demand_reader import ANSWERED
+from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
@@ -166,7 +166,7 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
     scene, model, tolerance, place, phase = task
     try:
         motion: Trajectory = import_function(model.trajectory)(
-            scene, phase, tolerance=tolerance, **model.motion_settings
+            model.scene_of(scene), phase, tolerance=tolerance, **model.motion_settings
         )
         if len(motion.time) == 0:  # The model refused the scene before its first step.
             return replace(
@@ -184,7 +184,7 @@ def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> Store
         tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),
         contact_force=motion.contact_force, isolator_force=motion.isolator_force,
         support_force=motion.support_force, yaw=motion.extra.get("yaw", _empty_series()),
-        demands=demands(motion), spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
+        demands=demands(motion), spectra=floor_spectra(motion) if motion.status in FULL_LENGTH_OUTCOMES else None,
     )  # fmt: skip
     values = np.hstack([block for name, block in whole.series_by_name().items() if name != "time"])
     size = np.linalg.norm(motion.absolute_acceleration, axis=2)

@@ -27,8 +27,8 @@ from comparison.study.study import Study
 from comparison.surfaces.distribution import GridMaximum, grid_maxima
 from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
-from reference.measures.local_maxima import GRID, local_maxima
-from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, predict_best, square_nodes
+from reference.measures.local_maxima import GRID, find_local_maxima
+from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, make_square_nodes, predict_best
 from reference.problem import Scene
 
 SEARCH_TOLERANCE = 1e-5  # relative error of mu at which the equations are solved in a search
@@ -103,7 +103,7 @@ def _starting_phases(
         return None
     of_platform = quantity == "displacement"
     values = values_of(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
-    starts = local_maxima(values if of_platform else values[body - 1], scene)
+    starts = find_local_maxima(values if of_platform else values[body - 1], scene)
     return starts if len(starts) else None
 
 
@@ -151,7 +151,7 @@ def _compute_engine_nearby(
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))
     search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
-    (corners, _), (square, _) = square_nodes(2), square_nodes(3)
+    (corners, _), (square, _) = make_square_nodes(2), make_square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
     equations = _surface_of_model(scene, like, SEARCH_TOLERANCE, worst.body).compute(
         search.phases + ENGINE_HALF_WIDTH * square

@@ -16,7 +16,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.verdicts import MET, NOT_MET
-from reference.measures.demand_reader import ANSWERED
+from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import State, Trajectory
 
 MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
@@ -77,7 +77,7 @@ def solve_side(question: tuple[BenchmarkCase, str]) -> SideNumbers:
 
 def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
     """The numbers and their estimated absolute errors; none of a motion that ended early."""
-    if motion.status not in ANSWERED or len(motion.time) < 2:
+    if motion.status not in FULL_LENGTH_OUTCOMES or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.read(motion), motion.accuracy
     others = [] if accuracy is None else [reading.read(each) for each in (halve_samples(motion), *accuracy.coarser)]

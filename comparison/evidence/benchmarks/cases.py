@@ -20,7 +20,7 @@ from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
 from reference.problem.readings import DEFAULT_V_REG
 from reference.records.formats import read_csv_samples
-from reference.records.samples import LARGEST, RecordError
+from reference.records.samples import MAX_FILE_BYTES, RecordError
 from reference.support.files import read_file
 
 SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"
@@ -237,7 +237,7 @@ FRICTION = {
 def mastodon_case(path: Path) -> BenchmarkCase:
     """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
     try:
-        samples = read_csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
+        samples = read_csv_samples(read_file(path, MAX_FILE_BYTES).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "must be text in UTF-8"
         raise SceneError("command line", OPTION, str(path), reason) from None

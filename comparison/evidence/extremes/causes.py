@@ -33,6 +33,10 @@ CAUSES: dict[tuple[str, str], dict[str, str]] = {
         "spatial": "the swing of so stiff a link asks for a contact that damps none of it: the levels within the work "
         "of a cell do not reach the tolerance"
     },
+    ("decay, 1/s", "1e+06"): {
+        "translational": "mu_2 is so small beside mu_1 that the levels within the work of a cell do not reach the "
+        "tolerance: the next one does"
+    },
     ("duration, s", "0.001"): dict.fromkeys(
         _ENGINE,
         "mu_2 is so small beside mu_1 that a contact stiff enough not to change it rounds by as much, and a softer "

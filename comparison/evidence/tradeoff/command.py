@@ -114,7 +114,7 @@ def _load_phased_scene(name: str) -> Scene:
     if scene.recorded:
         rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
         raise SceneError(name, "excitation.record", scene.name, rule)
-    scene.require_rigid_friction("the solvers outside the package")
+    scene.require_rigid_friction("every solver outside the package")
     stated = scene.model_dump()["isolator"]["friction"]
     for key in ("load_exponent", "heating") if isinstance(stated, dict) else ():
         if value := stated[key]:

@@ -23,7 +23,7 @@ from comparison.verdicts import (
     word_counts_and_largest,
     word_verdict,
 )
-from reference.measures.demand_reader import ANSWERED
+from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
@@ -220,7 +220,7 @@ def motion_of(
 def values_of_motion(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
     """Return what is read from a motion, `count` values, and its errors; NaN from one that ended early."""
     nothing = np.full(count, np.nan)
-    if motion.status not in ANSWERED or motion.accuracy is None:
+    if motion.status not in FULL_LENGTH_OUTCOMES or motion.accuracy is None:
         return ComputedValues(nothing, nothing)
     values, others = read(motion), [read(each) for each in motion.accuracy.coarser]
     errors = [motion.accuracy.error_of(value, rest) for value, *rest in zip(values, *others)]

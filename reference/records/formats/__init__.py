@@ -1,5 +1,5 @@
 """
-Formats of recorded accelerograms: one table of readers, one file a format.
+Formats of recorded accelerograms: one table of readers, and one file for each format.
 
 A reader is (name, what it recognizes in the first lines, function of text and file name, suffix). The first that
 recognizes a file reads it. A new format is one file in this folder and its line in the table.
@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 from reference.records.formats import at2, cosmos, csv_table, esm, jma, knet, plain_text
 from reference.records.numerals import MAX_HEADER_LINES, UNIT_NAMES, decode_text
 from reference.records.samples import Array, RecordError, RecordSamples, join_directions
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 
 class Reader(NamedTuple):
     """
-    One format: its name, whether it recognizes the first lines of a file, and the function that reads it.
+    One format: its name, a function that recognizes the first lines of a file, and a function that reads it.
 
     suffix: of the files that are of this format where no reader recognizes their content; "" for none.
     """
@@ -38,23 +38,23 @@ READERS = (
     Reader(jma.FORMAT, jma.recognizes_jma, jma.read_jma),
     Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv, ".csv"),
 )
-BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
-CONVERTED = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # suffixes of files of networks
-OPTIONS = ("file", *plain_text.OPTIONS)  # keys of the table of a file
+READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
+NETWORK_FILE_NAME = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
+OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a table that gives one file
 
 
 def recognize_format(text: str, suffix: str = "") -> Reader | None:
-    """Return the reader of a text by its first lines, else by the suffix of its file; None for a plain text."""
+    """Return the reader for a text by its first lines, or else by the suffix of its file; None for a plain text."""
     head = text[: 2**16].splitlines()[:MAX_HEADER_LINES]
     known = next((reader for reader in READERS if reader.recognizes(head)), None)
     if known is None and not plain_text.begins_with_numbers(head):
-        return BY_SUFFIX.get(suffix.lower())
+        return READERS_BY_SUFFIX.get(suffix.lower())
     return known
 
 
 def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> RecordSamples:
     """
-    Return what a file holds. Raises RecordError, one line.
+    Return the samples and directions that a file holds. Raises RecordError, one line.
 
     name: of the file, which tells nothing that its content does not. options: `step`, `unit`, `skip` and `column` of
     a plain text; `unit` alone is that of a table whose header names none.
@@ -64,7 +64,7 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
         return plain_text.read_plain_text(text, name, **given)
     suffix = name[name.rfind(".") :] if "." in name else ""
     reader = recognize_format(text, suffix)
-    if CONVERTED.fullmatch(suffix) and (reader is None or reader.name == csv_table.FORMAT):
+    if NETWORK_FILE_NAME.fullmatch(suffix) and (reader is None or reader.name == csv_table.FORMAT):
         raise RecordError("a file of a network that is not read as it is: docs/guide/networks.md converts it to CSV")
     if reader is None:
         return plain_text.read_plain_text(text, name, **given)
@@ -73,10 +73,10 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
             f"{reader.name} states its own unit: remove unit, or state step, unit and skip of a plain text"
         )
     if given and not isinstance(given["unit"], str):
-        raise RecordError(f"unit = {brief(given['unit'])}: must be one of {UNIT_NAMES}")
+        raise RecordError(f"unit = {quote(given['unit'])}: must be one of {UNIT_NAMES}")
     return reader.read(text, name, **given)
 
 
 def read_csv_samples(text: str) -> Array:
-    """Return the samples (K, 4) of a CSV file, s and m/s^2 along x, y, z. Raises RecordError."""
+    """Return the samples (K, 4) of a CSV file: s, and m/s^2 along x, y, z. Raises RecordError."""
     return join_directions({"": csv_table.read_csv(text)})

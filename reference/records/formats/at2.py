@@ -9,14 +9,14 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import MAX_LINE, holds_numbers, parse_number, quote_name, read_values
-from reference.records.samples import RecordError, RecordSamples, evenly_spaced
-from reference.support.arguments import brief
+from reference.records.samples import RecordError, RecordSamples, make_even_samples
+from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
 FORMAT = "PEER .AT2"
 MAX_HEADER_LINES = 20
-MAX_COUNT_DIGITS = 9  # in NPTS
-SECONDS = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # glued to DT
+MAX_COUNT_DIGITS = 9  # digits of the number of samples, NPTS
+SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit glued to the value of DT
 NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
@@ -25,13 +25,13 @@ ACCELERATION_IN_G = re.compile(r"ACC(?:EL\w*)?\b[^,;]*?(?:\bIN |, ?|[\[(])[\[(]?
 
 
 def recognizes_at2(head: Sequence[str]) -> bool:
-    """Tell whether one of the first lines states NPTS and DT."""
+    """Return True if one of the first lines states NPTS and DT."""
     return any(_read_sizes(line) for line in _shorten_lines(head))
 
 
 @lru_cache(maxsize=64)
 def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
-    """Return what a PEER .AT2 file holds. Raises RecordError."""
+    """Return the samples of a PEER .AT2 file. Raises RecordError."""
     lines = text.splitlines()
     head = _shorten_lines(lines)
     counts = next(((row, sizes) for row, line in enumerate(head) if (sizes := _read_sizes(line))), None)
@@ -43,13 +43,13 @@ def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
     whole = count.isascii() and count.isdecimal() and len(count) <= MAX_COUNT_DIGITS
     if not (whole and int(count) > 0):
         rule = f"must be a whole number greater than 0 of at most {MAX_COUNT_DIGITS} digits"
-        raise RecordError(f"line {counts[0] + 1}: NPTS = {brief(count)}: {rule}")
-    spacing = parse_number(counts[0] + 1, SECONDS.sub("", step))
+        raise RecordError(f"line {counts[0] + 1}: NPTS = {quote(count)}: {rule}")
+    spacing = parse_number(counts[0] + 1, SECONDS_SUFFIX.sub("", step))
     if spacing <= 0.0:
         raise RecordError(f"line {counts[0] + 1}: DT = {step} s: must be greater than 0")
     _check_unit(head[: last + 1], f'{{file = {quote_name(name)}, step = {spacing:g}, unit = "...", skip = {last + 1}}}')
     values, notes = read_values(lines[last + 1 :], last + 2, int(count), f"NPTS = {count}")
-    return evenly_spaced(FORMAT, spacing, GRAVITY * np.array(values), notes=notes)
+    return make_even_samples(FORMAT, spacing, GRAVITY * np.array(values), notes=notes)
 
 
 def _shorten_lines(lines: Sequence[str]) -> list[str]:
@@ -57,26 +57,26 @@ def _shorten_lines(lines: Sequence[str]) -> list[str]:
 
 
 def _check_unit(header: list[str], proposal: str) -> None:
-    """Raise RecordError unless the header names g as the unit, and no other."""
+    """Raise RecordError unless the header names g as the unit, and no other unit."""
     found = [(number, line) for number, line in enumerate(header, 1) if UNIT_LINE.search(line)]
     rule = f"must say 'IN UNITS OF G'; in another unit write record = {proposal}"
     for number, line in found:
         at = UNIT_LINE.search(line)
         if NO_ACCELERATION.search(line):
-            raise RecordError(f"line {number}: {brief(line)}: is no acceleration: take the .AT2 file of the same name")
+            raise RecordError(f"line {number}: {quote(line)}: is no acceleration: take the .AT2 file of the same name")
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
-            raise RecordError(f"line {number}: the header names no unit that is known: {brief(line)}: {rule}")
+            raise RecordError(f"line {number}: the header names no unit that is known: {quote(line)}: {rule}")
     named = [(number, line) for number, line in enumerate(header, 1) if ACCELERATION_LINE.search(line)]
     if found or any(
         (at := ACCELERATION_LINE.search(line)) and ACCELERATION_IN_G.fullmatch(line[at.start() :]) for _, line in named
     ):
         return
-    quoted = f"line {named[-1][0]}: {brief(named[-1][1])}: " if named else ""
+    quoted = f"line {named[-1][0]}: {quote(named[-1][1])}: " if named else ""
     raise RecordError(f"{quoted}the header names no unit that is known: {rule}")
 
 
 def _read_sizes(line: str) -> tuple[str, str] | None:
-    """NPTS and DT of 'NPTS= 1000, DT= .0100 SEC' or '1000 .0100 NPTS, DT', if the line is one of them."""
+    """Return NPTS and DT of 'NPTS= 1000, DT= .0100 SEC' or '1000 .0100 NPTS, DT'; None for any other line."""
     words = line.replace(",", " ").replace("=", " = ").replace(":", " = ").split()
     names = [word.upper() for word in words]
     at = names.index("NPTS") if "NPTS" in names else len(names)

@@ -9,45 +9,49 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import parse_number, unit_factor
-from reference.records.samples import RecordError, RecordSamples, evenly_spaced
-from reference.support.arguments import brief
+from reference.records.samples import RecordError, RecordSamples, make_even_samples
+from reference.support.arguments import quote
 
 FORMAT = "COSMOS V2"
-BLOCK = re.compile(
+BLOCK_HEADER = re.compile(
     r"\s*(?P<count>[0-9]{1,9}) acceleration pts,.*units ?= ?(?P<unit>[^,(]+)"
     r".*format ?= ?\([0-9]+[fe](?P<width>[0-9]{1,3})\.",
     re.IGNORECASE,
 )
-OLD_BLOCK = re.compile(
+CSMIP_BLOCK_HEADER = re.compile(
     r"\s*(?P<count>[0-9]{1,9}) points of accel data equally spaced at\s+(?P<step>[0-9.]+) sec, in (?P<unit>[^\s.(]+)",
     re.IGNORECASE,
 )
-OLD_WIDTH = 10  # letters of a field of CSMIP's 8F10.3
+CSMIP_FIELD_WIDTH = 10  # letters in a field of CSMIP's Fortran format 8F10.3
 REAL_HEADER = re.compile(
     r"\s*([0-9]{1,9}) Real-header values follow on +([0-9]{1,9}) lines, Format ?= ?\([0-9]+[FE]([0-9]{1,3})\.",
     re.IGNORECASE,
 )
-STEP_AT = 33  # place of the sampling interval, s, in the real header
+STEP_PLACE = 33  # place of the sampling interval, s, among the numbers of the real header
 
 
 def recognizes_cosmos(head: Sequence[str]) -> bool:
-    """Tell whether the first lines have a block of accelerations."""
-    return any(BLOCK.match(line) or OLD_BLOCK.match(line) for line in head)
+    """Return True if the first lines have a block of accelerations."""
+    return any(BLOCK_HEADER.match(line) or CSMIP_BLOCK_HEADER.match(line) for line in head)
 
 
 @lru_cache(maxsize=32)
 def read_cosmos(text: str, name: str = "file.V2") -> RecordSamples:
-    """Return what such a file holds. Raises RecordError."""
+    """Return the samples of a COSMOS or CSMIP V2 file. Raises RecordError."""
     lines = text.splitlines()
-    blocks = [(at, found) for at, line in enumerate(lines) if (found := BLOCK.match(line) or OLD_BLOCK.match(line))]
+    blocks = [
+        (at, found)
+        for at, line in enumerate(lines)
+        if (found := BLOCK_HEADER.match(line) or CSMIP_BLOCK_HEADER.match(line))
+    ]
     if len(blocks) != 1:
         rule = "must be one: take the channels apart, see the page Records of national networks"
         raise RecordError(f"{len(blocks)} channels of acceleration: {rule}")
     at, block = blocks[0]
     factor = unit_factor(block["unit"])
     if factor is None:
-        raise RecordError(f"line {at + 1}: {brief(block['unit'])}: must be the unit of an acceleration, as cm/sec2")
-    width = int(block.groupdict().get("width") or OLD_WIDTH)
+        raise RecordError(f"line {at + 1}: {quote(block['unit'])}: must be the unit of an acceleration, as cm/sec2")
+    width = int(block.groupdict().get("width") or CSMIP_FIELD_WIDTH)
     values: list[float] = []
     for number, line in enumerate(lines[at + 1 :], at + 2):
         if len(values) >= int(block["count"]):
@@ -57,19 +61,19 @@ def read_cosmos(text: str, name: str = "file.V2") -> RecordSamples:
         raise RecordError(f"{len(values)} values: line {at + 1} says {block['count']}")
     step = block.groupdict().get("step")
     spacing = _header_step(lines) if step is None else parse_number(at + 1, step)
-    return evenly_spaced(FORMAT, spacing, factor * np.array(values))
+    return make_even_samples(FORMAT, spacing, factor * np.array(values))
 
 
 def _header_step(lines: Sequence[str]) -> float:
-    """The sampling interval of the real header, s. Raises RecordError."""
+    """Return the sampling interval that the real header states, s. Raises RecordError."""
     for at, line in enumerate(lines):
         if found := REAL_HEADER.match(line):
             rows = lines[at + 1 : at + 1 + int(found[2])]
             values = [
                 value for number, row in enumerate(rows, at + 2) for value in _split_fields(number, row, int(found[3]))
             ]
-            if len(values) > STEP_AT:
-                return values[STEP_AT]
+            if len(values) > STEP_PLACE:
+                return values[STEP_PLACE]
     raise RecordError("no real header with the sampling interval, 'Real-header values follow on'")
 
 

@@ -18,24 +18,34 @@ import numpy as np
 from reference.records.directions import Direction, assign_axes, parse_direction
 from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, quote_name, unit_factor
 from reference.records.samples import AXES, RecordError, RecordSamples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 FORMAT = "CSV"
-HEADER = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
-MAX_PREAMBLE = 20  # lines above the header
-TIMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
-SECONDS = {"", "s", "sec", "secs", "second", "seconds", "秒"}
-ACCELERATIONS = {"a", "acc", "accel", "acceleration", "accelerations", "accelerogram", "加速度", "ground", "motion"}
-ACCELERATIONS |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
-ACCELERATIONS |= {"aceleración", "aceleracion", "ivme"}
-FUSED = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
+HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
+MAX_PREAMBLE = 20  # the header follows after at most so many lines
+TIME_NAMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
+SECOND_NAMES = {"", "s", "sec", "secs", "second", "seconds", "秒"}
+ACCELERATION_NAMES = {
+    "a",
+    "acc",
+    "accel",
+    "acceleration",
+    "accelerations",
+    "accelerogram",
+    "加速度",
+    "ground",
+    "motion",
+}
+ACCELERATION_NAMES |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
+ACCELERATION_NAMES |= {"aceleración", "aceleracion", "ivme"}
+ACCELERATION_WITH_AXIS = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
 BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")
 DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 
 
 @dataclass(frozen=True)
 class HeaderCell:
-    """A cell of the header: its place, what it is, "time", "acceleration" or "other", direction and unit."""
+    """A cell of the header: its place, kind ("time", "acceleration" or "other"), direction and unit."""
 
     place: int
     text: str
@@ -45,13 +55,13 @@ class HeaderCell:
 
 
 def recognizes_csv(head: Sequence[str]) -> bool:
-    """Tell whether one of the first lines is a header with a time and an acceleration."""
+    """Return True if one of the first lines is a header with a time and an acceleration."""
     return _header_row([(number, line) for number, line in enumerate(head, 1) if line.strip()], None) is not None
 
 
-@lru_cache(maxsize=32)  # the files are the same while other keys of a family run
+@lru_cache(maxsize=32)  # a family reads the same files again while its other keys vary
 def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> RecordSamples:
-    """Return what a table holds; unit: of columns whose header names none. Raises RecordError."""
+    """Return the samples of a table; unit: for columns whose header names none. Raises RecordError."""
     separator, rows = _split_lines(text)
     found = _header_row(rows, separator)
     top, separator = (0, separator or _guess_separator(rows[0][1])) if found is None else found
@@ -61,7 +71,7 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
         cells, below = units, below[1:]
     columns = _header_columns(head, cells, unit, name)
     notes = [f"{top} lines above the header are ignored"] if top else []
-    if others := [brief(column.text) for column in columns if column.kind == "other"]:
+    if others := [quote(column.text) for column in columns if column.kind == "other"]:
         notes.append(f"columns that are not needed: {', '.join(others)}")
     directions = _columns_by_axis(head, [column for column in columns if column.kind == "acceleration"])
     table = _read_table(below, columns, separator)
@@ -73,30 +83,30 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
 
 
 def _split_lines(text: str) -> tuple[str | None, list[tuple[int, str]]]:
-    """The separator that the text states, and its numbered lines, without blank ones and comments. RecordError."""
+    """Return the separator of the text and its numbered lines without blank ones and comments. Raises RecordError."""
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
     separator, rows = _separator_line([(number, line) for number, line in lines if not line.lstrip().startswith("#")])
-    while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves separators behind
+    while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves empty lines of separators at the end
         rows.pop()
     if not rows:
-        raise RecordError(f"empty: must have {HEADER}, and samples")
+        raise RecordError(f"empty: must have {HEADER_EXAMPLE}, and samples")
     return separator, rows
 
 
 def _separator_line(rows: list[tuple[int, str]]) -> tuple[str | None, list[tuple[int, str]]]:
-    """The separator that a first line `sep=;` states, and the other lines."""
+    """Return the separator that a first line `sep=;` states, and the other lines."""
     if rows and (match := re.fullmatch(r'"?sep=(.)"?', rows[0][1].strip("\r\n \ufeff"), re.IGNORECASE)):
         return match[1], rows[1:]
     return None, rows
 
 
 def _guess_separator(line: str) -> str:
-    """The separator of a header: the first of tab, semicolon and comma that it has, or blanks."""
+    """Return the separator of a header: the first of tab, semicolon and comma in it, or blanks."""
     return next((mark for mark in "\t;," if mark in line), " ")
 
 
 def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple[int, str] | None:
-    """Return the first line that names a time and an acceleration, and its separator; None where none does."""
+    """Return the first line that names a time and an acceleration, and its separator; None if no line does."""
     for row, (number, line) in enumerate(rows[:MAX_PREAMBLE]):
         if len(line) > MAX_LINE or line.lstrip().startswith("#"):
             continue
@@ -107,7 +117,7 @@ def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple
             continue
         below = rows[row + 1][1].split() if row + 1 < len(rows) else kinds
         if "time" in kinds and "acceleration" in kinds and (mark != " " or len(below) == len(kinds)):
-            return row, mark  # a line of words is a header only above as many values
+            return row, mark  # a line of words is a header only above a line of as many values
     return None
 
 
@@ -120,13 +130,13 @@ def _split_cells(number: int, line: str, separator: str) -> list[str]:
         cells = [cell.strip() for cell in next(csv.reader(io.StringIO(line), delimiter=separator))]
     except (csv.Error, StopIteration) as error:
         raise RecordError(f"line {number}: {error}") from None
-    while len(cells) > 1 and not cells[-1]:  # a spreadsheet leaves separators behind
+    while len(cells) > 1 and not cells[-1]:  # a spreadsheet leaves empty cells at the end
         cells.pop()
     return cells
 
 
 def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
-    """The header with the units of the line below it, where that line has nothing else; None otherwise."""
+    """Return the header with the units of the line below it; None if that line has anything else."""
     units = [cell.strip(" []()") for cell in cells]
     if len(cells) > len(header) or not any(map(str.isalpha, "".join(units))):
         return None
@@ -138,49 +148,49 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
 
 
 def _header_columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
-    """The columns of the header. Nothing is quoted where none is as it must be: that is no record. RecordError."""
+    """Return the columns of the header; an error quotes nothing of a file without a valid column. RecordError."""
     columns = [_header_column(place, cell) for place, cell in enumerate(cells)]
     times = [column for column in columns if column.kind == "time"]
     usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
     if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
         raise RecordError(
-            f"line {line}: {brief(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
+            f"line {line}: {quote(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
             'column of the time write record = {file = "...", step = 0.01, unit = "g", skip = 1, column = 1}'
         )
     if not times or not usable:
-        raise RecordError(f"line {line}: must be {HEADER}")
+        raise RecordError(f"line {line}: must be {HEADER_EXAMPLE}")
     return [_with_unit(line, column, unit, name) for column in columns]
 
 
 def _with_unit(line: int, column: HeaderCell, unit: str | None, name: str) -> HeaderCell:
-    """The column with its unit checked. Raises RecordError."""
+    """Return the column with its unit checked. Raises RecordError."""
     cell, (_, stated) = column.text, _name_and_unit(column.text)
-    if column.kind == "time" and stated.lower() not in SECONDS:
-        raise RecordError(f"line {line}: column {brief(cell)}: unknown unit {brief(stated)}: write time [s]")
+    if column.kind == "time" and stated.lower() not in SECOND_NAMES:
+        raise RecordError(f"line {line}: column {quote(cell)}: unknown unit {quote(stated)}: write time [s]")
     if column.kind == "wrong":
         allowed = "must be one of time, ax, ay, az with its unit"
-        raise RecordError(f"line {line}: column {brief(cell)}: {allowed}")
+        raise RecordError(f"line {line}: column {quote(cell)}: {allowed}")
     if column.kind != "acceleration":
         return column
     factor, shown = unit_factor(stated), column.word or "acceleration"
     if factor is None and not stated and unit is not None:
         factor = unit_factor(unit)
         if factor is None:
-            raise RecordError(f"unit = {brief(unit)}: unknown unit: must be one of {UNIT_NAMES}")
+            raise RecordError(f"unit = {quote(unit)}: unknown unit: must be one of {UNIT_NAMES}")
     elif unit is not None and factor is not None and unit_factor(unit) != factor:
-        raise RecordError(f"line {line}: column {brief(cell)}: the scene says unit = {brief(unit)}: remove one of them")
+        raise RecordError(f"line {line}: column {quote(cell)}: the scene says unit = {quote(unit)}: remove one of them")
     if factor is None:
-        quoted = f"unknown unit {brief(stated)}" if stated else "no unit"
+        quoted = f"unknown unit {quote(stated)}" if stated else "no unit"
         if stated:
             rule = f"write {shown} [m/s^2], {shown} [g] or {shown} [cm/s^2]; units are {UNIT_NAMES}"
         else:
             rule = f'write {shown} [g], or record = {{file = {quote_name(name)}, unit = "g"}}; units are {UNIT_NAMES}'
-        raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: {rule}")
+        raise RecordError(f"line {line}: column {quote(cell)}: {quoted}: {rule}")
     return HeaderCell(column.place, cell, column.kind, column.word, factor)
 
 
 def _name_and_unit(cell: str) -> tuple[str, str]:
-    """A cell of the header as name and unit: 'ax [g]', 'NS(gal)', 'Acceleration in g', 'Acc, m/s2', 'acc_g'."""
+    """Return name and unit in a cell of the header: 'ax [g]', 'NS(gal)', 'Acceleration in g', 'Acc, m/s2', 'acc_g'."""
     text = " ".join(cell.split())
     if match := BRACKETS.fullmatch(text):
         unit = match[2].strip()
@@ -188,32 +198,32 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
         return f"{match[1]} {match[3]}".strip(), unit
     for match in re.finditer(r"[ ,_/]+(?:in )?", text):
         name, unit = text[: match.start()], text[match.end() :]
-        if name and (unit_factor(unit) is not None or (name.lower() in TIMES and unit.lower() in SECONDS)):
+        if name and (unit_factor(unit) is not None or (name.lower() in TIME_NAMES and unit.lower() in SECOND_NAMES)):
             return name, unit
     return text, ""
 
 
 def _header_column(place: int, cell: str) -> HeaderCell:
-    """Return a cell of the header; its kind is "wrong" with the unit of an acceleration and no name of one."""
+    """Return a cell of the header; its kind is "wrong" for the unit of an acceleration without the name of one."""
     name, unit = _name_and_unit(cell)
     words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
-    if words and all(word in TIMES for word in words):
+    if words and all(word in TIME_NAMES for word in words):
         return HeaderCell(place, cell, "time")
-    rest = [word for word in words if word not in ACCELERATIONS]
+    rest = [word for word in words if word not in ACCELERATION_NAMES]
     if words and not rest:
         return HeaderCell(place, cell, "acceleration")
     told = len(rest) < len(words)
-    if len(rest) == 1 and FUSED.fullmatch(rest[0]):
+    if len(rest) == 1 and ACCELERATION_WITH_AXIS.fullmatch(rest[0]):
         return HeaderCell(place, cell, "acceleration", name)
     if len(rest) == 1 and parse_direction(rest[0]) is not None and (told or unit or not rest[0].isdigit()):
         if unit and unit_factor(unit) is None and not told:
-            return HeaderCell(place, cell, "other")  # N [counts], v [m/s]
+            return HeaderCell(place, cell, "other")  # such as N [counts], v [m/s]
         return HeaderCell(place, cell, "acceleration", rest[0].upper() if len(rest[0]) < 4 else rest[0])
     return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 
 
 def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
-    """The columns by axis, or one under "" that names no direction. Raises RecordError."""
+    """Return the columns by axis, or the only one, which names no direction, under "". Raises RecordError."""
     words = [column.word.lower() for column in columns]
     if twice := [column.word for column in columns if words.count(column.word.lower()) > 1]:
         raise RecordError(f"line {line}: column {twice[0] or 'of the acceleration'} is there twice")
@@ -222,10 +232,10 @@ def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, Head
     if len(known) == len(columns) == len(axes) and set(axes) <= set(AXES):
         return {axis: axes[axis] for axis in AXES if axis in axes}
     if len(columns) == 1:
-        return {"": columns[0]}  # without a name, or an azimuth alone
+        return {"": columns[0]}  # the only column names no direction, or an azimuth
     places = assign_axes(known) if len(known) == len(columns) else None
     if places is None:
-        listed = ", ".join(brief(column.text) for column in columns)
+        listed = ", ".join(quote(column.text) for column in columns)
         raise RecordError(
             f"line {line}: columns {listed}: two have one direction, or none is told: name them ax, ay, az"
         )
@@ -233,13 +243,13 @@ def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, Head
 
 
 def _direction_of(column: HeaderCell) -> Direction | None:
-    """Return the direction that a column of the header names; None for none."""
-    fused = FUSED.fullmatch(column.word)
+    """Return the direction that a column of the header names; None if it names none."""
+    fused = ACCELERATION_WITH_AXIS.fullmatch(column.word)
     return parse_direction(fused[1] if fused else column.word)
 
 
 def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:
-    """The values of the needed columns, (K, len(columns)). Raises RecordError."""
+    """Return the values of the needed columns, (K, len(columns)). Raises RecordError."""
     needed = [column.place for column in columns if column.kind != "other"]
     table, commas, points = np.zeros((len(rows), len(columns))), 0, 0
     for row, (number, line) in enumerate(rows):
@@ -266,7 +276,7 @@ def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], 
 
 
 def _check_rising(rows: Sequence[tuple[int, str]], time: np.ndarray) -> None:
-    """Raise RecordError where a time is not later than the one before."""
+    """Raise RecordError where a time is not later than the time before."""
     if len(time) > 1 and not (steps := np.diff(time) > 0.0).all():
         row = int(np.argmin(steps)) + 1
         late = f"line {rows[row][0]}: time {time[row]:g} s after {time[row - 1]:g} s: must rise"

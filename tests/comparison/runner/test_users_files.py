@@ -27,7 +27,7 @@ from comparison.runner.output import (
     replace_report,
     resolve_destination,
 )
-from reference.support.files import TEMPORARY
+from reference.support.files import TEMPORARY_PREFIX
 
 TABLES = ["extremes.json", "extremes.png"]
 
@@ -287,7 +287,7 @@ def test_nothing_is_left_of_a_first_report_that_fails(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
 def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -> None:
-    alike = [".report-x", f"{TEMPORARY}holiday"]
+    alike = [".report-x", f"{TEMPORARY_PREFIX}holiday"]
     for name in alike:
         mine(tmp_path / name / "old" / "photo.jpg")
         (tmp_path / name / "staging.json").write_text("{}", encoding="utf-8")

@@ -70,7 +70,7 @@ def test_an_elastic_bearing_of_opensees_converges_to_the_law_of_its_element(monk
     )
     place, absolute = opensees.follow(scene, PHASES[1], 5e-4, ("Newmark", 0.5, 0.25))
     found = [*np.linalg.norm(absolute, axis=2).max(axis=0), np.linalg.norm(place, axis=1).max()]
-    np.testing.assert_allclose(found, element.peaks(3.0), rtol=1e-3)
+    np.testing.assert_allclose(found, element.peaks(3.0)[:3], rtol=1e-3)
 
 
 def test_the_page_of_other_engines_lists_every_example() -> None:

@@ -15,7 +15,7 @@ from comparison.study.models import (
     SOFTENED_TRANSLATIONAL,
     models_of,
     pairs_of,
-    with_softened_bars,
+    with_steps_of_scenes,
 )
 from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
@@ -47,19 +47,19 @@ def on_bars(**values: object) -> Scene:
 @pytest.mark.parametrize(("values", "step"), [({}, SOFTENED_SPATIAL), (BARE, SOFTENED_TRANSLATIONAL)])
 def test_bars_are_softened_last_and_never_like_for_like(values: dict[str, object], step: object) -> None:
     scene = on_bars(**values)
-    hierarchy = with_softened_bars(MODEL_HIERARCHY, [PLAIN, scene])
+    hierarchy = with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, scene])
     assert models_of(scene, hierarchy)[-1] == step
     assert step not in models_of(PLAIN, hierarchy)
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
     assert pairs["total"].second == step
     assert "softened" not in {*pairs["like-for-like"].second.settings, *pairs["translational"].second.settings}
     loaded = on_bars(**{"bodies.1.bars.load_effect": "softening"})
-    assert with_softened_bars(MODEL_HIERARCHY, [PLAIN, loaded]) == MODEL_HIERARCHY, "every model has it"
+    assert with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, loaded]) == MODEL_HIERARCHY, "every model has it"
 
 
 def test_a_softened_step_has_phases_and_cost_of_its_model() -> None:
     scene = on_bars()
-    *_, spatial, softened = with_softened_bars(MODEL_HIERARCHY, [scene])
+    *_, spatial, softened = with_steps_of_scenes(MODEL_HIERARCHY, [scene])
     assert softened.most == spatial.most
     assert seconds_per_point(scene, softened) == pytest.approx(0.22 / 20.0), "1 s of 20, two bodies"
     taller = PLAIN.with_values({"bodies": [*PLAIN.bodies, PLAIN.bodies[-1]]})
@@ -68,7 +68,7 @@ def test_a_softened_step_has_phases_and_cost_of_its_model() -> None:
 
 def test_bars_that_buckle_cost_no_other_model() -> None:
     scene = on_bars(**BARE, **{"bodies.1.bars.bending_stiffness": 0.2})
-    hierarchy = with_softened_bars(MODEL_HIERARCHY, [scene])
+    hierarchy = with_steps_of_scenes(MODEL_HIERARCHY, [scene])
     assert "buckle sideways" in refusal_of(scene, SOFTENED_TRANSLATIONAL, 1e-3)
     study = Study((scene,), 1, 1e-3, models_of(scene, hierarchy)[5:])
     finite = np.isfinite(solved(study)["mu"])

@@ -28,7 +28,7 @@ from comparison.study.models import (
 from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
-from reference.problem.reductions import mirror_symmetric
+from reference.problem.reductions import is_mirror_symmetric
 
 GRID = 4
 
@@ -64,7 +64,7 @@ MIRRORED = [np.pi, 0.0]
 )
 def test_even_supports_have_the_symmetry_of_the_loading(values: dict[str, Any]) -> None:
     scene = short().with_values(values)
-    assert mirror_symmetric(scene)
+    assert is_mirror_symmetric(scene)
     assert SPATIAL in models_of(scene, MODEL_HIERARCHY)
     shifts = np.array([[0.0, 0.0], MIRRORED, MIRRORED[::-1]])
     here, *there = (multibody.amplification(scene, [np.add((2.0, 0.7), shift)], model="spatial") for shift in shifts)
@@ -149,7 +149,7 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
 
 
 def test_the_report_counts_what_a_model_computed() -> None:
-    models = [replace(model, symmetric=mirror_symmetric) for model in fake_hierarchy()]
+    models = [replace(model, symmetric=is_mirror_symmetric) for model in fake_hierarchy()]
     study = Study((load_scene("fig3-I"),), GRID, 1e-3, models)
     [scene] = report_of(study, solved(study), {}, [], RUN, families=[]).results.scenes
     assert {(row.points, row.computed) for row in scene.models.values()} == {(16, 4)}

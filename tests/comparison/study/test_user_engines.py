@@ -120,7 +120,10 @@ PLAIN, FORM = "mine=user_engines:plain", "must be NAME=module:function[@KEY], as
     [
         *(([word], f"--model = '{word}': {FORM}") for word in ("mine", "mine=my_engine", "mine=my engine:f")),
         *(([f"{name}=e:f"], f"--model = '{name}=e:f': NAME must begin") for name in ("", "../a", "my_name")),
-        *(([f"{name}=e:f"], f"--model = '{name}=e:f': {name} names a model") for name in ("spatial", "like-for-like")),
+        *(
+            ([f"{name}=e:f"], f"--model = '{name}=e:f': {name} names a model, a difference or a limit")
+            for name in ("spatial", "like-for-like", "ratio")
+        ),
         (["mine=my_engine:f@spatial"], "--model = 'mine=my_engine:f@spatial': KEY must be one of small, exact, sma"),
         ([PLAIN, "--model", "mine=user_engines:raises"], f"--model = '{PLAIN}': mine is there twice"),
         ([PLAIN, "--scheduler", "tcp://127.0.0.1:1"], f"--model = '{PLAIN}': is a function of this machine"),

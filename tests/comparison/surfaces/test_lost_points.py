@@ -105,7 +105,8 @@ def test_a_study_without_limits_holds_none(command: Callable[..., Run], tmp_path
 def test_a_wrong_limit_is_one_line_with_the_nearest_key(
     command: Callable[..., Run], tmp_path: Path, limits: str, said: str
 ) -> None:
-    run = command(limited_scene(tmp_path, limits, "mine.toml"), "--check", hierarchy=fake_hierarchy("forbidden"))
+    scenes = "fig3-I", limited_scene(tmp_path, limits, "mine.toml")
+    run = command(*scenes, "--check", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert said in run.err
     assert run.err.count("\n") == 1

@@ -9,7 +9,7 @@ from chains import refusal
 
 import reference
 from reference.problem import SceneError, builtin_scenes, load_family, load_scene
-from reference.problem.families import family_of
+from reference.problem.families import make_family
 from reference.problem.scene_file import scene_text
 
 
@@ -140,5 +140,5 @@ def test_keys_that_cannot_run_together_are_refused_in_one_line(tmp_path, top, fr
 
 def test_a_family_of_many_bodies_is_refused_before_its_scenes_are_made():
     bodies = [{"mass": 1.0}] + 100 * [{"mass": 1.0, "period": [1.0, 1.0]}]
-    said = refusal(family_of, {"bodies": bodies, "duration": {"range": [1.0, 2.0], "steps": 500}}, "mine.toml")
+    said = refusal(make_family, {"bodies": bodies, "duration": {"range": [1.0, 2.0], "steps": 500}}, "mine.toml")
     assert (said.key, said.value) == ("bodies: 101 in each of 500 scenes", 50_500)

@@ -8,8 +8,8 @@ from reference.problem import SceneError, load_scene
 TOP = 'title = "x"\nduration = 5.0\n'
 BODY = "[[bodies]]\nmass = 1000.0\n"
 LOADING = "[excitation]\namplitudes = [[1.0, 1.0], [0.0, 0.0]]\nperiods = [1.0, 2.0]\ndecay = [0.1, 0.1]\n"
-YIELDS, ONE_SURFACE = "friction that yields before it slides is a table", "one sliding surface is modeled"
-NO_DAMPER = "the isolator has no damper but its friction"
+YIELDING_HINT, ONE_SURFACE_HINT = "friction that yields before it slides is a table", "one sliding surface is modeled"
+NO_DAMPER_HINT = "the isolator has no damper but its friction"
 
 
 def said_of(folder, isolator="radius = 2.0\nfriction = 0.05\n", body="", loading=LOADING):
@@ -21,13 +21,13 @@ def said_of(folder, isolator="radius = 2.0\nfriction = 0.05\n", body="", loading
     ("line", "said"),
     [
         *(
-            (f"{key} = 1e7", YIELDS)
+            (f"{key} = 1e7", YIELDING_HINT)
             for key in ("initial_stiffness", "k_init", "kInit", "uy", "yield_displacement", "k1")
         ),
-        *((f"{key} = 0.02", NO_DAMPER) for key in ("damping", "damping_ratio", "zeta")),
+        *((f"{key} = 0.02", NO_DAMPER_HINT) for key in ("damping", "damping_ratio", "zeta")),
         *((f"{key} = 2.0", "write radius, the effective radius") for key in ("effective_radius", "R_eff", "Reff")),
-        *((f"{key} = 2.0", ONE_SURFACE) for key in ("radius_1", "R1", "mu2", "L1")),
-        *((f"{key} = true", ONE_SURFACE) for key in ("double", "triple")),
+        *((f"{key} = 2.0", ONE_SURFACE_HINT) for key in ("radius_1", "R1", "mu2", "L1")),
+        *((f"{key} = true", ONE_SURFACE_HINT) for key in ("double", "triple")),
         ("mu = 0.1", "write friction, without unit"),
         ("stiffness = 1e6", "follows from radius, friction and the weight"),
         ("displacement_capacity = 0.3", "write travel, m"),
@@ -45,7 +45,7 @@ def test_a_key_of_another_program_is_answered_by_its_meaning(tmp_path, line, sai
 @pytest.mark.parametrize("line", ["radius = [0.5, 2.0]\nfriction = 0.05", "radius = 2.0\nfriction = [0.05, 0.1]"])
 def test_lists_of_surfaces_are_answered_by_what_is_modeled(tmp_path, line):
     error = said_of(tmp_path, f"{line}\n")
-    assert error.rule.startswith(f"must be a number: {ONE_SURFACE}")
+    assert error.rule.startswith(f"must be a number: {ONE_SURFACE_HINT}")
     assert "sum of their effective radii" in error.rule
 
 

@@ -14,8 +14,10 @@ from reference.problem import (
     ground_displacement,
     ground_peak,
     ground_velocity,
+    loading_period,
     phase_grid,
 )
+from reference.problem.phases import grid_axes
 
 PHASE = (0.3, 1.1)
 LOAD = chain(amplitudes=((1.0, 0.4), (-0.3, 1.2), (0.2, 0.7)), decay=(0.33, 0.0))
@@ -70,6 +72,16 @@ def test_ground_peak_is_the_maximum_of_dense_samples(duration, decay):
             assert peak**2 - sampled**2 <= 4.0 * (envelope * fastest * times[1]) ** 2 + 1e-14
 
 
+def test_the_loading_changes_within_the_shorter_period_whichever_it_is():
+    assert [loading_period(chain(periods=periods)) for periods in ((0.7, 1.1), (1.1, 0.7))] == [0.7, 0.7]
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_phase_pair_has_two_phases(count):
+    with pytest.raises(ValueError, match=rf"^phases: shape \({count},\): must be \(2,\), rad$"):
+        ground_velocity(LOAD, np.zeros(count), [0.0])
+
+
 def test_phase_grid_covers_the_torus_once_with_alpha2_fastest():
     grid = phase_grid(4)
     assert grid.shape == (16, 2)
@@ -77,3 +89,6 @@ def test_phase_grid_covers_the_torus_once_with_alpha2_fastest():
     np.testing.assert_allclose(grid[:5, 0], [0.0, 0.0, 0.0, 0.0, 0.5 * np.pi])
     assert grid.max() < 2.0 * np.pi
     assert len({tuple(pair) for pair in grid.tolist()}) == 16
+    assert [axis.tolist() for axis in grid_axes(grid) or ()] == [grid[::4, 0].tolist(), grid[:4, 1].tolist()]
+    for less in (grid[:4], grid[::4], grid[:4, None], grid[None, :4], grid[[0, 1, 4, 6]], grid[:6]):
+        assert grid_axes(less) is None, "one row or column, or no grid"

@@ -13,14 +13,14 @@ from reference.problem import Scene, load_scene
 from reference.problem.reductions import (
     Reduction,
     body_cannot_tilt,
-    half_turn,
-    linear,
-    mirror_symmetric,
-    no_friction,
-    own_axes,
-    planar,
-    planar_chain,
-    unused_harmonics,
+    find_unused_harmonics,
+    has_half_turn_symmetry,
+    has_no_friction_law,
+    has_one_axis_per_harmonic,
+    has_planar_chain,
+    is_linear,
+    is_mirror_symmetric,
+    is_planar,
 )
 from reference.problem.symmetry import complete_surface
 
@@ -69,35 +69,55 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
         False,
         "a narrow ring",
     ),
-    (mirror_symmetric, {}, True, "an even number of supports on a ring"),
-    (mirror_symmetric, {"isolator.supports": 3}, False, "an odd number of supports"),
-    (mirror_symmetric, {"bodies.1.offset": [0.0, 0.1]}, False, "a center of mass off the axis"),
-    (mirror_symmetric, {"bodies.1.yaw": 0.1}, False, "a body or link at an angle"),
-    (mirror_symmetric, places([1.0, 2.0], [1.0, -2.0], [-1.0, 2.0], [-1.0, -2.0]), True, "positions of supports that"),
-    (mirror_symmetric, places([1.0, 1.0], [1.0, -1.0], [-1.0, 0.0]), False, "supports at positions that are no mirror"),
-    (mirror_symmetric, places([1.0, 1.0], [-1.0, 1.0], [0.0, -1.0]), False, "supports at positions that are no mirror"),
-    (planar, {}, False, "the harmonics act in different directions"),
-    (planar, ALONG_X, True, "loading along one axis"),
-    (planar, ALIKE, True, "(4.7): one direction of loading"),
-    (planar, {**ALIKE, "excitation.amplitudes.1.1": -0.4 - 1e-9}, False, "the harmonics act in different directions"),
-    (planar, {**ALIKE, "bodies.1.period.1": 1.5 + 1e-9}, False, "loading across links that are not equally stiff"),
-    (planar, {**ALIKE, "bodies.1.damping": 0.1}, True, "(4.7): one direction of loading"),
-    (planar, {**ALIKE, "bodies.1.damping": [0.1, 0.2]}, False, "loading across links that are not equally damped"),
-    (planar_chain, {**ALONG_X, "bodies": [{"mass": 1.0}]}, False, "one body"),
-    (linear, SMOOTH, True, "no friction, no vertical loading"),
-    (linear, {}, False, "dry friction"),
-    (linear, law(fast=0.0, rate=10.0), False, "dry friction"),
-    (linear, {**SMOOTH, "bodies.1.damping": 0.1}, False, "damped links"),
-    (linear, {**SMOOTH, **UPRIGHT}, False, "vertical loading"),
-    (linear, {**SMOOTH, "bodies.1.period": [1e-3, 1.2]}, True, "no friction, no vertical loading"),
-    (linear, {**SMOOTH, "bodies.1.period": [5e-4, 1.2]}, False, "more than 200000 rad of the fastest vibration"),
-    (half_turn, UPRIGHT, False, "vertical loading"),
-    (half_turn, {}, True, "no vertical loading"),
-    (own_axes, UPRIGHT, False, "vertical loading"),
-    (own_axes, TWICE_SHAKEN, True, "each harmonic has its own axis"),
-    (own_axes, ALONG_X, False, "a harmonic acts along both axes, or both along one"),
-    (no_friction, SMOOTH, True, "no friction"),
-    (no_friction, law(fast=0.0, rate=10.0), False, "friction"),
+    (is_mirror_symmetric, {}, True, "an even number of supports on a ring"),
+    (is_mirror_symmetric, {"isolator.supports": 3}, False, "an odd number of supports"),
+    (is_mirror_symmetric, {"bodies.1.offset": [0.0, 0.1]}, False, "a center of mass off the axis"),
+    (is_mirror_symmetric, {"bodies.1.yaw": 0.1}, False, "a body or link at an angle"),
+    (
+        is_mirror_symmetric,
+        places([1.0, 2.0], [1.0, -2.0], [-1.0, 2.0], [-1.0, -2.0]),
+        True,
+        "positions of supports that",
+    ),
+    (
+        is_mirror_symmetric,
+        places([1.0, 1.0], [1.0, -1.0], [-1.0, 0.0]),
+        False,
+        "supports at positions that are no mirror",
+    ),
+    (
+        is_mirror_symmetric,
+        places([1.0, 1.0], [-1.0, 1.0], [0.0, -1.0]),
+        False,
+        "supports at positions that are no mirror",
+    ),
+    (is_planar, {}, False, "the harmonics act in different directions"),
+    (is_planar, ALONG_X, True, "loading along one axis"),
+    (is_planar, ALIKE, True, "(4.7): one direction of loading"),
+    (
+        is_planar,
+        {**ALIKE, "excitation.amplitudes.1.1": -0.4 - 1e-9},
+        False,
+        "the harmonics act in different directions",
+    ),
+    (is_planar, {**ALIKE, "bodies.1.period.1": 1.5 + 1e-9}, False, "loading across links that are not equally stiff"),
+    (is_planar, {**ALIKE, "bodies.1.damping": 0.1}, True, "(4.7): one direction of loading"),
+    (is_planar, {**ALIKE, "bodies.1.damping": [0.1, 0.2]}, False, "loading across links that are not equally damped"),
+    (has_planar_chain, {**ALONG_X, "bodies": [{"mass": 1.0}]}, False, "one body"),
+    (is_linear, SMOOTH, True, "no friction, no vertical loading"),
+    (is_linear, {}, False, "dry friction"),
+    (is_linear, law(fast=0.0, rate=10.0), False, "dry friction"),
+    (is_linear, {**SMOOTH, "bodies.1.damping": 0.1}, False, "damped links"),
+    (is_linear, {**SMOOTH, **UPRIGHT}, False, "vertical loading"),
+    (is_linear, {**SMOOTH, "bodies.1.period": [1e-3, 1.2]}, True, "no friction, no vertical loading"),
+    (is_linear, {**SMOOTH, "bodies.1.period": [5e-4, 1.2]}, False, "more than 200000 rad of the fastest vibration"),
+    (has_half_turn_symmetry, UPRIGHT, False, "vertical loading"),
+    (has_half_turn_symmetry, {}, True, "no vertical loading"),
+    (has_one_axis_per_harmonic, UPRIGHT, False, "vertical loading"),
+    (has_one_axis_per_harmonic, TWICE_SHAKEN, True, "each harmonic has its own axis"),
+    (has_one_axis_per_harmonic, ALONG_X, False, "a harmonic acts along both axes, or both along one"),
+    (has_no_friction_law, SMOOTH, True, "no friction"),
+    (has_no_friction_law, law(fast=0.0, rate=10.0), False, "friction"),
 ]
 
 
@@ -113,12 +133,12 @@ def test_a_scene_says_what_may_be_left_out_and_why(
 def test_a_record_has_no_harmonics_to_leave_out() -> None:
     """Reductions decide by amplitudes; a record taken for loading without any would be solved as if at rest."""
     scene = load_scene("synthetic-pair").with_values(SMOOTH)
-    for reduction in (half_turn, own_axes, planar, linear):
+    for reduction in (has_half_turn_symmetry, has_one_axis_per_harmonic, is_planar, is_linear):
         assert reduction(scene) == Reduction(False, "a recorded motion: no harmonics, no phases")
     for asked in (lambda: scene.amplitudes, lambda: reference.problem.exponents(scene)):
         with pytest.raises(ValueError, match="recorded motion"):
             asked()
-    assert unused_harmonics(FIG3.with_values({"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]})) == [1]
+    assert find_unused_harmonics(FIG3.with_values({"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]})) == [1]
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from reference.measures import Demands
 from reference.measures.peak_demands import PER_BODY
 from reference.measures.peak_demands import QUANTITIES as DEMANDS
 from reference.problem import GRAVITY, Scene, SceneError, load_scene, parse_scene
-from reference.problem.measured import OF_BODIES, QUANTITIES
+from reference.problem.measured import BODY_QUANTITIES, QUANTITIES
 from reference.problem.scene_file import scene_text
 
 FIG3 = load_scene("fig3-I")
@@ -117,7 +117,7 @@ phases = [0.0, 1.5]
 
 def test_a_file_states_measured_peaks_which_change_no_digest() -> None:
     assert set(QUANTITIES) - {"mu"} <= set(DEMANDS) & {field.name for field in fields(Demands)}
-    assert {name: first - 1 for name, first in OF_BODIES.items() if name != "mu"} == PER_BODY
+    assert {name: first - 1 for name, first in BODY_QUANTITIES.items() if name != "mu"} == PER_BODY
     scene = parse_scene((TEXT + PEAKS).encode(), "rig.toml")
     peak, other = scene.measured or ()
     assert (peak.quantity, peak.body, peak.value, peak.source) == ("base_shear", None, 3.0, "run 7")

@@ -9,7 +9,7 @@ from chains import refusal
 
 from comparison.evidence.scaling.analysis import scale_scene
 from reference.problem import Scene, SceneError, builtin_scenes, load_family, load_scene
-from reference.problem.reductions import in_plane
+from reference.problem.reductions import turn_loading_to_x
 from reference.problem.scene_file import scene_text
 
 FIG3 = load_scene("fig3-I")
@@ -49,7 +49,7 @@ def test_none_leaves_a_key_out_arrays_are_lists_and_tables_of_the_caller_stay() 
 
 def test_copies_without_changes_and_dumps_stay_valid() -> None:
     limited = FIG3.with_values({"acceptance.mine.median": 0.1})
-    assert limited.acceptance.differences()[-1] == ("mine.median", "mine", "median", 0.1)
+    assert limited.acceptance.list_limited_differences()[-1] == ("mine.median", "mine", "median", 0.1)
     assert limited != FIG3
     assert limited.digest() == FIG3.digest()
     for scene in (FIG3, limited):
@@ -68,7 +68,7 @@ def test_a_scale_is_the_same_as_larger_amplitudes_and_counts_once() -> None:
         assert np.array_equal(scale_scene(by_key, 0.5).amplitudes, scale_scene(by_hand, 0.5).amplitudes)
         assert np.abs(by_key.with_amplitude(3.0).amplitudes).max() == pytest.approx(3.0)
         plane = by_key.with_values({"excitation.amplitudes": [[0.0, 0.0], [1.0, 0.5]]})
-        assert in_plane(plane).amplitudes[0] == pytest.approx([1.7, 0.85])
+        assert turn_loading_to_x(plane).amplitudes[0] == pytest.approx([1.7, 0.85])
 
 
 def test_the_record_of_a_scene_is_changed_by_its_keys(tmp_path: Any) -> None:

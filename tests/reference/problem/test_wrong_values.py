@@ -11,7 +11,7 @@ from reference.building import describe_building, word_force
 from reference.plausibility import implausible_drift, implausible_suite
 from reference.problem import Scene, SceneError, load_scene
 from reference.records.description import RecordDescription, describe_samples
-from reference.support.arguments import brief
+from reference.support.arguments import quote
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}
@@ -54,6 +54,12 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"isolator.friction": "0.1"}, "isolator.friction", "must be a valid number"),
     ({"excitation.periods.0": None}, "excitation.periods.0", "must be a number"),
     ({"excitation.record": "a.csv"}, "excitation.amplitudes", "a record takes the place of amplitudes, periods and"),
+    ({"excitation.record": "a.csv", "excitation.amplitudes": None}, "excitation.periods", "a record takes the place"),
+    (
+        {"excitation": {"record": "a.csv", "decay": [0.3, 0.3]}},
+        "excitation.decay",
+        "a record takes the place of amplitudes",
+    ),
     ({"excitation.amplitudes.0.0": 1e308, "excitation.scale": 1e10}, "excitation.scale", "leave every acceleration fi"),
     ({"title": "a\0b"}, "title", "must have no control characters"),
     ({"duration": 10**400}, "duration", "must be a valid number"),
@@ -75,6 +81,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"isolator.supports": [[0, 1], [1, -1], [-1, -1]]}, "isolator.ring", "remove this key"),
     (places([0, 1], [1, 0], [1, 1e7]), "isolator.supports.2.1", "to 1e+06 m"),
     (places([0.1, 0.1], [0.2, 0.2], [0.3, 0.3]), "isolator.supports", "on one line"),
+    (places([0.1, 0.1], [0.2, 0.2], [0.3, 0.3 + 1e-8]), "isolator.supports", "on one line"),
     (places([0, 1], [1, -1], [0, 1]), "isolator.supports", "at the same place"),
     (places([1, 1], [2, 1], [1, 2]), "bodies: center of mass of all [x, y] in m", "would carry nothing at rest"),
     (law(), "isolator.friction", "give fast and rate, load_exponent, heating or initial_stiffness"),
@@ -152,7 +159,7 @@ def test_a_list_of_another_length_is_one_line_with_its_form(values: dict[str, An
 @pytest.mark.parametrize(("values", "key", "rule"), WRONG)
 def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[str, Any], key: str, rule: str) -> None:
     said = refusal(load_scene("fig3-I").with_values, values, kind=SceneError)
-    value = "" if rule == "this key is required" else f" = {brief(said.value)}"
+    value = "" if rule == "this key is required" else f" = {quote(said.value)}"
     assert str(said).startswith(f"fig3-I: {key if ' = ' in key else f'{key}{value}: '}")
     assert rule in said.rule
     assert len(str(said)) < 700

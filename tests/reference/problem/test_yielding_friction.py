@@ -34,3 +34,15 @@ def test_effective_isolator_counts_the_elastic_part_of_the_loop():
     np.testing.assert_allclose(loss, [0.0, 0.0, 4.0 * 0.1 * WEIGHT * 0.008], atol=1e-12)
     np.testing.assert_array_equal(soft.stiffness[1:], rigid.stiffness[1:])
     assert soft.stiffness[0] == pytest.approx(WEIGHT * (0.05 / 1e-3 + 1.0 / SCENE.radius))
+
+
+def test_another_yield_displacement_leaves_the_rest_of_the_law():
+    scene = SCENE
+    table = {"slow": 0.05, "fast": 0.1, "rate": 20.0, "initial_stiffness": 900.0}
+    soft = scene.with_values({"isolator.friction": table, "name": "soft"}).with_yield_displacement(2e-3)
+    assert (soft.name, soft.yield_displacement) == ("soft", pytest.approx(2e-3))
+    assert soft.isolator.friction.initial_stiffness is None
+    rigid = soft.with_yield_displacement(0.0)
+    assert (rigid.dry_friction.elastic, rigid.dry_friction.fast, rigid.name) == (False, 0.1, "soft")
+    assert scene.with_yield_displacement(1e-3).with_yield_displacement(0.0).digest() == scene.digest()
+    assert scene.with_yield_displacement(0.0) is scene

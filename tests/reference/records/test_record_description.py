@@ -59,14 +59,15 @@ def test_the_final_displacement_is_that_of_the_ground(rows):
         assert one.final_displacement == pytest.approx(ground_displacement(scene, (0.0, 0.0), [end])[0, 0], abs=1e-12)
 
 
-CLIPPED = np.clip(SHAKING, -0.5, 0.5)
-UNEVEN = TIME + np.where(np.arange(2000) % 2, 0.002, 0.0)
+MIN_CLIPPED_SAMPLES = np.clip(SHAKING, -0.5, 0.5)
+MAX_STEP_VARIATION = TIME + np.where(np.arange(2000) % 2, 0.002, 0.0)
 WARNED = {
     "as it should be": (samples(SHAKING), ()),
     "noise": (samples(SHAKING + np.random.default_rng(1).normal(0.0, 0.01, 2000)), ()),
     "a zero line": (samples(SHAKING - 0.08), ("x ends at -1.6 m/s with a mean of -0.08 m/s^2 (7.4 % of its peak)",)),
     "a small zero line": (samples(SHAKING, SHAKING + 0.01), ("y ends at +0.2 m/s with a mean of +0.01 m/s^2",)),
-    "g for m/s^2": (samples(GRAVITY**2 * SHAKING), ("the peak is 9.779 g, above 3 g: is the unit right?",)),
+    "one direction much smaller": (samples(SHAKING, 0.005 * SHAKING), ()),
+    "g for m/s^2": (samples(SHAKING, GRAVITY**2 * SHAKING), ("the peak is 9.779 g, above 3 g: is the unit right?",)),
     "g called m/s^2": (
         samples(0.03 * SHAKING),
         (
@@ -75,8 +76,8 @@ WARNED = {
         ),
     ),
     "nothing at all": (samples(0.0), ("the peak is 0 g, below 0.005 g",)),
-    "unequal steps": (samples(SHAKING, time=UNEVEN), ("the steps are not equal: 0.008 to 0.012 s",)),
-    "clipped": (samples(CLIPPED - CLIPPED.mean()), ()),
+    "unequal steps": (samples(SHAKING, time=MAX_STEP_VARIATION), ("the steps are not equal: 0.008 to 0.012 s",)),
+    "clipped": (samples(MIN_CLIPPED_SAMPLES - MIN_CLIPPED_SAMPLES.mean()), ()),
     "few samples": (samples(SHAKING + 0.1)[:50], ()),
 }
 
@@ -170,6 +171,8 @@ def test_components_with_other_instants_are_refused(tmp_path):
             assert said in refusal(load_scene, place, kind=SceneError).rule
         else:
             assert (load_scene(place).record[:, 1] == load_scene(place).record[:, 2]).all()
+    third = scene_file(tmp_path, 'record = {x = "a.csv", y = "a.csv", z = "b.csv"}')
+    assert "other instants along y than along z" in refusal(load_scene, third, kind=SceneError).rule
 
 
 @pytest.mark.parametrize(("name", "directions"), [("synthetic-pair", "xy"), ("synthetic-triple", "xyz")])

@@ -73,8 +73,9 @@ def test_units_become_si():
 
 
 def test_a_direction_that_ends_early_is_at_rest_then():
-    samples = read_at2_samples({"x": at2([1.0, 2.0, 3.0]), "z": at2([4.0, 5.0])})
-    assert samples[:, [1, 3]] == pytest.approx(GRAVITY * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 0.0]]))
+    columns = {"x": [1.0, 2.0, 3.0], "y": [6.0, 7.0], "z": [4.0, 5.0, 8.0, 9.0]}
+    samples = read_at2_samples({axis: at2(values) for axis, values in columns.items()})
+    np.testing.assert_allclose(samples[:, 1:].T, GRAVITY * np.array([[1, 2, 3, 0], [6, 7, 0, 0], [4, 5, 8, 9]]))
 
 
 OF_THE_GROUND = "0.00630 0.00364 0.00099\n-0.00128 0.00368 0.00864\n"
@@ -125,6 +126,7 @@ NO_AT2 = [
     ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
     ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
     ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.0101)}, "DT = 0.01 s along x and 0.0101 s along y"),
+    ({**dict.fromkeys("xy", at2([1.0, 2.0])), "z": at2([1.0, 2.0], 0.02)}, "0.01 s along y and 0.02 s along z"),
     ({"x": at2([1.0, 2.0], sizes="NPTS= {}, DT= 0.x{} SEC,")}, "line 4: '0.x0.01': must be a number"),
     ({"x": at2([1.0])}, "1 samples"),
     ({"x": at2([1.0, 2.0]) + " " + 32_000 * "9" + "x"}, "line 5: '9999"),

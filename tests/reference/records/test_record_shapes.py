@@ -9,7 +9,7 @@ from reference.records.formats import READERS, at2, csv_table, read_record, reco
 from reference.records.samples import RecordError, join_directions
 
 PEER = "PEER NGA STRONG MOTION DATABASE RECORD\nInvented, 1/1/2000, Nowhere, 000\n"
-IN_G = PEER + "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 5, DT= .0100 SEC\n"
+G_UNIT_QUESTION = PEER + "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 5, DT= .0100 SEC\n"
 FIVE = [0.001, -0.003, 0.02, 0.01, 0.0]
 FIELDS = "  .1000000E-02 -.3000000E-02  .2000000E-01\n  .1000000E-01  .0000000E+00\n"
 ROWS = list(zip([0.0, 0.01, 0.02, 0.03], [0.001, 0.02, -0.03, 0.01]))
@@ -28,17 +28,17 @@ def read(content, name="a.txt", **options):
 
 
 AT2 = {  # texts of five values at 0.01 s
-    "trailer behind the last value": IN_G + FIELDS + "*** End Data ***\n",
-    "trailer of two lines": IN_G + FIELDS + "\n*** End Data ***\nchecked by somebody\n",
-    "a title behind the sizes": IN_G + "*** Begin data ***\n" + FIELDS,
+    "trailer behind the last value": G_UNIT_QUESTION + FIELDS + "*** End Data ***\n",
+    "trailer of two lines": G_UNIT_QUESTION + FIELDS + "\n*** End Data ***\nchecked by somebody\n",
+    "a title behind the sizes": G_UNIT_QUESTION + "*** Begin data ***\n" + FIELDS,
     "unit in words": PEER + "  Acceleration in g\n5 0.0100 NPTS, DT\n" + FIELDS,
     "unit in brackets": PEER + "Acceleration (g)\n5 0.0100 NPTS, DT\n" + FIELDS,
-    "carriage returns": (IN_G + FIELDS).replace("\n", "\r\n"),
-    "glued by the sign": IN_G + "  .1000000E-02-.3000000E-02  .2000000E-01\n  .1000000E-01  .0000000E+00\n",
-    "all glued": IN_G + "0.001-0.003+0.020+0.010+0.000\n",
-    "exponents of D": IN_G + FIELDS.replace("E", "D"),
+    "carriage returns": (G_UNIT_QUESTION + FIELDS).replace("\n", "\r\n"),
+    "glued by the sign": G_UNIT_QUESTION + "  .1000000E-02-.3000000E-02  .2000000E-01\n  .1000000E-01  .0000000E+00\n",
+    "all glued": G_UNIT_QUESTION + "0.001-0.003+0.020+0.010+0.000\n",
+    "exponents of D": G_UNIT_QUESTION + FIELDS.replace("E", "D"),
     "colons and no blanks": PEER + "IN UNITS OF G\nNPTS:5,DT:.0100SEC\n" + FIELDS,
-    "one value a line": IN_G + "\n".join(map(repr, FIVE)),
+    "one value a line": G_UNIT_QUESTION + "\n".join(map(repr, FIVE)),
 }
 
 
@@ -121,10 +121,14 @@ def test_a_unit_of_the_scene_is_that_of_a_table_without_one():
 
 
 ONE = "\n".join(f"{value:.3f}" for value in FOUR) + "\n"
-BLOCK = "7 0.0100\n 1.0E-02 2.0E-02 3.0E-02\n 4.0E-02 5.0E-02 6.0E-02\n 7.0E-02\n"
+BLOCK_HEADER = "7 0.0100\n 1.0E-02 2.0E-02 3.0E-02\n 4.0E-02 5.0E-02 6.0E-02\n 7.0E-02\n"
 PLAIN = [  # text, what is proposed, values at 0.01 s in g
     (ONE, '{file = "a.txt", step = 0.01, unit = "g"}, with the step and the unit of your source', FOUR),
-    (BLOCK, '{file = "a.txt", step = 0.01, unit = "g", skip = 1}, with the unit', [0.01 * n for n in range(1, 8)]),
+    (
+        BLOCK_HEADER,
+        '{file = "a.txt", step = 0.01, unit = "g", skip = 1}, with the unit',
+        [0.01 * n for n in range(1, 8)],
+    ),
     (
         "Invented, dt = 0.01 s, in g\n" + rows(" "),
         '{file = "a.txt", step = 0.01, unit = "g", skip = 1, column = 2}',
@@ -163,12 +167,17 @@ def test_stated_units_are_found_in_headers_of_plain_text():
 
 
 REFUSED = [  # name, text, options, and words of the line
-    ("a.AT2", IN_G + "  ************" + FIELDS[14:], {}, "line 5: '************': a Fortran field that has overflowed"),
-    ("a.AT2", IN_G + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
-    ("a.AT2", IN_G + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
-    ("a.AT2", IN_G + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
-    ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
-    ("a.AT2", IN_G + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
+    (
+        "a.AT2",
+        G_UNIT_QUESTION + "  ************" + FIELDS[14:],
+        {},
+        "line 5: '************': a Fortran field that has overflowed",
+    ),
+    ("a.AT2", G_UNIT_QUESTION + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
+    ("a.AT2", G_UNIT_QUESTION + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
+    ("a.AT2", G_UNIT_QUESTION + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
+    ("a.AT2", G_UNIT_QUESTION + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
+    ("a.AT2", G_UNIT_QUESTION + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
     (
         "a.AT2",
         (PEER + "Acceleration in cm/sec2\n5 0.0100 NPTS, DT\n" + FIELDS),
@@ -216,13 +225,13 @@ REFUSED = [  # name, text, options, and words of the line
     ),
     (
         "a.txt",
-        BLOCK,
+        BLOCK_HEADER,
         {"step": 0.01, "unit": "g"},
         "line 1: 2 values, 3 in other lines: a header, or a broken line: write",
     ),
     (
         "a.txt",
-        BLOCK,
+        BLOCK_HEADER,
         {"step": 0.01, "unit": "g", "skip": 1, "column": 1},
         "3 values: line 1 states 7: leave column out",
     ),
@@ -245,7 +254,7 @@ REFUSED = [  # name, text, options, and words of the line
     ("a.txt", ONE, {"step": 0.01, "unit": "g", "skip": -1}, "skip = -1: must be a whole number from 0 to"),
     ("a.txt", ONE, {"step": 0.01}, "plain text needs step and unit: write record = {file"),
     ("a.txt", "nothing\nof the kind\n", {}, "it has no lines of numbers: it is no record"),
-    ("a.AT2", IN_G + FIELDS, {"unit": "g"}, "PEER .AT2 states its own unit: remove unit"),
+    ("a.AT2", G_UNIT_QUESTION + FIELDS, {"unit": "g"}, "PEER .AT2 states its own unit: remove unit"),
     ("a.csv", b"\x89PNG\r\n\x1a\n\0\0\0", {}, "must be text in UTF-8"),
 ]
 
@@ -333,6 +342,12 @@ def test_files_of_jma_have_three_directions_and_no_time():
         ("a.ASC", ESM.format("E").replace("NDATA: 3", "NDATA: 4"), "3 values: the header says NDATA: 4"),
         ("a.ASC", ESM.format("E").replace("cm/s^2", "cm/s"), "UNITS: 'cm/s': must be that of an acceleration"),
         ("a.csv", JMA.replace("5.0", "x"), "line 8: 'x': must be a number"),
+        ("a.csv", JMA.replace(",6.0", ""), "line 8: 2 values: the header names 3 columns"),
+        ("a.csv", JMA.replace("3.0", "3.0,7.0"), "line 7: 4 values: the header names 3 columns"),
+        ("a.csv", JMA.replace("= 100Hz", "= 0Hz"), "SAMPLING RATE = 0 Hz: must be gal, and greater than 0"),
+        ("a.csv", JMA.replace("gal(cm/s/s)", "counts"), "UNIT = 'counts'"),
+        ("a.NS", KNET.format("N-S").replace("8388608", "0"), "must be greater than 0"),
+        ("a.NS", KNET.format("N-S").replace("100Hz", "0Hz"), "must be greater than 0"),
         ("a.csv", JMA.replace("NS,EW,UD", "north"), "the header must have a line 'NS,EW,UD'"),
         ("a.V2", COSMOS.replace("   3 acc", "   9 acc"), "must be a number"),
         ("a.V2", COSMOS + COSMOS, "2 channels of acceleration: must be one: take the channels apart"),
@@ -344,9 +359,22 @@ def test_a_broken_file_of_a_network_is_refused(name, text, said):
     assert said in str(refusal(read, text, name, kind=RecordError))
 
 
+def test_what_stands_behind_the_values_of_a_network_is_noticed():
+    _, reading = read(ESM.format("E") + "*** end\n", "a.ASC")
+    assert len(reading.notes) == 1
+
+
 def test_readers_have_names_of_their_own_and_one_recognizes_each_shape():
     assert len({reader.name for reader in READERS}) == len(READERS)
-    for text in (IN_G + FIELDS, KNET.format("1"), ESM.format("E"), COSMOS, CSMIP, JMA, "time [s],ax [g]\n0,1\n1,2\n"):
+    for text in (
+        G_UNIT_QUESTION + FIELDS,
+        KNET.format("1"),
+        ESM.format("E"),
+        COSMOS,
+        CSMIP,
+        JMA,
+        "time [s],ax [g]\n0,1\n1,2\n",
+    ):
         assert sum(reader.recognizes(text.splitlines()) for reader in READERS) == 1
 
 

@@ -5,7 +5,7 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, SceneError, load_family, load_scene
-from reference.records.motion_lists import FILE, motion_list_text
+from reference.records.motion_lists import FILE_NAME, motion_list_text
 from reference.records.pairing import SuiteError
 from reference.records.suites import list_motions
 
@@ -94,7 +94,7 @@ def test_what_is_no_record_is_ignored_and_counted(tmp_path):
     assert (
         "1 search result, 2 texts (licence.pdf, readme.txt), 1 folder, 1 other file (picture.png)." in listed.sentence
     )
-    assert FILE not in listed.sentence, "no line is proposed for words"
+    assert FILE_NAME not in listed.sentence, "no line is proposed for words"
     assert "x = A_H1.AT2, y = A_H2.AT2" in listed.sentence
 
 
@@ -119,11 +119,14 @@ def test_all_names_that_make_no_pair_come_in_one_message(tmp_path, names, said):
 
 
 def test_single_components_are_plane_motions_where_asked_for(tmp_path):
-    make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2")
+    place = make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", *(f"A_{way}.AT2" for way in ("H1", "H2", "UP")))
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all", components = 1}'))
     assert family.labels == {"excitation.record.motion": ("A_H1", "A_H2", "GM001", "GM002")}
     peaks = [scene.record[0, 1:].tolist() for scene in family.scenes]
     assert peaks == [[GRAVITY * number, 0.0, 0.0] for number in (3.0, 4.0, 1.0, 2.0)]
+    for name in ("B_N.AT2", "B_Z.AT2"):
+        (place / name).write_text(AT2.format(6))
+    assert "Ignored: 2 vertical components." in list_motions(str(place), place, 1).sentence
     for wrong in ("3", '"one"', "true"):
         record = f'record = {{suite = "suite", motion = 1, components = {wrong}}}'
         assert refusal(load_scene, scene_file(tmp_path, record), kind=SceneError).key == "excitation.record.components"
@@ -132,7 +135,7 @@ def test_single_components_are_plane_motions_where_asked_for(tmp_path):
 def test_a_list_of_motions_overrides_names(tmp_path):
     place = make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", "other.AT2")
     (place / "whole.csv").write_text("time [s],ax [m/s^2],ay [m/s^2]\n0,1,2\n1,3,4\n")
-    (place / FILE).write_text(
+    (place / FILE_NAME).write_text(
         "name;x;y;z;factor\nfirst;GM002.AT2;GM001.AT2;;2,5\nsecond;;;other.AT2;\nthird;whole.csv;;;-1\n"
     )
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
@@ -157,12 +160,12 @@ def test_a_plain_text_in_a_folder_is_named_with_the_line_that_takes_it(tmp_path)
     head, line = (said.partition(before)[2].partition('"')[0] for before in ('first line "', 'for this file "'))
     assert (head, line) == ("name,x,y,z,factor,step,unit,skip,column", "Hollin,Hollin.txt,,,1,0.01,g,0,1 2")
     assert "with the step and the unit of your source, which the file does not state; --write-motions" in said
-    (place / FILE).write_text(f"{head}\nA,A_H1.AT2,A_H2.AT2,,1\n{line}\n")
+    (place / FILE_NAME).write_text(f"{head}\nA,A_H1.AT2,A_H2.AT2,,1\n{line}\n")
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
     assert family.labels == {"excitation.record.motion": ("A", "Hollin")}
     np.testing.assert_allclose(family.scenes[1].record[:2, 1:], GRAVITY * np.array([[0.5, -1.0, 0.0], [1.5, 2.0, 0.0]]))
     assert family.scenes[1].record[1, 0] == 0.01
-    (place / FILE).unlink()
+    (place / FILE_NAME).unlink()
     for name in ("A_H1.AT2", "A_H2.AT2"):
         (place / name).unlink()
     assert f'for this file "{line}"' in str(refusal(list_motions, str(place), place, kind=SuiteError))
@@ -178,14 +181,14 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
         "second,one.acc,other.acc,,1,0.01,gal,,\n"
         "third,one.acc,,,1,0.01,gal,,1\nfourth,GM001.AT2,,,1,,,,\n"
     )
-    (place / FILE).write_text(text)
+    (place / FILE_NAME).write_text(text)
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
     first, second, third, fourth = (scene.record[1, 1:].tolist() for scene in family.scenes)
     np.testing.assert_allclose([first, second], [[4.0, 3.0, 0.0], [0.02, 0.05, 0.0]])
     assert (third, fourth) == ([0.02, 0.0, 0.0], [0.2 * GRAVITY, 0.0, 0.0])
     assert family.scenes[0].record[1, 0] == 0.02
     listed = list_motions(str(place), place)
-    (place / FILE).write_text(motion_list_text(listed.motions))
+    (place / FILE_NAME).write_text(motion_list_text(listed.motions))
     assert list_motions(str(place), place) == listed, "what is written says the same"
 
 
@@ -229,7 +232,7 @@ def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, f
     for name, text in files.items():
         (folder / name).write_text(text)
     if listed:
-        (folder / FILE).write_text(f"name,x,y,z,factor,step,unit,skip,column\n{listed}")
+        (folder / FILE_NAME).write_text(f"name,x,y,z,factor,step,unit,skip,column\n{listed}")
     error = refusal(load_scene, scene_file(tmp_path, 'record = {suite = "suite", motion = 1}'), kind=SceneError)
     assert (error.file, error.key, error.value) == (str(tmp_path / place[0]), *place[1:])
     assert words in error.rule
@@ -238,7 +241,7 @@ def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, f
 def test_a_written_list_says_what_was_paired(tmp_path):
     place = make_folder(tmp_path / "suite", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2", "B000.AT2", "B090.AT2")
     before = list_motions(str(place), place)
-    (place / FILE).write_text(text := motion_list_text(before.motions))
+    (place / FILE_NAME).write_text(text := motion_list_text(before.motions))
     assert text.splitlines()[:2] == ["name,x,y,z,factor", "A,A_H1.AT2,A_H2.AT2,A_UP.AT2,1"]
     after = list_motions(str(place), place)
     assert after.motions == before.motions
@@ -275,5 +278,5 @@ def test_a_written_list_says_what_was_paired(tmp_path):
 )
 def test_a_wrong_list_of_motions_is_refused_with_its_line(tmp_path, text, said):
     place = make_folder(tmp_path / "suite", "A.AT2")
-    (place / FILE).write_text(text)
+    (place / FILE_NAME).write_text(text)
     assert said in str(refusal(list_motions, str(place), place, kind=SuiteError))

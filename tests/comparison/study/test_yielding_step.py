@@ -1,0 +1,77 @@
+"""Friction that yields as a step of the study, from rigid friction on."""
+
+import pytest
+from studies import solved
+
+import reference
+from comparison.study.models import (
+    EXACT,
+    MODEL_HIERARCHY,
+    RIGID,
+    SMALL,
+    chain_of,
+    effect_pairs_of,
+    label_of,
+    models_of,
+    pairs_of,
+    partner_of,
+    readings_of,
+    with_steps_of_scenes,
+)
+from comparison.study.study import Study
+from comparison.study.user_models import user_model
+from reference.problem import load_scene
+from reference.problem.readings import DEFAULT_V_C
+
+PLAIN = load_scene("fig3-I").with_values({"duration": 3.0, "name": "plain"})
+SOFT = PLAIN.with_yield_displacement(1e-3).with_values({"name": "soft"})
+HIERARCHY = with_steps_of_scenes(MODEL_HIERARCHY, [SOFT])
+
+
+def test_the_law_is_a_step_of_its_own() -> None:
+    assert [model.key for model in chain_of(SOFT, HIERARCHY)] == ["rigid", "small", "exact", "translational", "spatial"]
+    effects = [(pair.effect, pair.first.key, pair.second.key) for pair in effect_pairs_of(SOFT, HIERARCHY)]
+    assert effects[:2] == [("yielding friction", "rigid", "small"), ("geometry", "small", "exact")]
+    total = pairs_of(SOFT, HIERARCHY)[0]
+    assert (total.first.key, total.second.key, total.base.key) == ("rigid", "spatial", "rigid")
+
+
+def test_scenes_without_the_key_have_the_models_they_had() -> None:
+    assert with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN]) == MODEL_HIERARCHY
+    both = with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, SOFT])
+    assert [model.key for model in models_of(PLAIN, both)] == [model.key for model in MODEL_HIERARCHY]
+    asked, before = (Study((PLAIN,), 2, 1e-3, hierarchy).batches() for hierarchy in (both, MODEL_HIERARCHY))
+    assert [(each.model, each.question, len(each.phases)) for each in asked] == [
+        (each.model, each.question, len(each.phases)) for each in before
+    ]
+
+
+def test_the_first_model_moves_the_scene_with_rigid_friction() -> None:
+    study = Study((SOFT,), 2, 1e-3, models_of(SOFT, HIERARCHY)[:2])
+    mu = solved(study)["mu"].sel(scene="soft", alpha1=0.0, alpha2=0.0)
+    for key, scene, settings in (("rigid", PLAIN, {"cutoff": DEFAULT_V_C}), ("small", SOFT, {})):
+        expected = reference.amplification(scene, [(0.0, 0.0)], equations="small", **settings).mu[0]
+        assert mu.sel(model=key).values == pytest.approx(expected, rel=1e-6)
+
+
+def test_words_are_those_of_the_law() -> None:
+    small = next(model for model in HIERARCHY if model.key == SMALL.key)
+    assert ["really sticks" in model.adds for model in (SMALL, small)] == [True, False]
+    assert ["set-valued" in model.assumptions["friction"] for model in (SMALL, small)] == [True, False]
+    assert [label_of(model, SOFT) for model in models_of(SOFT, HIERARCHY)[:3]] == [
+        "small equations, rigid friction, as integrated", "small equations", "exact equations",
+    ]  # fmt: skip
+    mixed = {model.key: model for model in with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, SOFT])}
+    assert mixed[EXACT.key].title == EXACT.title
+    assert mixed[EXACT.key].assumptions["friction"].startswith(f"{EXACT.assumptions['friction']}; where the scene says")
+    assert readings_of([RIGID, small], SOFT) == ["as integrated"]
+    assert readings_of([small], SOFT) == []
+    assert readings_of([SMALL], PLAIN) == ["literal supremum"]
+
+
+@pytest.mark.parametrize(
+    ("like", "partner"), [("small-resolved", "small"), ("exact", "exact"), ("regularised", "exact")]
+)
+def test_an_engine_of_the_user_is_compared_under_the_same_law(like: str, partner: str) -> None:
+    engine = user_model("mine", {"function": "mine:amplification"}, like)
+    assert partner_of(engine, SOFT, HIERARCHY).key == partner
