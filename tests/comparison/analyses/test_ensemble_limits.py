@@ -418,6 +418,16 @@ def test_plan_and_run_begin_with_the_building_as_it_was_read_once_for_both_bound
         assert said.count("Warning: block[lower bound]: the radius of the isolator is 60 m, above 50 m: mm?") == 1
 
 
+def test_a_limit_on_uplift_without_the_spatial_model_is_a_warning(folder: Path, capsys: Any) -> None:
+    placed = SCENE.replace("bounds =", "supports = 4, bounds =")
+    for limit, warned in (("uplift = 0.0", 2), ("displacement = 1.0", 0)):
+        Path("block.toml").write_text(f"{placed}[acceptance.demands]\n{limit}\n")
+        assert main(["block.toml", "--suite", "suite", "--plan"]) == 0
+        said = capsys.readouterr().out
+        assert said.count("no spatial model, as it lacks isolator.ring") == 2
+        assert said.count("Warning: block[") == warned == said.count(": no model has the uplift that a limit is on.")
+
+
 def test_a_scene_for_a_suite_needs_no_loading_of_its_own(folder: Path, capsys: Any) -> None:
     Path("block.toml").write_text(SCENE.partition("[excitation]")[0])
     assert run("block.toml", "--plan") == 0
