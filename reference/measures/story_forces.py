@@ -45,9 +45,9 @@ class StoryForces:
     support_min: tuple[Estimate, ...] | None
     support_max: tuple[Estimate, ...] | None
     uplift: tuple[Estimate, ...] | None
-    shear_along: tuple[tuple[Estimate, ...], ...]
-    moment_along: tuple[tuple[Estimate, ...], ...] | None
-    drift_along: tuple[tuple[Estimate, ...], ...]
+    shear_along: tuple[tuple[Estimate, ...], ...] = ((), ())
+    moment_along: tuple[tuple[Estimate, ...], ...] | None = None
+    drift_along: tuple[tuple[Estimate, ...], ...] = ((), ())
 
 
 @require_motion
