@@ -35,9 +35,9 @@ WORK_RANGE = Range(1.0, 1e12, "steps")
 # Number of successive levels with impacts, each another motion than the level before, after which refinement ends.
 MAX_DIFFERENT_MOTIONS = 3
 
-# Smallest number of levels with an error estimate where friction yields. Short slides that occur at one level and not at
-# the next decide how the platform oscillates on its springs: levels 0 and 1 may agree and both be wrong (measured: by
-# seven times the error that their difference shows, and level 2 by a seventeenth of their error).
+# Smallest number of levels with an error estimate where friction yields. Short slides that occur at one level and not
+# at the next decide how the platform oscillates on its springs: levels 0 and 1 may agree and both be wrong (measured:
+# by seven times the error that their difference shows, and level 2 by a seventeenth of their error).
 MIN_LEVELS_OF_YIELDING = 3
 
 
