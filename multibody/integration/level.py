@@ -25,6 +25,7 @@ from reference.problem.ranges import TOLERANCE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
+# Largest number of levels of accuracy that a phase pair goes through.
 MAX_LEVELS = 8
 
 # Smallest tolerance at which a record has a level before level 0 (measured: docs/records/multibody.md).
