@@ -150,6 +150,7 @@ def assert_demands(
     suite: str | Path | None = None,
     bounds: tuple[float, float] | None = None,
     displacement: float | None = None,
+    support_displacement: float | None = None,
     drift_ratio: float | None = None,
     uplift: float | None = None,
     base_shear: float | None = None,
@@ -171,8 +172,9 @@ def assert_demands(
         Motions in place of those of the file, as after ``phase-resonance ensemble --suite``.
     bounds : tuple of two floats, optional
         Factors of friction of a lower and an upper bound, in place of `isolator.bounds` of the file.
-    displacement, uplift, residual : float, optional, m
-        Limits of the displacement of the isolator, of the gap of a support, and of the displacement that stays.
+    displacement, support_displacement, uplift, residual : float, optional, m
+        Limits of the displacement of the isolator and of a support, of the gap of a support, and of the displacement
+        that stays.
     support_force_max : float, optional, N
         Limit of the force of a support, by statics.
     acceleration : float, optional, m/s^2
@@ -196,7 +198,8 @@ def assert_demands(
     Notes
     -----
     Limits that are not given are those of ``[acceptance.demands]`` in the file. Everything is computed in this process,
-    by the exact equations. With a limit on the uplift the spatial engine computes the motions that govern.
+    by the exact equations. With a limit on the uplift or on the displacement of a support the spatial engine computes
+    the motions that govern.
 
     Examples
     --------
@@ -207,8 +210,9 @@ def assert_demands(
     from comparison.analyses.ensemble.gate import check_demands  # loaded on first use
 
     limits = {
-        "displacement": displacement, "drift_ratio": drift_ratio, "uplift": uplift, "base_shear": base_shear,
-        "support_force_max": support_force_max, "acceleration": acceleration, "residual": residual,
+        "displacement": displacement, "support_displacement": support_displacement, "drift_ratio": drift_ratio,
+        "uplift": uplift, "base_shear": base_shear, "support_force_max": support_force_max,
+        "acceleration": acceleration, "residual": residual,
     }  # fmt: skip
     given: dict[str, Any] = {
         name: check_number(name, limit, range_of(DemandLimits, name))

@@ -41,11 +41,17 @@ class DemandLimits(LimitTable):
     """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
 
     limited = (
-        "displacement", "drift_ratio", "uplift", "base_shear", "support_force_max", "acceleration", "residual",
+        "displacement", "support_displacement", "drift_ratio", "uplift", "base_shear", "support_force_max",
+        "acceleration", "residual",
     )  # fmt: skip
 
     displacement: NonNegative | None = key(
         "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
+    )
+    support_displacement: NonNegative | None = key(
+        "largest displacement of a support, which turns with the platform; the spatial engine alone has it",
+        Range(0.0, 1e6, "m"),
+        models=ENSEMBLE,
     )
     drift_ratio: NonNegative | None = key(
         "largest drift of any story over its height, the distance of the centers of mass",

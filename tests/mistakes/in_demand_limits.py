@@ -4,6 +4,10 @@ from register import Mistake
 
 LIMITS = "comparison/analyses/ensemble/limits.py"
 COMMAND = "comparison/analyses/ensemble/command.py"
+SENTENCES = "comparison/analyses/ensemble/sentences.py"
+PANELS = "comparison/analyses/ensemble/panels.py"
+HAND_CHECKS = "comparison/analyses/ensemble/hand_checks.py"
+REPORT = "tests/comparison/analyses/test_ensemble_report.py::test_"
 SEEN = "tests/comparison/analyses/test_ensemble_limits.py::test_"
 GATE = "tests/comparison/analyses/test_assert_demands.py::test_"
 PLAN = "tests/comparison/cli/test_check_and_plan.py::test_"
@@ -88,10 +92,42 @@ MISTAKES = (
             (SEEN + "demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_errors",)),
     Mistake(LIMITS, "for place in dict.fromkeys([*old, *new])", "for place in new",
             "A demand that is gone is not missed.", (SEEN + "a_demand_that_one_of_two_ensembles_lacks_is_not_compared",)),
-    Mistake(LIMITS, "check.bound, check.verdict, word_check(check)) for check in checks]",
-            "check.bound, check.verdict, word_check(check)) for check in checks[:1]]",
+    Mistake(LIMITS, "    for each in limits:\n", "    for each in limits[:1]:\n",
             "The report has the verdict on the first limit alone.",
             (SEEN + "the_report_has_the_verdict_on_every_limit",)),
+    Mistake(LIMITS, "each.verdict != NOT_COMPARED and each.found", "each.found",
+            "A mean of some motions has a ratio to its limit.", (SEEN + "the_report_has_the_verdict_on_every_limit",)),
+    Mistake(LIMITS, "needed = (limit * len(values) - ", "needed = (limit * len(known) - ",
+            "Motions without a value break a mean by less than they do.",
+            (SEEN + "what_a_motion_without_a_value_leaves_open_is_not_called_met",)),
+    Mistake(LIMITS, "    if ensemble.engine.pending:\n", "    if False:\n",
+            "Before the engine has begun a page says that --engine 0 leaves it out.",
+            (SEEN + "a_page_before_the_engine_says_that_it_is_provisional_and_not_what_leaves_it_out",)),
+    Mistake(COMMAND, "replace(result.engine, pending=pending)", "result.engine",
+            "A page that is written before the engine looks final.",
+            ("tests/comparison/analyses/test_ensemble.py::test_the_equations_are_shown_before_the_engine_runs",)),
+    Mistake(SENTENCES, 'return f"{verdicts}{lacking}{text', 'return f"{lacking}{text',
+            "The first sentence does not give the verdict.", (SEEN + "the_report_has_the_verdict_on_every_limit",)),
+    Mistake(SENTENCES, "R / ρ = {1.0 + sphere / building.radius:.4g}", "R / ρ = {1.0:.4g}",
+            "The displaced weight is about the centers of the spheres.",
+            (REPORT + "the_displaced_weight_is_worded_about_the_contact_points_and_once",)),
+    Mistake(SENTENCES, "max(axis) - min(axis) > 1e-6 * max(axis)", "False",
+            "Damping of any law is called in proportion to the stiffness.",
+            (REPORT + "damping_in_proportion_to_the_stiffness_is_said_and_no_other_is",)),
+    Mistake(PANELS, "marks=MEDIAN_MARK", "marks=True", "The median looks like one more motion.",
+            (REPORT + "the_median_the_travel_and_the_limit_are_told_apart_from_the_motions",)),
+    Mistake(PANELS, "for scale in sorted(curve.scales, reverse=True)\n", "for scale in ()\n",
+            "A motion at the travel is not drawn.",
+            (REPORT + "the_median_the_travel_and_the_limit_are_told_apart_from_the_motions",)),
+    Mistake(PANELS, '(below if quantity == "overturning_moment" else ', '(heights if quantity == "overturning_moment" else ',
+            "A moment stands a story above the floor about which it is taken.",
+            (REPORT + "moments_stand_where_they_are_taken_and_shears_in_the_middle_of_their_stories",)),
+    Mistake(HAND_CHECKS, "math.hypot(math.tan(angle), at_rest)", "math.tan(angle)",
+            "The range of the base shear by hand begins without friction.",
+            (REPORT + "checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong",)),
+    Mistake(HAND_CHECKS, "shear / (stiff * math.hypot(1.0, 2.0 * ratio))", "shear / stiff",
+            "Dampers carry nothing of a drift by hand.",
+            (REPORT + "checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong",)),
     Mistake(COMMAND, "    print_buildings(console, [(member.structure, member.scene) for member in members])\n", "",
             "An ensemble says nothing of the building that it read.",
             (SEEN + "plan_and_run_begin_with_the_building_as_it_was_read_once_for_both_bounds",)),
@@ -261,7 +297,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/hand_checks.py", "if self.low <= self.found <= self.high:", "if True:",
             "Every number is inside its range.",
             ("tests/comparison/analyses/test_ensemble_report.py::test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong",)),
-    Mistake(LIMITS, 'DISPLAY_UNITS["N"] if check.unit == "N" else (check.unit, 1.0)', 'DISPLAY_UNITS["N"] if check.unit == "N" else (check.unit, 1e3)',
+    Mistake(LIMITS, 'DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit', '(unit, 1e3) if unit',
             "A displacement in mm is called one in m.", (SEEN + "forces_accelerations_and_residuals_are_limited_each_in_its_unit_and_reading",)),
     Mistake("comparison/analyses/ensemble/table.py", 'lineterminator="\\r\\n")', 'lineterminator="\\n")',
             "A name that begins with a carriage return breaks a row under Python 3.11.",

@@ -130,6 +130,7 @@ def read_building(scene: Scene) -> result.BuildingRead:
         radius=finite_or_none(scene.radius),
         friction=() if scene.lubricated else (scene.dry_friction.slow, scene.dry_friction.fast),
         travel=scene.isolator.travel,
+        sphere_radius=scene.isolator.sphere_radius,
         heights=None if building.heights is None else building.heights.tolist(),
         floors=[body.floor or "" for body in scene.bodies],
         friction_rate=None if scene.lubricated else scene.dry_friction.rate,

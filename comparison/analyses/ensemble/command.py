@@ -129,7 +129,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.missing(ensemble.make_engine_tasks(chosen))
         if further:
-            write(results, ensemble.collect_points(results), print_equations)
+            write(results, ensemble.collect_points(results), print_equations, pending=len(chosen))
             display.extend(sum(task.seconds for task in further))
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
@@ -212,11 +212,13 @@ def write_ensemble(
     results: TaskResults,
     points: EnsemblePoints,
     show: Callable[[Console, EnsembleResult], None],
+    pending: int = 0,
 ) -> EnsembleResult:
     """Write the files of the ensemble, print its tables, write its page; return the result."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = build(points, run)
+    result = replace(result, engine=replace(result.engine, pending=pending))
     checks = check(result)
     result = replace(result, limits=list_verdicts(checks))
     files = {STORED.name: STORED.as_json(result)}
@@ -238,7 +240,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
             run["compute_seconds"],
             run["began"],
             [
-                JUnitCase(f"{each.key}: {each.what}", [] if each.verdict == MET else [word_check(each)])
+                JUnitCase(f"{each.key}: {each.title}", [] if each.verdict == MET else [word_check(each)])
                 for each in checks
                 if each.bound == bound
             ],

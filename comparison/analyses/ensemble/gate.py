@@ -34,13 +34,13 @@ def check_demands(
     for member in members:
         own = asked.get(member.structure, DemandLimits()).model_dump(exclude_none=True)
         asked[member.structure] = DemandLimits.model_validate({**own, **limits})
-    uplift = any(each.uplift is not None for each in asked.values())
+    by_engine = any(each.uplift is not None or each.support_displacement is not None for each in asked.values())
     before = None if stored is None else STORED.load(Path(stored))
     if stored is not None and before is None:
         raise ValueError(f"stored: {str(stored)!r} has no {STORED.name}: phase-resonance ensemble --out writes one")
     if before is None and not any(each.limits_by_key() for each in asked.values()):
         raise ValueError(f"no limit: give {', '.join(DemandLimits.limited)} or stored")
-    result = compute_ensemble(Ensemble(members), uplift)
+    result = compute_ensemble(Ensemble(members), by_engine)
     checks = check_limits(result, asked)
     checks += [] if before is None else compare_with_stored(result, before, within)
     return word_checks(checks) if any(check.verdict != MET for check in checks) else []

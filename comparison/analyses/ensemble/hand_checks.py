@@ -26,8 +26,13 @@ class HandCheck:
     @property
     def by_hand(self) -> str:
         """Return the number computed by hand, or its range, in words."""
-        ends = f"{self.low:.4g}", f"{self.high:.4g}"
+        ends = _word_number(self.low), _word_number(self.high)
         return f"{ends[0] if ends[0] == ends[1] else ' to '.join(ends)} {self.unit}"
+
+    @property
+    def in_report(self) -> str:
+        """Return the number of the report in words."""
+        return f"{_word_number(self.found)} {self.unit}"
 
     @property
     def verdict(self) -> str:
@@ -37,6 +42,10 @@ class HandCheck:
         if self.low <= self.found <= self.high:
             return "inside"
         return f"outside by {percent(max(self.low - self.found, self.found - self.high) / self.found)}"
+
+
+def _word_number(value: float) -> str:
+    return f"{value:.4g}" if value < 1e4 else f"{value:.0f}"
 
 
 def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
@@ -70,27 +79,37 @@ def _check_base_shear(ensemble: EnsembleResult, structure: Structure) -> Iterato
     motion = max(known, key=lambda name: known[name])
     shear = ensemble.values_at_largest_scale(structure.name, "base_shear", None, EXACT.key)[motion].value
     angle = math.asin(known[motion] / read.radius)
+    at_rest, sliding = read.friction
     formula = (
-        f"W tan φ to W (tan φ + {read.friction[1]:.3g}), sin φ = {1e3 * known[motion]:.4g} / {1e3 * read.radius:.4g}"
+        f"W √(tan² φ + {at_rest:.3g}²) to W (tan φ + {sliding:.3g}), "
+        f"sin φ = {1e3 * known[motion]:.4g} / {1e3 * read.radius:.4g}"
     )
-    low, high, weight = math.tan(angle), math.tan(angle) + read.friction[1], structure.weight / 1e3
+    low, high, weight = math.hypot(math.tan(angle), at_rest), math.tan(angle) + sliding, structure.weight / 1e3
     if shear is not None:
         yield HandCheck(f"base shear under {motion}", formula, low * weight, high * weight, shear / 1e3, "kN")
 
 
 def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
-    """Yield the check that the drift of the top story is its shear over its stiffness; dampers carry a part."""
+    """Yield the check that the top drift is shear over stiffness under the motion with the largest base shear."""
     read, top = structure.building, structure.bodies
     assert read is not None
-    drift, shear = (ensemble.find_demand(structure.name, name, top) for name in ("drift", "story_shear"))
-    if drift is None or shear is None or not read.stiffness:
+    base, shears, drifts = (
+        ensemble.values_at_largest_scale(structure.name, name, body, EXACT.key)
+        for name, body in (("base_shear", None), ("story_shear", top), ("drift", top))
+    )
+    known = {motion: each.value for motion, each in base.items() if each.value is not None and motion in shears}
+    if not read.stiffness or not known:
         return
-    drifts, force = (each.fractiles[1].value for each in (drift, shear))  # medians over the motions
-    (along_x, along_y), what = read.stiffness[-1], f"median drift below {name_floor(structure, top)}"
-    if along_x != along_y or not drifts or not force:
+    motion = max(known, key=lambda name: known[name])
+    shear, drift = shears[motion].value, drifts[motion].value
+    soft, stiff = sorted(read.stiffness[-1])
+    if not shear or not drift:
         return
-    formula = f"median shear {force / 1e3:.4g} kN over {along_x / 1e6:.4g} MN/m; dampers carry the rest"
-    yield HandCheck(what, formula, 1e3 * force / along_x, 1e3 * force / along_x, 1e3 * drifts, "mm")
+    ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # of the third mode
+    low, high = 1e3 * shear / (stiff * math.hypot(1.0, 2.0 * ratio)), 1e3 * shear / soft
+    both = " to ".join(dict.fromkeys(f"{each / 1e6:.4g}" for each in (stiff, soft)))
+    formula = f"V / (k √(1 + (2 ζ)²)) to V / k, V = {_word_number(shear / 1e3)} kN, k = {both} MN/m, ζ = {ratio:.3g}"
+    yield HandCheck(f"drift below {name_floor(structure, top)} under {motion}", formula, low, high, 1e3 * drift, "mm")
 
 
 def list_hand_check_rows(ensemble: EnsembleResult) -> list[tuple[str, HandCheck]]:

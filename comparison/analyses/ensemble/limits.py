@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from comparison.analyses.ensemble.governing import list_governing_motions
-from comparison.analyses.ensemble.quantities import DISPLAY_UNITS, demand_title, unit_of_demand
+from comparison.analyses.ensemble.quantities import DISPLAY_UNITS, demand_title, unit_of_demand, word_value
 from comparison.analyses.ensemble.result import DemandAtScale, EnsembleResult, LimitVerdict, Statistic, Structure
 from comparison.analyses.ensemble.rows import label_structures, locate_demand
 from comparison.analyses.ensemble.sentences import word_motion_count
@@ -40,8 +40,7 @@ EVENT_COUNT_KEY = "stops"  # demand that counts events, to which a relative tole
 STORED_TOLERANCE_RANGE = Range(0.0, 10.0)  # admissible relative tolerances of a comparison with a stored ensemble
 WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)
 NOT_COMPUTED = (
-    "no model that was computed has it; the spatial engine has it without --engine 0, and needs supports, heights and "
-    "sizes of bodies"
+    "no model that was computed has it; the spatial engine has it, and needs supports, heights and sizes of bodies"
 )
 NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"
 
@@ -51,8 +50,8 @@ class DemandCheck:
     """
     A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
 
-    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words, with the
-    statistic and the motions. found, stated: in `unit`; None without a number. excess: found less stated; of a limit 0
+    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. on: the
+    statistic and its motions. found, stated: in SI; None without a number. excess: found less stated; of a limit 0
     below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
     compared, "" otherwise. is_least: whether the demand is larger than `found` by an unknown amount.
     """
@@ -60,6 +59,7 @@ class DemandCheck:
     key: str
     bound: str
     what: str
+    on: str
     found: float | None
     stated: float | None
     excess: float | None = None
@@ -76,19 +76,50 @@ class DemandCheck:
             return NOT_MET
         return NOT_COMPARED if self.reason else judge_error(self.excess, self.allowed)
 
+    @property
+    def title(self) -> str:
+        """Return the demand with its statistic and motions."""
+        return f"{self.what}, {self.on}"
+
+
+def unit_of_check(unit: str) -> tuple[str, float]:
+    """Return the unit in which a checked demand of an SI unit is read, and its factor; a pure number is in percent."""
+    return DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit else ("%", 100.0)
+
 
 def word_check(check: DemandCheck) -> str:
     """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
-    unit, factor = DISPLAY_UNITS["N"] if check.unit == "N" else (check.unit, 1.0)
-    found, stated = (
-        "none" if value is None else f"{factor * value:.4g} {unit}".rstrip() for value in (check.found, check.stated)
-    )
+    found, stated = (_word_number(value, check.unit) for value in (check.found, check.stated))
     under = f" ({check.motion})" if check.motion else ""
-    verdict = word_verdict(check.verdict, check.excess, check.stated, check.unit)
-    verdict += f" ({check.reason})" if check.reason else ""
     least = "at least " if check.is_least else ""
+    numbers = f"{least}{found}{under}, {_word_stated(check)} {stated}"
+    return f"{check.bound}: {check.title}: {numbers}: {_word_check_verdict(check)}"
+
+
+def _word_number(value: float | None, unit: str) -> str:
+    read, factor = unit_of_check(unit)
+    return word_value(value, None, factor) + (f" {read}" if value is not None else "")
+
+
+def _word_check_verdict(check: DemandCheck) -> str:
+    unit, factor = unit_of_check(check.unit)
+    excess, stated = (None if value is None else factor * value for value in (check.excess, check.stated))
+    verdict = word_verdict(check.verdict, excess, stated, unit)
     verdict = verdict.replace("(by ", "(by more than ") if check.is_least else verdict
-    return f"{check.bound}: {check.what}: {least}{found}{under}, {_word_stated(check)} {stated}: {verdict}"
+    return verdict + (f" ({check.reason})" if check.reason else "")
+
+
+def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
+    """Return demand, bound, computed and stated number, ratio, statistic, motion and verdict of every limit."""
+    rows: list[tuple[str, ...]] = []
+    for each in limits:
+        least = "≥ " if each.is_least else ""
+        ratio = "none"
+        if each.verdict != NOT_COMPARED and each.found is not None and each.stated:
+            ratio = f"{least}{each.found / each.stated:.3g}"
+        found, stated = (_word_number(value, each.unit) for value in (each.found, each.stated))
+        rows.append((each.what, each.bound, f"{least}{found}", stated, ratio, each.on, each.motion, each.words))
+    return rows
 
 
 def _word_stated(check: DemandCheck) -> str:
@@ -103,7 +134,13 @@ def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
 
 def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
     """Return the verdicts as file and page show them, in the order of the checks."""
-    return [LimitVerdict(check.key, check.bound, check.verdict, word_check(check)) for check in checks]
+    return [
+        LimitVerdict(
+            check.key, check.bound, check.verdict, word_check(check), check.what, check.on, check.found, check.stated,
+            check.unit, check.motion, check.is_least, _word_check_verdict(check),
+        )
+        for check in checks
+    ]  # fmt: skip
 
 
 def _rank_of_check(check: DemandCheck) -> tuple[int, float, float]:
@@ -154,18 +191,20 @@ def _check_body(
     alone = model if of_engine else ""
     on = _word_statistic(ensemble, statistic, count, alone, part=governing, governing=not lacking)
     by = " by statics" if key == "support_force_max" and not of_engine else ""
-    what = f"{_word_demand(structure, key, body)}{by}, {on}"
-    what += f" at scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 else ""
-    about: tuple[str, str, str] = f"{LIMIT_KEY_PREFIX}{key}", label_structures(ensemble)[structure.name], what
+    on += f" at scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 else ""
+    what, bound = f"{_word_demand(structure, key, body)}{by}", label_structures(ensemble)[structure.name]
+    about: tuple[str, str, str, str] = f"{LIMIT_KEY_PREFIX}{key}", bound, what, on
     unit, ended = "" if key == WEIGHT_SHARE_KEY else unit_of_demand(key), len(values) - len(known)
     reason = f"{ended} {'motion has' if ended == 1 else 'motions have'} no value" if ended else lacking
     if is_least:
         return DemandCheck(*about, least, limit, least - limit, 0.0, unit, least_motion, is_least=True)
-    reason += (
-        f"; with the travel there at least {least:.4g} m" if statistic == MEAN_STATISTIC and least > -math.inf else ""
-    )
+    if statistic == MEAN_STATISTIC and ended and not governing:
+        reason += f"; with the travel there at least {_word_number(least, unit)}" if least > -math.inf else ""
+        needed = (limit * len(values) - math.fsum(value for value, *_ in known) / per) / ended
+        theirs = "a value there" if ended == 1 else "a mean of theirs"
+        reason += f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
     if not known:
-        reason = reason if values else "heights of the bodies are needed" if key == "drift_ratio" else NOT_COMPUTED
+        reason = reason if values else _explain_lacking_demand(ensemble, key)
         return DemandCheck(*about, None, limit, unit=unit, reason=reason)
     value, error, motion = _compute_mean(known) if statistic == MEAN_STATISTIC and not governing else max(known)
     found, error = value / per, error / per
@@ -175,6 +214,15 @@ def _check_body(
     elif excess > error and governing and not reason:  # The motions that are missing could make the mean smaller.
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
     return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
+
+
+def _explain_lacking_demand(ensemble: EnsembleResult, key: str) -> str:
+    """Return why no motion of any model has a limited demand."""
+    if key == "drift_ratio":
+        return "heights of the bodies are needed"
+    if ensemble.engine.pending:
+        return "the engine’s motions are not computed yet"
+    return NOT_COMPUTED + ("" if ensemble.engine.motions else "; --engine 0 leaves it out")
 
 
 def _word_demand(structure: Structure, key: str, body: int | None) -> str:
@@ -285,7 +333,8 @@ def _compare_demands(
         about = (
             quantity,
             named[structure],
-            f"{demand_title(quantity, body)}, {statistic}, scale {scale:g}",
+            demand_title(quantity, body),
+            f"{statistic}, scale {scale:g}",
             found,
             stated,
         )

@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from comparison.analyses.ensemble import panels, sentences
 from comparison.analyses.ensemble.hand_checks import list_hand_check_rows
+from comparison.analyses.ensemble.limits import LIMIT_KEY_PREFIX, make_limit_rows
 from comparison.analyses.ensemble.quantities import FRACTILES, demand_title, display_unit, word_value
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import (
@@ -32,7 +33,6 @@ from comparison.report.panels import Panel
 from comparison.report.section import Section
 from comparison.runner.attempts import LostParts
 from comparison.study.models import EXACT
-from comparison.verdicts import count_verdicts, word_counts
 from reference.problem import GRAVITY
 
 Context = Mapping[str, Any]
@@ -45,7 +45,10 @@ def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
         "name_floor": name_floor,
         "isolator_sentence": sentences.isolator_sentence,
         "below_contact_sentence": sentences.below_contact_sentence,
-        "plate_sentence": sentences.plate_sentence(ensemble.structures[0]),
+        "sentences": [
+            sentences.displaced_weight_sentence(ensemble.structures[0]),
+            sentences.damping_sentence(ensemble.structures[0]),
+        ],
         "word_plan_sizes": sentences.word_plan_sizes,
         "not_modeled": sentences.NOT_MODELED,
     }
@@ -72,11 +75,16 @@ def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
             *filter(None, [sentences.travel_sentence(ensemble)]),
         ],
         "panels": draw_panels(panels.make_isolator_panels(ensemble), lost),
+        "plots_note": panels.plots_note(ensemble),
     }
 
 
 def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    return {"counts": word_counts(count_verdicts(each.verdict for each in ensemble.limits), "demand")}
+    return {
+        "limits_sentence": sentences.limits_sentence(ensemble),
+        "rows": make_limit_rows(ensemble.limits),
+        "all_limits": all(each.key.startswith(LIMIT_KEY_PREFIX) for each in ensemble.limits),
+    }
 
 
 def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
@@ -208,6 +216,7 @@ def render_ensemble_page(ensemble: EnsembleResult) -> str:
     context = {
         "heading": heading,
         "running": "; ".join(filter(None, [heading, began[:16].replace("T", " ") + " UTC" if began else ""])),
+        "pending": sentences.pending_sentence(ensemble),
         "answer": lost.attempt("answer", partial(sentences.answer_sentence, ensemble)) or "",
         "data": compress_to_text(b"null"),
         "packed": {},

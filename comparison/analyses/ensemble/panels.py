@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analyses.ensemble.quantities import SUPREMUM, demand_title, display_unit
+from comparison.analyses.ensemble.limits import LIMIT_KEY_PREFIX
+from comparison.analyses.ensemble.quantities import SUPREMUM, demand_title, display_unit, word_value
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
-from comparison.analyses.ensemble.rows import PROFILE_QUANTITIES, label_structures, name_floor
-from comparison.analyses.ensemble.sentences import word_motion_count
+from comparison.analyses.ensemble.rows import PROFILE_QUANTITIES, label_structures, locate_demand
+from comparison.analyses.ensemble.sentences import TRAVEL_REACHED, word_motion_count
 from comparison.report.panels import Panel, make_panel
 from reference.problem import GRAVITY
 
@@ -17,6 +18,7 @@ PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "suppo
 PERIOD_AXIS = {"title": "period, s", "log": True}  # axis of a spectrum's periods
 STRIP_WIDTH = 0.3  # width of the strip of one structure, as a share of the distance between structures
 FRACTILE_LINES = (("16 %", 0, "2 2"), ("50 %", 1, ""), ("84 %", 2, "7 3"))
+MEDIAN_MARK, ARROW_MARK = 7, 2  # a flat bar and an arrow upwards: marks of plot.js
 HEIGHT_AXIS = "height above the sliding contact, m"
 
 
@@ -65,14 +67,16 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         look: dict[str, Any] = {
             "name": f"{label_structures(ensemble)[name]}: one motion",
             "color": place,
-            "legend": False,
         }
         look |= {"marks": True, "line": False} if one else {"width": 0.7}
         series += _motion_series(motions, factor, place if one else None, **look)
+        if quantity == "displacement":
+            series += _travel_arrows(ensemble, place, motions, factor)
         if stripes := ensemble.list_demands_over_scales(name, quantity):
             x = [place + STRIP_WIDTH if one else stripe.scale for stripe in stripes]
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
-            series.append(_median_line(ensemble, place, x, fractiles, factor, band=not one, line=not one))
+            series.append(_median_line(ensemble, place, x, fractiles, factor, band=not one, line=not one,
+                                       marks=MEDIAN_MARK))  # fmt: skip
         look = {"name": f"{ensemble.engine.model} engine", "color": "ink", "marks": True, "line": False}
         look |= {"legend": False} if by_engine else {}
         by_engine += _motion_series(engine, factor, place - STRIP_WIDTH if one else None, **look)
@@ -81,9 +85,72 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     bounds = list(label_structures(ensemble).values())
     strips = {"title": "", "ticks": [[place, bounds[place]] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * ensemble.largest_scale]}
+    axis: dict[str, Any] = strips if one else scales
+    series += _stated_lines(ensemble, quantity, axis["range"])
     label = f"{title} {'by bound' if one else 'over the scale factor'}, {word_motion_count(ensemble.motions)}"
     series += by_engine
-    return make_panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
+    return make_panel(title, label, axis, _from_zero(f"{title}, {unit}", series), series)
+
+
+def _travel_arrows(
+    ensemble: EnsembleResult, place: int, curves: Sequence[DemandCurve], factor: float
+) -> list[dict[str, Any]]:
+    """Return arrows at the travel for the motions of a structure that reach it, each at its smallest such scale."""
+    structure, one = ensemble.structures[place], len(ensemble.scales) == 1
+    travel = structure.building.travel if structure.building else None
+    reached = {
+        (each.motion, each.scale)
+        for each in ensemble.ended
+        if (each.structure, each.status) == (structure.name, TRAVEL_REACHED)
+    }
+    at = {
+        curve.motion: _strip_place(place, number, len(curves)) if one else scale
+        for number, curve in enumerate(curves)
+        for scale in sorted(curve.scales, reverse=True)
+        if (curve.motion, scale) in reached
+    }
+    if travel is None or not at:
+        return []
+    look: dict[str, Any] = {
+        "color": place,
+        "marks": ARROW_MARK,
+        "line": False,
+        "titles": [f"{motion}: at the travel" for motion in at],
+    }
+    name = f"{label_structures(ensemble)[structure.name]}: at the travel"
+    return [{"name": name, "x": list(at.values()), "y": [factor * travel] * len(at), **look}]
+
+
+def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]) -> list[dict[str, Any]]:
+    """Return a line across a plot for every travel and every limit that is stated of a demand."""
+    factor = display_unit(quantity, 1.0)[1]  # the limit of a base shear is a share of the weight
+    travels: list[tuple[str, float, dict[str, Any]]] = [
+        ("travel", each.building.travel, {"color": "ink", "width": 1.0})
+        for each in ensemble.structures
+        if each.building and each.building.travel and quantity == "displacement"
+    ]
+    limits = [
+        (f"limit ({each.on.partition(' ')[0]})", each.stated, {"color": "gray", "dash": "7 3"})
+        for each in ensemble.limits
+        if each.key == f"{LIMIT_KEY_PREFIX}{quantity}" and each.stated is not None
+    ]
+    stated = {(name, value): look for name, value, look in [*travels, *limits]}
+    return [{"name": name, "x": [*span], "y": [factor * value] * 2, **look} for (name, value), look in stated.items()]
+
+
+def plots_note(ensemble: EnsembleResult) -> str:
+    """Return what dots, lines and marks of the plots of demands are."""
+    if len(ensemble.scales) > 1:
+        return "Every thin line is one motion; a band is from 16 % to 84 % about the median."
+    return (
+        "Every dot is one motion that has a value. The flat mark at the right of a group is the median of all motions, "
+        "with a line from 16 % to 84 % where all three have a value."
+    )
+
+
+def _strip_place(place: float, number: int, count: int) -> float:
+    """Return where a motion stands in the strip of its structure."""
+    return place + STRIP_WIDTH * ((number + 0.5) / count - 0.5)
 
 
 def _motion_series(
@@ -92,8 +159,12 @@ def _motion_series(
     """Return the series of the motions, each over its scales or all side by side; dots have error bars."""
     series = []
     for number, curve in enumerate(curves):
-        x = list(curve.scales) if place is None else [place + STRIP_WIDTH * ((number + 0.5) / len(curves) - 0.5)]
-        line = {"x": x, "y": [_scale_value(value, factor) for value in curve.values], "legend": number == 0} | look
+        x = list(curve.scales) if place is None else [_strip_place(place, number, len(curves))]
+        line = {
+            "x": x,
+            "y": [_scale_value(value, factor) for value in curve.values],
+        } | look
+        line["legend"] = number == 0 and line.get("legend", True)
         for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
             both = zip(curve.values, curve.errors)
             line[key] = [None if None in pair else factor * (pair[0] + side * pair[1]) for pair in both]  # type: ignore[operator]
@@ -112,7 +183,7 @@ def _median_line(
     """Return the median of a structure with its band, from low, median and high value at every x."""
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scale_value(each.value, factor) for each in column] for key, column in columns}
-    name = label_structures(ensemble)[ensemble.structures[place].name]
+    name = f"{label_structures(ensemble)[ensemble.structures[place].name]}: median, 16 to 84 %"
     return {"name": name, "color": place, "x": x, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
 
@@ -122,7 +193,7 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     for place, structure in enumerate(ensemble.structures):
         unit, factor = display_unit(quantity, structure.weight)
         rows = ensemble.list_demands_of_bodies(structure.name, quantity)
-        places, stated = _body_heights(structure)
+        places, stated = _demand_heights(structure, quantity)
         heights = heights and stated
         for share, number, dash in FRACTILE_LINES:
             values = [row.fractiles[number].value for row in rows]
@@ -132,11 +203,12 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
                 "x": [None if value is None else factor * value for value in values],
                 "y": [places[(row.body or 1) - 1] for row in rows], "marks": share == "50 %",
                 "titles": [
-                    f"{name_floor(structure, row.body or 1)}: {'none' if value is None else f'{factor * value:.4g}'}"
+                    f"{locate_demand(structure, quantity, row.body)}: {word_value(value, None, factor)}"
                     for row, value in zip(rows, values)
                 ],
             }  # fmt: skip
-            series.append(line | ({"dash": dash} if dash else {}))
+            if any(value is not None for value in values):
+                series.append(line | ({"dash": dash} if dash else {}))
     largest = max((value for each in series for value in each["x"] if value is not None), default=0.0)
     x = {"title": f"{demand_title(quantity)}, {unit}", "range": [0.0, 1.06 * largest or 1.0]}
     y: dict[str, Any] = {"title": HEIGHT_AXIS} if heights else {"title": "body, from the platform up"}
@@ -150,6 +222,19 @@ def _body_heights(structure: Structure) -> tuple[list[float], bool]:
     """Return the heights of the bodies, m, and True; or the numbers of the bodies, and False."""
     heights = structure.building.heights if structure.building else None
     return (list(heights), True) if heights else ([float(n) for n in range(1, structure.bodies + 1)], False)
+
+
+def _demand_heights(structure: Structure, quantity: str) -> tuple[list[float], bool]:
+    """
+    Return the heights at which a demand of the bodies is, as `_body_heights` has those of the bodies.
+
+    A moment is at the height about which it is taken, a drift or shear in the middle of its story.
+    """
+    heights, stated = _body_heights(structure)
+    if quantity in ("acceleration", SUPREMUM):
+        return heights, stated
+    below = [0.0, *heights[:-1]]
+    return (below if quantity == "overturning_moment" else [0.5 * (a + b) for a, b in zip(below, heights)]), stated
 
 
 def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:

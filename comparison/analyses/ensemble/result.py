@@ -70,6 +70,7 @@ class BuildingRead:
     masses: Annotated[Sequence[float], "of the bodies, kg"] = ()
     offsets: Annotated[Sequence[Sequence[float]], "of the centers of mass along x and y, m"] = ()
     sizes: Annotated[Sequence[Sequence[float] | None], "of the bodies along x, y and z, m; null if not stated"] = ()
+    sphere_radius: Annotated[float | None, "of the spheres, m; null where the scene states none"] = None
 
 
 @result
@@ -213,6 +214,7 @@ class EngineMotions:
     model: Annotated[str, "key of the model that gives the engine's demands"]
     motions: Annotated[Sequence[ChosenMotion], "by structure"]
     tolerance: Annotated[float, "relative error asked of its largest accelerations"] = 1e-2
+    pending: Annotated[int, "motions that it is computing while the file is written"] = 0
 
 
 @result
@@ -263,6 +265,14 @@ class LimitVerdict:
     bound: Annotated[str, "what tells the structure apart"]
     verdict: Annotated[Verdict, "met, not met or not compared"]
     sentence: Annotated[str, "demand, motion, both numbers, and by how much it is not met"]
+    what: Annotated[str, "demand in words"] = ""
+    on: Annotated[str, "statistic and motions"] = ""
+    found: Annotated[float | None, "computed number, SI; null where there is none"] = None
+    stated: Annotated[float | None, "limit, or stored number, SI"] = None
+    unit: Annotated[str, "SI unit of both; empty for a pure number"] = ""
+    motion: Annotated[str, "of a largest value; empty of a mean"] = ""
+    is_least: Annotated[bool, "whether the demand is larger than found by an unknown amount"] = False
+    words: Annotated[str, "verdict, by how much it is not met, or why it is not compared"] = ""
 
 
 @result

@@ -13,6 +13,7 @@ from comparison.analyses.ensemble.rows import (
     statistics_of_column,
 )
 from comparison.study.models import EXACT
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, count_verdicts
 from comparison.wording import percent
 from reference.plausibility import implausible_drift
 from reference.problem import Outcome
@@ -26,6 +27,10 @@ DEFINITIONS = (
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
     "middle of the platform; support displacement is the largest of a support, which turns with the platform, by the "
     "spatial engine alone and under its motions: the bearing needs that travel.",
+    "The exact equations have bodies in translation, the platform on the whole sphere; the small equations are the "
+    "same for displacements that are small beside the radius. Neither has torsion, whatever the offsets of the masses: "
+    "drift and acceleration of a floor are those of its center of mass, and less than at the edge of a floor that "
+    "turns. The spatial engine turns the bodies; its drifts and accelerations are those of the centers of mass, too.",
     "Accelerations have two readings. “As integrated” is the largest value at rest or while the isolator slides faster "
     "than 1 mm/s: what any time integration and the engine give, and the one to design equipment by. The “literal "
     "supremum” adds the limits at the instants in which the isolator stops; no integration reaches them, and they are "
@@ -45,9 +50,8 @@ DEFINITIONS = (
     "word; motion and place are those of its largest value.",
     "All supports carry the same dead load, but for eccentric masses. Support forces by the equations are statics: "
     "normal force, overturning moment and displaced weight on equally stiff supports under a stiff platform, negative "
-    "where a support would lift off. The displaced weight is the moment of the weight about the middle of the spheres, "
-    "which stay where they are while the platform moves: the weight W times (R / ρ times the displacement, and the "
-    "drift of the floors), R = ρ + the radius of the sphere. Those of the spatial engine are its contact forces.",
+    "where a support would lift off; “The building as read” says what the displaced weight is. Those of the spatial "
+    "engine are its contact forces.",
     "The overturning moment is that of the forces of inertia about the sliding contact, or about the floor below.",
     "Effective period and damping are those of a bilinear loop (ASCE/SEI 7, chapter 17) with the friction at high "
     "speed. Damping of the links acts in the superstructure; friction has no part in the modal damping.",
@@ -118,7 +122,33 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
     if not any("mean" in each for each in said):
         said.append("no demand is known of all motions")
     text = "; ".join(said)
-    return f"{lacking}{text[:1].upper()}{text[1:]}. {outcomes_sentence(ensemble)}"
+    verdicts = f"{limits} " if (limits := limits_sentence(ensemble)) else ""
+    return f"{verdicts}{lacking}{text[:1].upper()}{text[1:]}. {outcomes_sentence(ensemble)}"
+
+
+def limits_sentence(ensemble: EnsembleResult) -> str:
+    """Return how many limits are met, which are not, and how many are not compared; "" without limits."""
+    if not ensemble.limits:
+        return ""
+    counts = count_verdicts(each.verdict for each in ensemble.limits)
+    broken: dict[str, list[str]] = {}
+    for each in ensemble.limits:
+        if each.verdict == NOT_MET:
+            broken.setdefault(each.what, []).append(each.bound)
+    several = len(ensemble.structures) > 1
+    named = [f"{what} ({', '.join(dict.fromkeys(bounds))})" if several else what for what, bounds in broken.items()]
+    more = f" and {len(named) - MAX_LISTED_MOTIONS} more" if len(named) > MAX_LISTED_MOTIONS else ""
+    what = "limits" if all(each.key.startswith("acceptance.") for each in ensemble.limits) else "demands"
+    said = f"{counts[MET]} of {len(ensemble.limits)} {what} met, {counts[NOT_COMPARED]} not compared"
+    return f"{said}, {counts[NOT_MET]} not met{': ' * bool(named)}{'; '.join(named[:MAX_LISTED_MOTIONS])}{more}."
+
+
+def pending_sentence(ensemble: EnsembleResult) -> str:
+    """Return that the result is written before the engine has computed its motions; "" for any other."""
+    if not (pending := ensemble.engine.pending):
+        return ""
+    count = word_motion_count(pending)
+    return f"Provisional: written while the engine computes {count}. The page is written again with their numbers."
 
 
 def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
@@ -252,14 +282,39 @@ def word_support_motions(ensemble: EnsembleResult, supports: SupportExtremes) ->
     return f"{some}{word_motion_count(ensemble.motions)}"
 
 
-def plate_sentence(structure: Structure) -> str:
-    """Return which plate moves and how that loads the supports; "" for a flat slider or without supports."""
+def displaced_weight_sentence(structure: Structure) -> str:
+    """Return which plate moves and about which points the displaced weight loads the supports; "" without supports."""
     building = structure.building
-    if building is None or building.radius is None or not building.supports:
+    if building is None or not building.supports:
         return ""
+    if building.radius is None:
+        return "The platform slides on fixed supports: the displaced weight W × (displacement + drift) loads them."
+    sphere = building.sphere_radius or 0.0
     return (
-        "Fixed spheres below, depressions in the platform’s underside: the displaced weight W × displacement loads the "
-        "supports."
+        "Fixed spheres below, depressions in the platform’s underside: the weight W moves with the platform by the "
+        "displacement, and the contact points on the spheres move the other way by r / ρ of it. The displaced weight, "
+        "a moment of W × (R / ρ × displacement + drift) about the contact points, loads the supports: ρ = "
+        f"{building.radius:.4g} m, r = {sphere:.4g} m, R = ρ + r = {building.radius + sphere:.4g} m, "
+        f"R / ρ = {1.0 + sphere / building.radius:.4g}."
+    )
+
+
+def damping_sentence(structure: Structure) -> str:
+    """Return the law of damping where all modes have ratios in proportion to their frequencies; "" for any other."""
+    building = structure.building
+    if building is None:
+        return ""
+    products = [
+        [ratio * period for ratio, period in zip(*axis)]
+        for axis in zip(building.modal_damping, building.fixed_base_period)
+        if any(axis[0])
+    ]
+    if not products or any(max(axis) - min(axis) > 1e-6 * max(axis) for axis in products):
+        return ""
+    first = " along x, ".join(dict.fromkeys(percent(axis[0]) for axis in building.modal_damping if axis))
+    return (
+        f"Damping is in proportion to the stiffness of the links, c = 2 ζ k / ω₁ with ζ = {first} in the first mode "
+        "above a fixed base; a higher mode has a ratio in proportion to its frequency."
     )
 
 

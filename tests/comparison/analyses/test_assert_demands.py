@@ -29,7 +29,7 @@ def test_a_demand_within_its_limit_passes_and_one_beyond_it_fails_by_its_excess(
     assert_demands("synthetic-pair", displacement=1.01 * moved)
     count, line = failure(displacement=moved / 1.25)
     assert count == "1 demand: 0 met, 1 not met, 0 not compared"
-    assert line.endswith(f"{moved:.4g} m (synthetic-pair.csv), allowed {moved / 1.25:.4g} m: not met (by +25 %)")
+    assert line.endswith(f"{1e3 * moved:.4g} mm (synthetic-pair.csv), allowed {800 * moved:.4g} mm: not met (by +25 %)")
     assert "(by +25 %)" in failure(displacement=moved / 1.25, statistic="mean")[-1]
 
 
@@ -68,8 +68,8 @@ def test_a_family_is_compared_scene_by_scene(tmp_path: Path, monkeypatch: pytest
     [
         (
             {},
-            "no limit: give displacement, drift_ratio, uplift, base_shear, support_force_max, acceleration, residual "
-            "or stored",
+            "no limit: give displacement, support_displacement, drift_ratio, uplift, base_shear, support_force_max, "
+            "acceleration, residual or stored",
         ),
         ({"statistic": "mean"}, "no limit"),
         ({"displacement": -1.0}, "displacement = -1.0: must be"),

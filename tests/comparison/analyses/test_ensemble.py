@@ -496,12 +496,14 @@ def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypa
     assert "Next: 1 of 3 motions by the translational engine, about" in said.out
     assert "interrupted: 3 results are kept" in said.err
     assert (content()["outcomes"], content()["engine"]["motions"]) == ({"ok": 3}, [])
+    assert content()["engine"]["pending"] == 1
     for following in (1, 0):
         assert run("mine.toml", "--suite", "suite", "--engine", "1") == 0
         said = capsys.readouterr().out
         assert (said.count("two bodies: 3 motions."), said.count("Next: 1 of 3")) == (1, following)
         assert said.count("The translational engine computed: m2 (largest displacement") == 1
         assert (len(content()["engine"]["motions"]), content()["engine"]["tolerance"]) == (1, 0.01)
+        assert content()["engine"]["pending"] == 0
 
 
 def test_the_plan_and_the_line_before_the_engine_count_the_same_seconds(folder, capsys, monkeypatch):

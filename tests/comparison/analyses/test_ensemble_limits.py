@@ -19,6 +19,7 @@ from comparison.analyses.ensemble.limits import (
     check_limits,
     compare_with_stored,
     list_verdicts,
+    make_limit_rows,
     word_check,
     word_checks,
 )
@@ -36,7 +37,7 @@ from comparison.analyses.ensemble.result import (
     Structure,
     SupportExtremes,
 )
-from comparison.analyses.ensemble.sentences import drift_warning, support_sentences
+from comparison.analyses.ensemble.sentences import answer_sentence, drift_warning, support_sentences
 from reference.problem.acceptance import DemandLimits
 
 WEIGHT = 2e6  # N
@@ -84,24 +85,24 @@ def said_of(ensemble: EnsembleResult, **limits: Any) -> list[str]:
 
 MOVED: Values = {("displacement", None): (0.30, 0.50, 0.43)}
 LARGEST_MOVED = (
-    "job[upper bound]: largest displacement of the isolator, largest of 3 motions: 0.5 m (Imperial Valley), "
+    "job[upper bound]: largest displacement of the isolator, largest of 3 motions: 500 mm (Imperial Valley), "
 )
-MEAN_MOVED = "job[upper bound]: largest displacement of the isolator, mean of 3 motions: 0.41 m, "
+MEAN_MOVED = "job[upper bound]: largest displacement of the isolator, mean of 3 motions: 410 mm, "
 
 
 def test_a_broken_limit_names_demand_bound_motion_and_by_how_much() -> None:
-    assert said_of(ensemble_of(MOVED), displacement=0.4) == [f"{LARGEST_MOVED}allowed 0.4 m: not met (by +25 %)"]
+    assert said_of(ensemble_of(MOVED), displacement=0.4) == [f"{LARGEST_MOVED}allowed 400 mm: not met (by +25 %)"]
     two = said_of(ensemble_of(MOVED, bounds=("lower bound", "upper bound")), displacement=0.4)
     assert [line.partition(":")[0] for line in two] == ["lower bound", "upper bound"]
 
 
 def test_a_limit_is_on_the_statistic_that_it_names() -> None:
     ensemble = ensemble_of(MOVED)
-    assert said_of(ensemble, displacement=0.45, statistic="mean") == [f"{MEAN_MOVED}allowed 0.45 m: met"]
+    assert said_of(ensemble, displacement=0.45, statistic="mean") == [f"{MEAN_MOVED}allowed 450 mm: met"]
     assert said_of(ensemble, displacement=0.45, statistic="largest") == [
-        f"{LARGEST_MOVED}allowed 0.45 m: not met (by +11 %)"
+        f"{LARGEST_MOVED}allowed 450 mm: not met (by +11 %)"
     ]
-    assert said_of(ensemble, displacement=0.4, statistic="mean") == [f"{MEAN_MOVED}allowed 0.4 m: not met (by +2.5 %)"]
+    assert said_of(ensemble, displacement=0.4, statistic="mean") == [f"{MEAN_MOVED}allowed 400 mm: not met (by +2.5 %)"]
 
 
 def test_a_demand_that_is_beyond_its_limit_by_its_numerical_error_alone_meets_it() -> None:
@@ -118,16 +119,16 @@ def test_a_limit_is_on_the_largest_of_several_scales_and_names_it() -> None:
     ensemble = replace(ensemble_of(MOVED), scales=[0.5, 2.0], stripes=[], curves=[])
     ensemble = replace(ensemble, structures=[Structure("job", "Job", 6, WEIGHT)], curves=curves)
     assert said_of(ensemble, displacement=0.4) == [
-        "job: largest displacement of the isolator, largest of 3 motions at scale 2: 0.5 m (Imperial Valley), "
-        "allowed 0.4 m: not met (by +25 %)"
+        "job: largest displacement of the isolator, largest of 3 motions at scale 2: 500 mm (Imperial Valley), "
+        "allowed 400 mm: not met (by +25 %)"
     ]
 
 
 def test_base_shear_is_limited_as_a_share_of_the_weight() -> None:
     ensemble = ensemble_of({("base_shear", None): (3e5, 6e5, 5e5)})
     assert said_of(ensemble, base_shear=0.25) == [
-        "job[upper bound]: base shear over the weight, largest of 3 motions: 0.3 (Imperial Valley), "
-        "allowed 0.25: not met (by +20 %)"
+        "job[upper bound]: base shear over the weight, largest of 3 motions: 30 % (Imperial Valley), "
+        "allowed 25 %: not met (by +20 %)"
     ]
 
 
@@ -135,18 +136,22 @@ def test_a_drift_ratio_is_that_of_the_governing_story() -> None:
     rows: Values = {("drift_ratio", body): (0.001 * body, 0.002, 0.003) for body in (2, 3, 4)}
     rows = {**rows, ("drift_ratio", 3): (0.002, 0.012, 0.003)}
     (line,) = said_of(ensemble_of(rows), drift_ratio=0.01)
-    assert "below body 3, largest of 3 motions: 0.012 (Imperial Valley), allowed 0.01: not met (by +20 %)" in line
+    assert "below body 3, largest of 3 motions: 1.2 % (Imperial Valley), allowed 1 %: not met (by +20 %)" in line
     (line,) = said_of(ensemble_of(rows), drift_ratio=0.02)
-    assert "below body 3, largest of 3 motions: 0.012 (Imperial Valley), allowed 0.02: met" in line
+    assert "below body 3, largest of 3 motions: 1.2 % (Imperial Valley), allowed 2 %: met" in line
     assert "not compared (heights of the bodies are needed)" in said_of(ensemble_of(MOVED), drift_ratio=0.01)[0]
 
 
 def test_what_a_motion_without_a_value_leaves_open_is_not_called_met() -> None:
     ended = ensemble_of({("displacement", None): (0.30, None, 0.43)})
-    assert said_of(ended, displacement=0.45, statistic="mean")[0].endswith("not compared (1 motion has no value)")
+    (line,) = said_of(ended, displacement=0.45, statistic="mean")
+    assert line.endswith("not compared (1 motion has no value; a value there above 620 mm breaks the limit)")
+    two = ensemble_of({("base_shear", None): (3e5, None, None)})
+    (line,) = said_of(two, base_shear=0.25, statistic="mean")
+    assert line.endswith("(2 motions have no value; a mean of theirs above 30 % breaks the limit)")
     assert said_of(ended, displacement=0.45)[0].endswith("not compared (1 motion has no value)")
     beyond = said_of(ended, displacement=0.40)[0]
-    assert "largest of 2 of 3 motions: 0.43 m (Northridge), allowed 0.4 m: not met (by +7.5 %)" in beyond
+    assert "largest of 2 of 3 motions: 430 mm (Northridge), allowed 400 mm: not met (by +7.5 %)" in beyond
 
 
 def test_forces_accelerations_and_residuals_are_limited_each_in_its_unit_and_reading() -> None:
@@ -157,10 +162,10 @@ def test_forces_accelerations_and_residuals_are_limited_each_in_its_unit_and_rea
     assert said_of(ensemble, support_force_max=1.04e6, acceleration=5.0, residual=0.015) == [
         "job[upper bound]: largest support force by statics, largest of 3 motions: 1300 kN (Imperial Valley), allowed "
         "1040 kN: not met (by +25 %)",
-        "job[upper bound]: floor acceleration, as integrated, body 2, largest of 3 motions: 4 m/s^2 (Kobe), allowed "
-        "5 m/s^2: met",
-        "job[upper bound]: residual displacement of the isolator, largest of 2 of 3 motions: 0.02 m (Imperial Valley), "
-        "allowed 0.015 m: not met (by +33 %)",
+        "job[upper bound]: floor acceleration, as integrated, body 2, largest of 3 motions: 0.4077 g (Kobe), "
+        "allowed 0.5097 g: met",
+        "job[upper bound]: residual displacement of the isolator, largest of 2 of 3 motions: 20 mm (Imperial Valley), "
+        "allowed 15 mm: not met (by +33 %)",
     ]
     (line,) = said_of(ensemble, support_force_max=1.15e6, statistic="mean")
     assert "mean of 3 motions: 1100 kN, allowed 1150 kN: met" in line
@@ -172,20 +177,20 @@ IN_TWO = "largest in the 2 of 3 motions that the spatial engine computed (those 
 def test_uplift_is_that_of_the_motions_of_the_spatial_engine() -> None:
     lifted: Values = {("uplift", None): (0.002, 0.0)}
     (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.0)
-    assert f"uplift of a support, {IN_TWO}: 0.002 m (Kobe), allowed 0 m: not met (by +0.002 m)" in line
+    assert f"uplift of a support, {IN_TWO}: 2 mm (Kobe), allowed 0 mm: not met (by +2 mm)" in line
     (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.005)
-    assert line.endswith("allowed 0.005 m: met")
+    assert line.endswith("allowed 5 mm: met")
     assert "not compared (no model that was computed has it" in said_of(ensemble_of(MOVED), uplift=0.0)[0]
     whole: Values = {("uplift", None): (0.002, 0.0, 0.001)}
     (line,) = said_of(ensemble_of(MOVED, whole), uplift=0.001, statistic="mean")
-    assert line.endswith("mean of 3 motions by the spatial engine: 0.001 m, allowed 0.001 m: met")
+    assert line.endswith("mean of 3 motions by the spatial engine: 1 mm, allowed 1 mm: met")
 
 
 def test_a_mean_of_the_engine_is_met_where_the_largest_of_the_governing_motions_is() -> None:
     flat: Values = {("uplift", None): (0.0, 0.0)}
     (line,) = said_of(ensemble_of(MOVED, flat), uplift=0.0, statistic="mean")
-    assert line.endswith(f"{IN_TWO}, for the mean: 0 m (Kobe), allowed 0 m: met") or line.endswith(
-        f"{IN_TWO}, for the mean: 0 m (Imperial Valley), allowed 0 m: met"
+    assert line.endswith(f"{IN_TWO}, for the mean: 0 mm (Kobe), allowed 0 mm: met") or line.endswith(
+        f"{IN_TWO}, for the mean: 0 mm (Imperial Valley), allowed 0 mm: met"
     )
     lifted: Values = {("uplift", None): (0.002, 0.0)}
     (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.001, statistic="mean")
@@ -207,6 +212,23 @@ def test_the_engine_says_nothing_of_motions_that_govern_and_that_it_has_not_comp
     assert said_of(ensemble_of(MOVED, failed), uplift=0.0)[0].endswith("not compared (1 motion has no value)")
 
 
+def test_the_displacement_of_a_support_is_limited_by_the_motions_of_the_engine() -> None:
+    moved: Values = {("support_displacement", None): (0.41, 0.52)}
+    (line,) = said_of(ensemble_of(MOVED, moved), support_displacement=0.5)
+    assert f"largest displacement of a support, {IN_TWO}: 520 mm (Imperial Valley), allowed 500 mm: not met" in line
+
+
+def test_a_page_before_the_engine_says_that_it_is_provisional_and_not_what_leaves_it_out() -> None:
+    ensemble = ensemble_of(MOVED)
+    (line,) = said_of(ensemble, uplift=0.0)
+    assert line.endswith("; --engine 0 leaves it out)")
+    pending = replace(ensemble, engine=replace(ensemble.engine, pending=3))
+    (line,) = said_of(pending, uplift=0.0)
+    assert line.endswith("not compared (the engine’s motions are not computed yet)")
+    said = "Provisional: written while the engine computes 3 motions. The page is written again with their numbers."
+    assert (said in render_ensemble_page(pending), "Provisional" in render_ensemble_page(ensemble)) == (True, False)
+
+
 def with_travel(travel: float, *moved: float | None, why: str = "travel reached") -> EnsembleResult:
     """An ensemble whose isolator has a travel; motions without a displacement ended for a reason."""
     ensemble = ensemble_of({("displacement", None): moved})
@@ -219,8 +241,8 @@ def with_travel(travel: float, *moved: float | None, why: str = "travel reached"
 def test_a_motion_that_reached_the_travel_breaks_a_limit_up_to_the_travel() -> None:
     reached = with_travel(0.45, 0.30, None, 0.43)
     assert said_of(reached, displacement=0.40) == [
-        "job[upper bound]: largest displacement of the isolator, largest of 3 motions: at least 0.45 m "
-        "(Imperial Valley), allowed 0.4 m: not met (by more than +12 %)"
+        "job[upper bound]: largest displacement of the isolator, largest of 3 motions: at least 450 mm "
+        "(Imperial Valley), allowed 400 mm: not met (by more than +12 %)"
     ]
     assert "not met (by more than 0 %)" in said_of(reached, displacement=0.45)[0]
     assert said_of(reached, displacement=0.46)[0].endswith("not compared (1 motion has no value)")
@@ -231,9 +253,10 @@ def test_a_motion_that_reached_the_travel_breaks_a_limit_up_to_the_travel() -> N
 def test_a_mean_is_at_least_that_with_the_travel_in_place_of_motions_that_reached_it() -> None:
     reached = with_travel(0.45, 0.30, None, 0.42)
     (line,) = said_of(reached, displacement=0.38, statistic="mean")
-    assert "mean of 3 motions: at least 0.39 m, allowed 0.38 m: not met (by more than +2.6 %)" in line
+    assert "mean of 3 motions: at least 390 mm, allowed 380 mm: not met (by more than +2.6 %)" in line
     (line,) = said_of(reached, displacement=0.40, statistic="mean")
-    assert line.endswith("not compared (1 motion has no value; with the travel there at least 0.39 m)")
+    end = "1 motion has no value; with the travel there at least 390 mm; a value there above 480 mm breaks the limit"
+    assert line.endswith(f"not compared ({end})")
 
 
 def test_the_last_line_is_the_limit_that_is_broken_by_the_largest_share() -> None:
@@ -251,9 +274,9 @@ def test_demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_erro
     assert {check.verdict for check in compare_with_stored(stored, stored, 0.0)} == {"met"}
     assert [check.verdict for check in compare_with_stored(grown, stored, 0.03)] == ["met", "met"]
     assert [word_check(check) for check in compare_with_stored(grown, stored, 0.01)] == [
-        "job[upper bound]: largest displacement of the isolator, mean, scale 1: 0.4133 m, stored 0.41 m: met",
-        "job[upper bound]: largest displacement of the isolator, largest, scale 1: 0.51 m (Imperial Valley), "
-        "stored 0.5 m: not met (by +2 %)",
+        "job[upper bound]: largest displacement of the isolator, mean, scale 1: 413.3 mm, stored 410 mm: met",
+        "job[upper bound]: largest displacement of the isolator, largest, scale 1: 510 mm (Imperial Valley), "
+        "stored 500 mm: not met (by +2 %)",
     ]
     shrunk = ensemble_of({("displacement", None): (0.30, 0.40, 0.43)})  # by 8.1 % of 0.41 in the mean, 8.8 % of 0.3767
     assert [check.verdict for check in compare_with_stored(shrunk, stored, 0.085)] == ["met", "not met"]
@@ -304,10 +327,27 @@ def test_a_demand_that_one_of_two_ensembles_lacks_is_not_compared() -> None:
 
 def test_the_report_has_the_verdict_on_every_limit() -> None:
     ensemble = ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)})
-    checks = check_limits(ensemble, {"job[upper bound]": DemandLimits(displacement=0.4, base_shear=0.5)})
-    page = render_ensemble_page(replace(ensemble, limits=list_verdicts(checks)))
-    assert "2 demands: 1 met, 1 not met, 0 not compared." in page
-    assert all(str(escape(word_check(check))) in page for check in checks)
+    limits = DemandLimits(displacement=0.4, base_shear=0.5, uplift=0.0)
+    judged = replace(ensemble, limits=list_verdicts(check_limits(ensemble, {"job[upper bound]": limits})))
+    page = render_ensemble_page(judged)
+    assert make_limit_rows(judged.limits)[::2] == [
+        ("largest displacement of the isolator", "job[upper bound]", "500 mm", "400 mm", "1.25",
+         "largest of 3 motions", "Imperial Valley", "not met (by +25 %)"),
+        ("base shear over the weight", "job[upper bound]", "30 %", "50 %", "0.6", "largest of 3 motions",
+         "Imperial Valley", "met"),
+    ]  # fmt: skip
+    ended = ensemble_of({("displacement", None): (0.30, None, 0.43)})
+    checks = check_limits(ended, {"job[upper bound]": DemandLimits(displacement=0.45)})
+    assert make_limit_rows(list_verdicts(checks))[0][2:5] == ("430 mm", "450 mm", "none"), "no ratio of some motions"
+    for row in make_limit_rows(judged.limits):
+        assert all(f">{escape(cell)}</td>" in page for cell in row), row
+    said = "1 of 3 limits met, 1 not compared, 1 not met: largest displacement of the isolator."
+    assert answer_sentence(judged).startswith(f"{said} Isolator displacement")
+    assert f"<p>{said}</p>" in page
+    assert "limits met" not in answer_sentence(ensemble)
+    least = with_travel(0.45, 0.30, None, 0.43)
+    (row,) = make_limit_rows(list_verdicts(check_limits(least, {"job[upper bound]": DemandLimits(displacement=0.4)})))
+    assert (row[2], row[4], row[7]) == ("≥ 450 mm", "≥ 1.12", "not met (by more than +12 %)")
     assert "not compared." not in render_ensemble_page(ensemble), "no section without limits"
 
 

@@ -21,6 +21,7 @@ from runs import SMALL, quick_figures
 import reference
 from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, trust
 from comparison.analyses.ensemble.command import main
+from comparison.analyses.ensemble.limits import check_limits, list_verdicts
 from comparison.analyses.ensemble.quantities import word_value
 from comparison.analyses.ensemble.result import (
     STORED,
@@ -41,6 +42,7 @@ from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
 from reference.measures import Estimate
 from reference.problem import GRAVITY
+from reference.problem.acceptance import DemandLimits
 
 SCENE = """title = "two floors on four pendulums"
 [isolator]
@@ -192,7 +194,8 @@ def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: Ensembl
     assert "roof" in text
     for value in ("50", "30 along x, 20 along y; 20 along x, 25 along y", "7 × 5, all"):
         assert f">{value}<" in text, value
-    assert sentences.plate_sentence(found.structures[0]) in text
+    assert sentences.displaced_weight_sentence(found.structures[0]) in text
+    assert 'radius of the spheres</th><td>m</td><td class="long">0.1<' in text
     assert f"phase-resonance {found.run['provenance']['phase-resonance']}" in text
     suite = {each.motion: each for each in found.suite}
     assert (suite["pulse 1"].magnitude, suite["pulse 2"].magnitude) == (6.9, None)
@@ -492,9 +495,11 @@ def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_no
     assert (list(whole.known), rows.summarize_demand(planted().structures[0], whole).marks) == ([], ("",) * 5)
 
 
-def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(found: EnsembleResult) -> None:
+def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
+    folder: Path, found: EnsembleResult
+) -> None:
     checks = {(bound, check.what): check for bound, check in hand_checks.list_hand_check_rows(found)}
-    assert len(checks) == 8, "stories that differ along x and y have no drift by hand"
+    assert len(checks) == 10
     weight = checks["lower bound", "weight"]
     assert (weight.by_hand, weight.found, weight.verdict) == ("882.9 kN", pytest.approx(882.9), "0.00 %")
     for (_, what), check in checks.items():
@@ -503,15 +508,52 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     wrong = {check.what: check.verdict for check in hand_checks.list_hand_checks(found, structure)}
     assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
-    alike = replace(found.structures[0].building, stiffness=[[30e6, 20e6], [25e6, 25e6]])  # type: ignore[type-var]
+    assert hand_checks.HandCheck("weight", "", 28252.8, 28252.8, 28252.8, "kN").by_hand == "28253 kN"
+    own = [row for row in table(folder) if (row["bound"], row["model"]) == ("lower bound", "exact")]
+    worst = max(own, key=lambda row: float(row["base_shear [N]"]))
+    drift = checks["lower bound", f"drift below roof under {worst['motion']}"]
+    shear = 1e3 * float(worst["story_shear_3 [N]"])
+    assert (drift.low, drift.high) == pytest.approx((shear / 25e6, shear / 20e6), rel=1e-4), "one motion, x and y"
+    assert drift.found == pytest.approx(1e3 * float(worst["drift_3 [m]"]), rel=1e-4)
+    damped = replace(found.structures[0].building, modal_damping=[[0.05, 0.2], [0.05, 0.3]])  # type: ignore[type-var]
     (drift,) = (
         each
-        for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=alike))
-        if each.what == "median drift below roof"
+        for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=damped))
+        if each.what.startswith("drift")
     )
-    shear = found.find_demand(found.structures[0].name, "story_shear", 3)
-    assert shear is not None
-    assert drift.low == pytest.approx(1e3 * shear.fractiles[1].value / 25e6)  # type: ignore[operator]
+    assert drift.low == pytest.approx(shear / 25e6 / math.hypot(1.0, 0.6), rel=1e-4)
+    moved = max(own, key=lambda row: float(row["displacement [m]"]))
+    slope = math.tan(math.asin(float(moved["displacement [m]"]) / 2.0))
+    base = checks["lower bound", f"base shear under {moved['motion']}"]
+    assert base.low == pytest.approx(882.9 * math.hypot(slope, 0.024), rel=1e-3)
+
+
+def test_the_displaced_weight_is_worded_about_the_contact_points_and_once() -> None:
+    structure = planted().structures[0]
+    assert structure.building is not None
+    sphere = replace(structure, building=replace(structure.building, sphere_radius=0.5))
+    said = sentences.displaced_weight_sentence(sphere)
+    assert "W × (R / ρ × displacement + drift) about the contact points" in said
+    assert said.endswith("ρ = 2 m, r = 0.5 m, R = ρ + r = 2.5 m, R / ρ = 1.25.")
+    assert "R / ρ = 1." in sentences.displaced_weight_sentence(structure), "no radius of a sphere"
+    flat = replace(structure, building=replace(structure.building, radius=None))
+    assert "W × (displacement + drift)" in sentences.displaced_weight_sentence(flat)
+    assert "ρ" not in "".join(sentences.DEFINITIONS), "the definitions refer to it"
+
+
+def test_damping_in_proportion_to_the_stiffness_is_said_and_no_other_is() -> None:
+    structure = planted().structures[0]
+    assert structure.building is not None
+
+    def said(*ratios: float) -> str:
+        building = replace(
+            structure.building, fixed_base_period=[[0.5, 0.2]] * 2, modal_damping=[[*ratios[:2]], [*ratios[2:]]]
+        )  # type: ignore[type-var]
+        return sentences.damping_sentence(replace(structure, building=building))
+
+    assert "c = 2 ζ k / ω₁ with ζ = 4 % in the first mode" in said(0.04, 0.1, 0.04, 0.1)
+    assert said(0.04, 0.1, 0.04, 0.04) == ""
+    assert said(0.0, 0.0, 0.0, 0.0) == ""
 
 
 def test_support_forces_say_of_how_many_motions_they_are() -> None:
@@ -710,9 +752,47 @@ def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
     dots = [each for each in series if each.get("color") == 0 and "one motion" in each["name"]]
     assert [each["y"][0] for each in dots] == pytest.approx([100.0, 200.0, 300.0, 400.0])
     assert [(each["low"][0], each["high"][0]) for each in dots[:1]] == [(pytest.approx(90.0), pytest.approx(110.0))]
-    by_engine = [each for each in series if each.get("color") == "ink"]
+    by_engine = [each for each in series if each.get("color") == "ink" and each.get("marks")]
     assert [each["y"][0] for each in by_engine] == pytest.approx([315.0, 420.0])
     assert by_engine[0]["name"] == "spatial engine"
+
+
+def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -> None:
+    """A motion at the travel is an arrow there, in the slot that its dot would have."""
+    (check,) = list_verdicts(check_limits(planted(), {"b": DemandLimits(displacement=0.6, statistic="mean")}))
+    found = replace(two_bounds(), limits=[check, check])
+    (drawn,) = (make() for make in panels.make_isolator_panels(found))
+    series = {each["name"]: each for each in drawn["plot"]["series"] if each.get("legend", True)}
+    assert [name for name in series if name.startswith("b")] == [
+        "b: one motion", "b: at the travel", "b: median, 16 to 84 %",
+    ]  # fmt: skip
+    dots = [each for each in drawn["plot"]["series"] if each["name"] == "b: one motion"]
+    arrow, median = series["b: at the travel"], series["b: median, 16 to 84 %"]
+    assert (arrow["x"], arrow["y"], dots[3]["y"]) == (dots[3]["x"], [500.0], [None])
+    assert len({arrow["marks"], median["marks"], dots[0]["marks"]}) == 3
+    assert (series["travel"]["y"], series["limit (mean)"]["y"]) == ([500.0] * 2, [600.0] * 2)
+    assert drawn["plot"]["y"]["range"][1] > 600.0
+    scaled = replace(found, scales=(0.5, 1.0), curves=[
+        replace(each, scales=(0.5, 1.0), values=(0.05, *each.values), errors=(0.0, *each.errors))
+        for each in found.curves
+    ])  # fmt: skip
+    (drawn,) = (make() for make in panels.make_isolator_panels(scaled))
+    arrow = next(each for each in drawn["plot"]["series"] if "at the travel" in each["name"])
+    assert (arrow["x"], arrow["y"]) == ([1.0], [500.0])
+
+
+def test_moments_stand_where_they_are_taken_and_shears_in_the_middle_of_their_stories(found: EnsembleResult) -> None:
+    expected = {
+        "overturning moment": [0.0, 0.5, 3.5],
+        "story shear": [0.25, 2.0, 5.0],
+        "drift over the height of the story": [2.0, 5.0],
+    }
+    drawn = [make() for make in panels.make_height_panels(found)]
+    for title, heights in expected.items():
+        (panel,) = (each for each in drawn if each["title"] == f"{title} over the height")
+        for line in panel["plot"]["series"]:
+            assert line["y"] == pytest.approx(heights), title
+        assert panel["plot"]["series"][0]["titles"][-1].startswith("below roof: ")
 
 
 def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) -> None:
