@@ -1,4 +1,4 @@
-"""Features that are lists of trends, over what a difference falls with: convergence and scaling."""
+"""Report features made of trends: how a difference falls with a parameter (convergence and scaling)."""
 
 import math
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ def make_trend_feature(
         lambda report: {
             "key": analysis.key,
             "trends": (trends := found.of(report.results)),
-            "panels": trend_panels(trends, parameter),
+            "panels": make_trend_panels(trends, parameter),
             "column": column,
             **texts,
         },
@@ -39,8 +39,8 @@ def make_trend_feature(
     return Feature(analysis.key, (found,), analysis=analysis, section=section)
 
 
-def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
-    """One log-log panel for each scene and parameter: median difference over it, the fitted slopes in the legend."""
+def make_trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
+    """Return a log-log panel for each scene and parameter: median difference over it, fitted slopes in the legend."""
     panels = []
     ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
     for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):

@@ -1,11 +1,11 @@
-"""External benchmarks: in the report."""
+"""Report section of the external benchmarks."""
 
 from comparison.evidence.benchmarks.table import (
     STORED,
     verdict_line,
-    with_error,
     word_explanations,
     word_published_number,
+    word_with_error,
 )
 from comparison.report.feature import Feature, stored_field
 from comparison.report.section import Section
@@ -22,7 +22,7 @@ FEATURE = Feature(
             "benchmark_sentences": word_explanations,
             "benchmark_colors": CLASSES,
             "stated": word_published_number,
-            "with_error": with_error,
+            "word_with_error": word_with_error,
         },
         verdict=lambda results: verdict_line(FOUND.of(results)),
         verifies=True,

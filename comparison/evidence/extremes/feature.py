@@ -1,6 +1,6 @@
-"""Stability at the extremes: in the report."""
+"""Report section of the stability at the extremes."""
 
-from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, describe_entry
+from comparison.evidence.extremes.matrix import MEANING_OF_VERDICT, STORED, CellVerdict, describe_entry
 from comparison.report.feature import Feature, stored_field
 from comparison.report.section import Section
 
@@ -12,7 +12,7 @@ FEATURE = Feature(
         "Stability at the extremes",
         STORED.word_how_to_make(),
         lambda report: {
-            "verdicts": [(verdict.value, MEANING[verdict]) for verdict in CellVerdict],
+            "verdicts": [(verdict.value, MEANING_OF_VERDICT[verdict]) for verdict in CellVerdict],
             "describe": describe_entry,
         },
         verifies=True,

@@ -124,7 +124,7 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     models = "honest", "lies_about_its_error"
     rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
     monkeypatch.setattr(extremes, "COLUMNS", tuple(replace(fake(model), key=model) for model in models))
-    monkeypatch.setattr(extremes, "extreme_cases", lambda: iter(rows))
+    monkeypatch.setattr(extremes, "list_extreme_cases", lambda: iter(rows))
     monkeypatch.chdir(tmp_path)
     words = ["--jobs", "2", "--out", "report"]
     assert extremes.main(words, Interrupted) == 130

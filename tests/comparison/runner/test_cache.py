@@ -28,7 +28,7 @@ from runs import no_executor
 
 import multibody.models.engine
 from comparison.analyses.motions.analysis import MotionPlace, StoredMotion
-from comparison.evidence.claims.table import paper_complete
+from comparison.evidence.claims.table import has_every_paper_scene
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.runner.cache import MAGIC, Cache, CacheKey
 from comparison.runner.environment import (
@@ -249,12 +249,12 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3, selection=EVERYTHING)
     tasks = first_tasks(study, ANALYSES)
-    assert paper_complete(study)
+    assert has_every_paper_scene(study)
     assert len({task.key for task in tasks}) == len(tasks)
     assert {task.stage for task in tasks} == {
         "effective values", "conditioning", "scaling test", "convergence", "assumptions",
     }  # fmt: skip
-    assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
+    assert not has_every_paper_scene(Study(study.scenes[:1], 6, 1e-3))
 
 
 def test_the_cost_of_a_task_is_its_own_processor_time() -> None:

@@ -23,11 +23,11 @@ from studies import body_comparisons, difference_rows, solved
 import reference
 from comparison.cli.user_models import as_words, look_at, user_models
 from comparison.evidence.extremes.analysis import list_cells
-from comparison.evidence.extremes.columns import user_column
-from comparison.evidence.extremes.rows import extreme_cases
+from comparison.evidence.extremes.columns import make_user_column
+from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
-from comparison.evidence.tradeoff.feature import tradeoff_panels
+from comparison.evidence.tradeoff.feature import make_tradeoff_panels
 from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
@@ -486,8 +486,8 @@ def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]
 
 
 def test_extremes_of_its_law_concern_a_user_engine() -> None:
-    every = list(extreme_cases())
-    met = {cell.row.name for cell in list_cells(every, [user_column(supplied("plain"))])}
+    every = list(list_extreme_cases())
+    met = {cell.row.name for cell in list_cells(every, [make_user_column(supplied("plain"))])}
     alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
     assert met == alike
 
@@ -507,7 +507,9 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
 
 def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: [])
-    monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
+    monkeypatch.setattr(
+        analysis, "list_questions", lambda scene: [one for one in QUESTIONS if one.key == "regularised"]
+    )
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})
     (measured,) = computed(TradeOff([scene], True, models), lambda jobs: ThreadPoolExecutor(1))
@@ -517,5 +519,5 @@ def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatc
     assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
     assert good.error_estimate == [None, None], "it states none"
     assert good.pareto_front == (True, True)
-    curves = {line["name"] for each in tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
+    curves = {line["name"] for each in make_tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
     assert curves == {good.method}, "one without an answer has no curve"
