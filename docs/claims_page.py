@@ -33,7 +33,7 @@ from comparison.runner.environment import describe_provenance
 from comparison.runner.task import execute
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.figures.paper import PRINT, draw_surface
+from comparison.surfaces.figures.paper import PRINT_STYLE, draw_surface
 from comparison.verdicts import MET
 from reference.problem import builtin_scenes, load_scene
 
@@ -72,7 +72,7 @@ def grids_line(met: Mapping[str, Mapping[str, int]]) -> str:
 
 def draw_reading(path: Path, reading: PeakReading) -> None:
     """Write the eight surfaces of Figures 3 and 4 in one reading, PNG."""
-    with mpl.rc_context(PRINT):
+    with mpl.rc_context(PRINT_STYLE):
         figure = Figure(figsize=(11.0, 6.2))
         FigureCanvasAgg(figure)
         figure.suptitle(f"Figures 3 and 4, parameters as printed, {reading.name}", fontsize=10.0, y=0.985)

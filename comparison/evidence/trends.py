@@ -13,11 +13,11 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from comparison.result_types import Array, Number, Text, result
-from comparison.surfaces.model_difference import RESOLVED
+from comparison.surfaces.model_difference import RESOLVED_RATIO
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, count_verdicts, word_counts
 
 NO_VALUES: Array = np.empty((0, 1))  # sizes and errors if no phase pair has a value
-MAX_FITTED_ERROR = 1.0 / RESOLVED  # largest error of a fitted value, as a fraction of it
+MAX_FITTED_ERROR = 1.0 / RESOLVED_RATIO  # largest error of a fitted value, as a fraction of it
 MAX_EXPONENT_UNCERTAINTY = 0.25  # largest uncertainty of an exponent that is judged
 MIN_EXPONENT = 0.3  # A difference with a smaller exponent hardly falls over the parameters in use.
 # Largest deviation of an exponent from theory: the largest parameters are not yet in the asymptotic range

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table
+from comparison.cli.arguments import CommandParser, command, read_number_of_jobs, write_and_show
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.terminal import make_table
 from comparison.evidence.benchmarks.analysis import MODEL_OF_SIDE, BenchmarkTable
 from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, load_mastodon_case
 from comparison.evidence.benchmarks.table import (
@@ -53,14 +53,14 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
     )
     options = parser.parse_args(argv)
-    number_of_jobs(options)  # a wrong number of jobs is refused before the benchmarks are read
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the benchmarks are read
     analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
     out = resolve_destination(options.out)
     refuse_foreign_files(out, [STORED.name, TABLE_PAGE])
     console = wide_console()
     results = compute_tasks("benchmarks", options, argv, analysis.tasks(), WORKER_FUNCTIONS, console, executor)
     solved = analysis.collect(results)
-    table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
+    table = replace(solved, run=collect_run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
@@ -74,7 +74,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
 def print_benchmarks(console: Console, table: Benchmarks) -> None:
     """Print a row for every published number, the differences of the models, the counts and the explanations."""
-    lines = new_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
+    lines = make_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
     for each in table.benchmarks:
         for row in each.rows:
             cells = [f"{row.published:g}"]

@@ -7,11 +7,11 @@ from comparison.evidence.benchmarks.table import (
     word_published_number,
     word_with_error,
 )
-from comparison.report.feature import Feature, stored_field
+from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES
 
-FOUND = stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
+FOUND = make_stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
 FEATURE = Feature(
     "benchmarks",
     (FOUND,),
@@ -24,7 +24,7 @@ FEATURE = Feature(
             "stated": word_published_number,
             "word_with_error": word_with_error,
         },
-        verdict=lambda results: verdict_line(FOUND.of(results)),
+        verdict=lambda results: verdict_line(FOUND.read_from(results)),
         verifies=True,
     ),
 )

@@ -9,7 +9,7 @@ from comparison.evidence.claims import peaks_and_valleys as counting
 from comparison.evidence.claims.evidence import Evidence
 from comparison.evidence.claims.smoothness import SharpestCurvature
 from comparison.result_types import Text, result
-from comparison.surfaces.budget import torus_distance
+from comparison.surfaces.budget import compute_torus_distance
 from comparison.verdicts import MET, NOT_MET, Verdict
 
 EPSILON = 0.1  # the paper's epsilon: T_1, T_2 = T_c (1 -+ epsilon)
@@ -172,7 +172,7 @@ def find_corner_peaks(case: Evidence) -> StatementVerdict:
     step = 2.0 * np.pi / len(mu)
     tops = [(step * row, step * column) for row, column in counting.find_peak_basins(mu, case.error).tops]
     words = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
-    nearest = min(torus_distance(top, CORNER) for top in tops)
+    nearest = min(compute_torus_distance(top, CORNER) for top in tops)
     return verdict_with_reason(
         nearest <= MAX_CORNER_DISTANCE, f"peaks at {words}, the nearest {np.degrees(nearest):.0f}° from a corner"
     )

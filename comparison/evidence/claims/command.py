@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
-from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, read_whole_number
+from comparison.cli.arguments import STORED_RESULTS_HELP, CommandParser, command, read_whole_number
 from comparison.cli.computing import compute_tasks
 from comparison.evidence.claims.table import CLAIMS_GRID, Claims, ClaimTable, word_claims
 from comparison.evidence.forced_ratios import compute_forced_ratios
@@ -21,7 +21,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Print the table of statements; return the exit code."""
     parser = CommandParser("claims", "The statements of section 5 of the paper in both readings of (5.1).")
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {CLAIMS_GRID})")
-    parser.add_out(STORED_RESULTS)
+    parser.add_out(STORED_RESULTS_HELP)
     parser.add_computing()
     options = parser.parse_args(argv)
     grid = CLAIMS_GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)

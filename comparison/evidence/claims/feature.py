@@ -18,7 +18,9 @@ FEATURE = Feature(
         "phase-resonance run with every scene of the paper makes it, and phase-resonance claims alone",
         lambda report: {"peak_share": SHARE, "peak_shares": (MIN_SHARE, MAX_SHARE)},
         verifies=True,
-        verdict=lambda results: f"of {len(FOUND.of(results).statements)} statements, {count_met(FOUND.of(results))}",
-        lead=lambda results: word_claims(FOUND.of(results)),
+        verdict=lambda results: (
+            f"of {len(FOUND.read_from(results).statements)} statements, {count_met(FOUND.read_from(results))}"
+        ),
+        lead=lambda results: word_claims(FOUND.read_from(results)),
     ),
 )

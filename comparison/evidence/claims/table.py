@@ -24,7 +24,7 @@ from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.surfaces import select_values
 from comparison.verdicts import MET, NOT_COMPARED, Verdict, count_verdicts
 from reference.problem import builtin_scenes
 
@@ -162,10 +162,10 @@ def select_study_surfaces(
         return None
     every = slice(None, None, study.grid // (stride * grid))
     mu, error = (
-        np.moveaxis(values_of(surfaces, name, case, model)[: len(scene.bodies), every, every], 0, -1)
+        np.moveaxis(select_values(surfaces, name, case, model)[: len(scene.bodies), every, every], 0, -1)
         for name in ("mu", "error")
     )
-    statuses = np.unique(values_of(surfaces, "status", case, model)[every, every].astype(str)).tolist()
+    statuses = np.unique(select_values(surfaces, "status", case, model)[every, every].astype(str)).tolist()
     return Evidence(mu.copy(), float(np.nanmax(error, initial=0.0)), tuple(statuses), case=case)
 
 

@@ -32,10 +32,12 @@ FEATURE = Feature(
     section=Section(
         "Effective values",
         context=lambda report: {
-            "effective": [values for scene in report.results.scenes for values in EFFECTIVE.of(scene)],
+            "effective": [values for scene in report.results.scenes for values in EFFECTIVE.read_from(scene)],
             "phases": PHASES,
         },
         verifies=True,
-        verdict=lambda results: word_effective([each for scene in results.scenes for each in EFFECTIVE.of(scene)]),
+        verdict=lambda results: word_effective(
+            [each for scene in results.scenes for each in EFFECTIVE.read_from(scene)]
+        ),
     ),
 )

@@ -13,9 +13,9 @@ from functools import partial
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.user_models import add_models, user_models
+from comparison.cli.arguments import CommandParser, command, read_number, read_number_of_jobs, write_and_show
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.user_models import add_models, load_user_models
 from comparison.evidence.extremes.analysis import CELL_TIME_LIMIT, STAGE, Extremes, list_cells, select_quick
 from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED_ENGINE, make_user_column
 from comparison.evidence.extremes.matrix import FILE, STORED, CellVerdict, Matrix
@@ -77,7 +77,7 @@ def judge_matrix(
     matrix = extremes.collect(results)
     totals = [entry.total or 0.0 for row in matrix.rows for entry in row.entries.values()]
     run = {
-        **run_facts("extremes", options, words, begin),
+        **collect_run_facts("extremes", options, words, begin),
         "cpu_seconds": round(sum(totals), 1),
         "stored_before": results.parts[STAGE].stored,
         "limit": extremes.limit,
@@ -96,8 +96,8 @@ def _choose_cells(options: argparse.Namespace) -> Extremes:
         if options.limit is None
         else read_number("--limit", options.limit, 0.1, 1e6, "s of processor time")
     )
-    number_of_jobs(options)  # a wrong number of jobs is refused before the cells are listed
-    supplied = user_models(options.model, options.model_limit, options.scheduler)
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the cells are listed
+    supplied = load_user_models(options.model, options.model_limit, options.scheduler)
     every = list(list_extreme_cases())
     kept = [row for row in (select_quick(every) if options.reduced else every) if options.rows in row.name]
     columns = [column for column in COLUMNS if not options.models or column.key in options.models]

@@ -13,10 +13,10 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table
-from comparison.cli.user_models import add_models, user_models
+from comparison.cli.arguments import CommandParser, command, read_number_of_jobs, write_and_show
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.terminal import make_table
+from comparison.cli.user_models import add_models, load_user_models
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.analysis import STAGE, TradeOff
 from comparison.evidence.tradeoff.growth import CostGrowth, CostSeries, MeasuredGrowth, measure_by_workers
@@ -34,7 +34,7 @@ from comparison.runner.output import netcdf_content, publish_files, refuse_forei
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import refuse_same_names
-from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.figures.file_names import name_figure_file
 from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
 
@@ -62,7 +62,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     add_models(parser)
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     options = parser.parse_args(argv)
-    number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
     scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT_SCENE]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = resolve_destination(options.out)
@@ -97,7 +97,7 @@ def _measure_cost_growth(
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
     series = [*CostGrowth(scene).collect(results), measure_by_workers(scene, process_pool)]
-    facts = run_facts("tradeoff", options, words, begin)
+    facts = collect_run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
     write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     write_and_show(out, write, partial(print_growth, console, series))
@@ -107,7 +107,7 @@ def _measure_cost_growth(
 
 def print_growth(console: Console, series: Sequence[CostSeries]) -> None:
     """Print a row for every value, with the fitted slope of its series in the last one."""
-    table = new_table("quantity", "model", "value", "s", "slope")
+    table = make_table("quantity", "model", "value", "s", "slope")
     for each in series:
         slope = "" if each.slope is None else f"{each.slope:.2f} ± {each.uncertainty:.2f}"
         for value, seconds in zip(each.values, each.seconds):
@@ -143,9 +143,9 @@ def measure_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
     """Return the trade-offs of the scenes with the facts of their run; stored tasks are not measured again."""
-    supplied = user_models(options.model, options.model_limit, options.scheduler)
+    supplied = load_user_models(options.model, options.model_limit, options.scheduler)
     tradeoff = TradeOff(scenes, options.quick, supplied)
-    tasks, width = tradeoff.tasks(), number_of_jobs(options)
+    tasks, width = tradeoff.tasks(), read_number_of_jobs(options)
     about = WORKER_START_SECONDS + sum(task.seconds for task in tasks) / width
     for scene in scenes:
         console.print(f"{scene.title} ({scene.name})")
@@ -153,7 +153,7 @@ def measure_trades(
     begin = time.monotonic()
     results = compute_tasks("tradeoff", options, words, tasks, WORKER_FUNCTIONS, console, executor)
     more = {"quick": options.quick, "stored_before": results.parts[STAGE].stored}
-    run = run_facts("tradeoff", options, words, begin) | more
+    run = collect_run_facts("tradeoff", options, words, begin) | more
     attributes = {"command": run["command"], **run["provenance"]}
     return [
         MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))
@@ -162,7 +162,7 @@ def measure_trades(
 
 
 def _values_file(scene: str) -> str:
-    return figure_file(scene, "tradeoff", ending=".nc")
+    return name_figure_file(scene, "tradeoff", ending=".nc")
 
 
 def print_trade(console: Console, trade: SceneTrade) -> None:
@@ -172,7 +172,7 @@ def print_trade(console: Console, trade: SceneTrade) -> None:
         console.print(
             f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
         )
-        table = new_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
+        table = make_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
         for entry in sorted(trade.entries_of(question.key), key=lambda setting: setting.seconds):
             if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))

@@ -7,7 +7,7 @@ from typing import Any
 from comparison.evidence.tradeoff import growth, trade
 from comparison.evidence.tradeoff.growth import CostSeries
 from comparison.evidence.tradeoff.trade import MeasuredSetting, SceneTrade, SolvedQuestion
-from comparison.report.feature import Feature, ResultField, stored_field
+from comparison.report.feature import Feature, ResultField, make_stored_field
 from comparison.report.panels import MAX_CURVES, Panel, make_panel
 from comparison.report.section import Report, Section
 from comparison.wording import scientific
@@ -104,7 +104,7 @@ TRADES = ResultField(
     trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load_trades,
 )
-GROWTH = stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
+GROWTH = make_stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:

@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 
 from comparison.cli.arguments import CommandParser, command, write_and_show
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import make_table
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import frame, pendulum
 from comparison.evidence.validation.files import (
@@ -106,7 +106,7 @@ def _compare_file(file: str, compare: Callable[[Any], ExperimentFindings], measu
 def print_validation(console: Console, table: Validation) -> None:
     """Print a row for every quantity, the causes, the inputs, and the counts."""
     heads = ("D", "u_D", "u_input", "E equations", "u_num", "E engine", "u_num", "u_val", "verdict")
-    lines = new_table("quantity", *heads)
+    lines = make_table("quantity", *heads)
     for each in table.quantities:
         sides = [each.sides[side] for side in (EQUATIONS, ENGINE)]
         numbers = [number for side in sides for number in (side.error, side.numerical)] + [sides[0].validation]

@@ -6,7 +6,7 @@ from typing import Any
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
 from comparison.evidence.validation.table import STORED, Validation, verdict_line
-from comparison.report.feature import Feature, stored_field
+from comparison.report.feature import Feature, make_stored_field
 from comparison.report.panels import Panel, make_panel
 from comparison.report.section import Section
 from comparison.verdicts import CLASSES, MEANING
@@ -35,7 +35,7 @@ def make_experiment_panels(table: Validation) -> list[Panel]:
     return drawn
 
 
-FOUND = stored_field(STORED, "validation", "measured motions, compared with what both sides compute")
+FOUND = make_stored_field(STORED, "validation", "measured motions, compared with what both sides compute")
 FEATURE = Feature(
     "validation",
     (FOUND,),
@@ -49,6 +49,6 @@ FEATURE = Feature(
             "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
         },
         verifies=True,
-        verdict=lambda results: verdict_line(FOUND.of(results)),
+        verdict=lambda results: verdict_line(FOUND.read_from(results)),
     ),
 )

@@ -37,7 +37,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import SMALL
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import label_surfaces, surface_tasks
+from comparison.surfaces.surfaces import label_surfaces, make_surface_tasks
 from comparison.verdicts import MEANING, MET, NOT_COMPARED, NOT_MET, Verdict
 from reference import amplification, modes, trajectory
 from reference.problem import builtin_scenes, load_scene
@@ -272,7 +272,7 @@ def test_the_surfaces_of_the_study_are_used_where_it_has_the_grid() -> None:
     """Every second phase of a finer study; not of another grid, a model that is missing or a scene that was changed."""
     scenes = tuple(load_scene(name) for name in builtin_scenes())
     study = Study(scenes, 8, 1e-3, (SMALL,))
-    batches = [task.argument for task in surface_tasks(study)]
+    batches = [task.argument for task in make_surface_tasks(study)]
     surfaces = label_surfaces(study, batches, [_planted_result(batch) for batch in batches])
     for case in ("fig3-I", "fig4-viscous"):
         known = select_study_surfaces(study, surfaces, case, LITERAL_SUPREMUM, 4)

@@ -7,7 +7,7 @@ from comparison.evidence.tradeoff.trade import MeasuredSetting, SceneTrade, Solv
 from comparison.evidence.trend_feature import make_trend_panels
 from comparison.evidence.trends import Trend
 from comparison.report.glossary import GLOSSARY, explain_words
-from comparison.report.page import content_policy
+from comparison.report.page import make_content_policy
 from comparison.report.panels import MAX_CURVES
 
 
@@ -68,6 +68,6 @@ def test_a_word_of_the_glossary_is_explained_where_it_is_first() -> None:
 
 
 def test_the_policy_names_script_and_style_by_their_hash() -> None:
-    policy = content_policy("", "")  # of the empty text: the well-known digest of nothing
+    policy = make_content_policy("", "")  # of the empty text: the well-known digest of nothing
     assert policy.count("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='") == 2
     assert "default-src 'none'" in policy

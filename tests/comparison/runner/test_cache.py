@@ -42,14 +42,14 @@ from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import Outcome, Scene, builtin_scenes, load_scene
 
 SCENE = load_scene("fig3-I")
 
 
 def _batch_task(**changed: Any) -> Task:
-    return surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
+    return make_surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
 
 
 def _task(scene: Scene = SCENE, *rest: Any) -> Task:
@@ -366,7 +366,7 @@ def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
 
 
 def test_a_batch_of_another_shape_or_ok_without_numbers_is_computed_again(tmp_path: Path) -> None:
-    task = surface_tasks(Study((SCENE,), 2, 1e-3, fake_hierarchy()))[0]
+    task = make_surface_tasks(Study((SCENE,), 2, 1e-3, fake_hierarchy()))[0]
     whole = execute_batch(task.argument)
 
     def is_taken(**changed: object) -> bool:
