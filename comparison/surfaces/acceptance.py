@@ -55,9 +55,7 @@ class Limit:
 def list_pairs_without_limit(study: Study, scene: Scene) -> list[str]:
     """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
     stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.list_limited_differences()]
-    limited = {_find_equal_pair(study, scene, pair) for pair, _ in stated} | set(
-        _engines_without_limits(study, scene)
-    )
+    limited = {_find_equal_pair(study, scene, pair) for pair, _ in stated} | set(_engines_without_limits(study, scene))
     return [pair.key for pair in study.pairs(scene) if pair.key not in limited]
 
 

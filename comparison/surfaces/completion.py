@@ -145,7 +145,9 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
                 if lacks and _find_finer_model(study, scene, model):
                     phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
                     about = model.scene_of(scene), model, model.arguments(study.tolerance, study.full)
-                    parts = [phases[first : first + POINTS_PER_TASK] for first in range(0, len(phases), POINTS_PER_TASK)]
+                    parts = [
+                        phases[first : first + POINTS_PER_TASK] for first in range(0, len(phases), POINTS_PER_TASK)
+                    ]
                     arguments = [(*about, part) for part in parts]
                     yield scene, model, [Task(compute_held_out, each, self.stage, about=scene) for each in arguments]
 

@@ -118,7 +118,7 @@ def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) 
 
 
 def usable_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
-    """Return mu of the first model by body, as `values_of`; NaN where its error is above half of it."""
+    """Return mu of the first model by body, as `select_values`; NaN where its error is above half of it."""
     return drop_unusable_values(*(select_values(surfaces, name, scene, *models) for name in ("mu", "error")))
 
 

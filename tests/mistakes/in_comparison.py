@@ -776,7 +776,7 @@ MISTAKES = (
             "Largest uplift of a support is the smallest of the motions.", ("tests/comparison/analyses/test_ensemble.py::test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motions",)),
     Mistake("comparison/analyses/ensemble/sentences.py", "if (each.structure, each.scale, each.status) == (structure.name, ensemble.largest_scale, TRAVEL_REACHED)", "if (each.structure, each.status) == (structure.name, TRAVEL_REACHED)",
             "The sentence on the travel names motions of smaller scales.", ("tests/comparison/analyses/test_ensemble_report.py::test_a_motion_that_reaches_the_travel_is_said_with_its_instant",)),
-    Mistake("comparison/evidence/validation/pendulum.py", "off = zip(100.0 * (small / data.values - 1.0), ANGLES)", "off = zip(100.0 * (small / data.values - 1.0), ANGLES[::-1])",
+    Mistake("comparison/evidence/validation/pendulum.py", "off = zip(100.0 * (small / data.values - 1.0), PREDICTED_ANGLES)", "off = zip(100.0 * (small / data.values - 1.0), PREDICTED_ANGLES[::-1])",
             "Errors of the small equations stand at other angles.", ("tests/comparison/evidence/test_validation.py::test_half_periods_are_those_of_elliptic_integrals",)),
     Mistake("comparison/evidence/claims/evidence.py", "apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))", "apart = np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0)",
             "Difference of x and y of the last motion alone.", ("tests/comparison/evidence/test_claims.py::test_evidence_of_the_paper_is_what_the_equations_give",)),

@@ -145,6 +145,8 @@ FEATURE = Feature(
         "Conditioning of the literal supremum",
         "phase-resonance run makes it, of scenes with phases and dry friction",
         _section_context,
-        lead=lambda results: f"{conditioning_line(FOUND.read_from(results))} {yielding_line(FOUND.read_from(results))}".strip(),
+        lead=lambda results: (
+            f"{conditioning_line(FOUND.read_from(results))} {yielding_line(FOUND.read_from(results))}".strip()
+        ),
     ),
 )

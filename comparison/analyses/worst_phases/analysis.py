@@ -102,7 +102,9 @@ def _starting_phases(
     if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
-    values = select_values(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
+    values = (
+        select_values(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
+    )
     starts = find_local_maxima(values if of_platform else values[body - 1], scene)
     return starts if len(starts) else None
 

@@ -232,7 +232,7 @@ def test_an_error_half_of_what_it_should_be_fails(off: float, claimed: float, fi
 @pytest.mark.parametrize("error", [(-1e-5, 1e-5), (1e-5, -1e-5), (1e-5, np.nan), (1e-5, 3e-3)])
 def test_an_error_estimate_that_is_none_of_one_body_fails(error: tuple[float, float]) -> None:
     mu, ok = np.array([[1.0, 2.0]]), (Outcome.OK.value,)
-    finer = analysis.Reply(mu, 1e-6 * mu, ok)
-    verdicts = [analysis.judge_reply(analysis.Reply(mu, np.array([each]), ok), [finer], 1e-3, False, ()).verdict
+    finer = analysis.ModelAnswer(mu, 1e-6 * mu, ok)
+    verdicts = [analysis.judge_answer(analysis.ModelAnswer(mu, np.array([each]), ok), [finer], 1e-3, False, ()).verdict
                 for each in (error, (1e-5, 1e-5))]  # fmt: skip
     assert verdicts == [CellVerdict.FAILED, CellVerdict.CONVERGED]
