@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import Field, create_model
 
 from comparison.report import surface_sections as core
-from comparison.report.building import build_report
+from comparison.report.building import assemble_report
 from comparison.report.feature import Feature
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
@@ -57,7 +57,7 @@ FEATURES: tuple[Feature, ...] = (
     core.PICTURES,
 )
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
-SELECTABLE = tuple(feature.choice for feature in FEATURES if feature.selectable)
+SELECTABLE = tuple(feature.selectable_entry for feature in FEATURES if feature.selectable)
 EVERYTHING = Selection(SELECTABLE)  # all but what is made on request, of every scene
 
 
@@ -81,7 +81,7 @@ def _results_type(features: Sequence[Feature]) -> type[Results]:
 
 
 StudyResults = _results_type(FEATURES)
-report_of = partial(build_report, features=FEATURES, kind=StudyResults)
+report_of = partial(assemble_report, features=FEATURES, kind=StudyResults)
 
 
 def select_analyses(study: Study) -> list[Analysis[Any]]:

@@ -22,14 +22,20 @@ from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 
-from comparison.cli.arguments import EndedEarlyError, command, command_line, edit_command_line, resume_hint
-from comparison.cli.closing import print_check, print_closing, print_faults, print_level
+from comparison.cli.arguments import (
+    EndedEarlyError,
+    command,
+    edit_command_line,
+    format_command_line,
+    word_resume_hint,
+)
+from comparison.cli.closing import print_check, print_closing, print_level, print_solver_messages
 from comparison.cli.computing import open_workers
 from comparison.cli.options import Options, parse_options
-from comparison.cli.reports import CompleteLevel, Reports, compute_level
-from comparison.cli.start import Clock, command_start
+from comparison.cli.reports import CompleteLevel, ReportWriter, compute_level
+from comparison.cli.start import Clock, find_command_start
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
-from comparison.cli.user_models import Engines, as_words
+from comparison.cli.user_models import Engines, word_engine_options
 from comparison.registry import first_tasks, seconds_by_stage, seconds_of_study, select_analyses, study_levels
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import clear_dead
@@ -41,7 +47,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.costs import WRITING
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_steps_of_scenes
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.support.command import stop_on_signals
 
 import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
@@ -62,10 +68,10 @@ def main(
     open. models: engines of the user by name, as `--model` enters them: a function at the top level of a module, or its
     place as "module:function".
     """
-    began = command_start()
+    began = find_command_start()
     with stop_on_signals():
         try:
-            words = edit_command_line(argv, as_words(models or {}))
+            words = edit_command_line(argv, word_engine_options(models or {}))
             options = parse_options(words)
             run = StudyRun(options, words, hierarchy, began)
             run.describe()
@@ -75,7 +81,7 @@ def main(
             code = run.compute(executor)
             if options.check and code < 2 and any(scene.acceptance.confirm for scene in options.scenes):
                 words = _tighter_command(options, words)
-                run.say(f"Again at a tenth of the tolerance: {command_line(words)}")
+                run.say(f"Again at a tenth of the tolerance: {format_command_line(words)}")
                 again = StudyRun(parse_options(words), words, hierarchy, Clock.now()).compute(executor)
                 return max(code, again)
             return code
@@ -125,10 +131,10 @@ class StudyRun:
         options, models = self._options, {model.amplification for model in self._study.hierarchy}
         with open_workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
             clear_dead(options.out)
-            surfaces = surface_tasks(self._study)
+            surfaces = make_surface_tasks(self._study)
             results = self._open_results(surfaces)
             total = WRITING + seconds_of_study(self._study)
-            reports = Reports(options, jobs, self._words, self._began)
+            reports = ReportWriter(options, jobs, self._words, self._began)
             with (
                 show_progress(self._console, total, jobs) as display,
                 Deadline(self._began.wall, options.budget) as deadline,
@@ -137,7 +143,7 @@ class StudyRun:
                 stop = self._compute_levels(runner, surfaces, reports, deadline)
             return self._close(reports, jobs, stop)
 
-    def _close(self, reports: Reports, jobs: int, stop: KeyboardInterrupt | None) -> int:
+    def _close(self, reports: ReportWriter, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
         Print what the last report says and what to do next; return the exit code.
 
@@ -145,7 +151,7 @@ class StudyRun:
         """
         options, found = replace(self._options, jobs=jobs), reports.results
         if found is not None:
-            print_faults(found)
+            print_solver_messages(found)
             print_closing(self._console, found, options, self._words, reports.place)
             if options.check:
                 print_check(found, options.scenes)
@@ -173,7 +179,7 @@ class StudyRun:
         return results
 
     def _compute_levels(
-        self, runner: Runner, surfaces: Sequence[Task], reports: Reports, deadline: Deadline
+        self, runner: Runner, surfaces: Sequence[Task], reports: ReportWriter, deadline: Deadline
     ) -> KeyboardInterrupt | None:
         """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
         complete: CompleteLevel | None = None
@@ -197,4 +203,4 @@ class StudyRun:
         return None
 
     def _hint(self, words: Sequence[str]) -> str:
-        return resume_hint(self._cache, words, batches=len(self._study.batches()))
+        return word_resume_hint(self._cache, words, batches=len(self._study.batches()))

@@ -16,7 +16,7 @@ from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with
 from comparison.study.study import STUDY_TOLERANCE, Study
 from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.missing_values import MissingValues, list_missing_values
-from comparison.surfaces.model_difference import difference_of
+from comparison.surfaces.model_difference import compute_difference
 from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import Scene, load_family
 from reference.problem.acceptance import DemandLimits
@@ -233,7 +233,7 @@ def _word_breaches(
         yield f"{scene.name}: {name}: the study has no pair of models for it"
         return
     for body in range(1, len(scene.bodies) + 1):
-        step = difference_of(surfaces, scene.name, pair, body)
+        step = compute_difference(surfaces, scene.name, pair, body)
         if not step.known.any():
             both = f"{pair.first.title} and {pair.second.title}"
             yield f"{scene.name}, body {body}: {name}: no phase pair has a value by {both}"

@@ -1,4 +1,4 @@
-"""What the terminal says before a run: what would be computed, and roughly how long it would take."""
+"""Terminal output before a run: what would be computed, and roughly how long it would take."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,19 +18,19 @@ from comparison.study.models import models_of, why_not_spatial
 from comparison.study.records import describe_records
 from comparison.study.reductions import list_omissions
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.building import Building, describe_building, word_buildings
 from reference.plausibility import implausible_values
 from reference.problem import Family, Scene
 from reference.support.arguments import name_some
 
-NAMES = 4  # names of a list that the terminal shows
+MAX_LISTED_NAMES = 4  # largest number of names of a list that the terminal shows
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """Print what would be computed, and roughly how long it would take."""
     for reason, of in _list_refusals(study).items():
-        console.print(f"{name_some(of, NAMES)}: {reason}.", soft_wrap=True)
+        console.print(f"{name_some(of, MAX_LISTED_NAMES)}: {reason}.", soft_wrap=True)
     _print_models(console, study, options.families)
     first = _print_analyses(console, study)
     _print_levels(console, study)
@@ -41,7 +41,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
     results = TaskResults(Cache(locate_store(options.out)), options.fresh)
-    print_stored(console, results, surface_tasks(study), first)
+    print_stored(console, results, make_surface_tasks(study), first)
     wall = STARTING + seconds_of_study(study) / options.jobs + WRITING
     compiling = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{compiling}; nothing was computed.")
@@ -50,7 +50,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
 
 def _print_models(console: Console, study: Study, families: Sequence[Family]) -> None:
     """Print a table of the models of every file, with their phase pairs."""
-    table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
+    table = make_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
     for family in families:
         for model in study.hierarchy:
             scenes = [scene for scene in family.scenes if model.applies(scene)]
@@ -83,16 +83,16 @@ def _print_levels(console: Console, study: Study) -> None:
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
-    """Say how much an earlier run has left."""
+    """Print how many results of an earlier run are stored."""
     stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
     if results.cache is not None and stored + analyses:
         rest = f", {analyses} of {len(others)} analyses" if others else ""
         line = f"{stored} of {len(batches)} batches{rest} are in {results.cache.folder}: only the others are computed."
-        console.print(line, soft_wrap=True)  # a path is copied whole
+        console.print(line, soft_wrap=True)  # no line break inside the path, so that a user can copy it
 
 
 def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> None:
-    """Print what was read of the buildings; then a line for every kind of value that is hardly meant, once for each."""
+    """Print the properties read of the buildings; then one line for each kind of implausible value."""
     buildings = [replace(describe_building(scene), name=name) for name, scene in named]
     for line in word_buildings(buildings):
         console.print(line, soft_wrap=True, markup=False, highlight=False)
@@ -106,7 +106,7 @@ def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> Non
 
 
 def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: bool = False) -> None:
-    """Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files."""
+    """Print once what was read of every recorded motion, one line if short; named: by motion, "" for its files."""
     names, scenes = zip(*named) if named else ((), ())
     for one in describe_records(scenes, names):
         for line in one.short_lines if short else one.lines:
@@ -114,7 +114,7 @@ def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: b
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """Print what was read and what is hardly meant; say which scenes state only a part of what a model needs."""
+    """Print the properties read and implausible values, and the scenes that state only part of what a model needs."""
     print_records(console, [("", scene) for scene in study.scenes])
     print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
@@ -123,7 +123,7 @@ def print_models_left_out(console: Console, study: Study) -> None:
 
 
 def _list_refusals(study: Study) -> dict[str, list[str]]:
-    """Why surfaces would have no value, with the scenes and models."""
+    """Return the reasons why surfaces would have no value, with the scenes and models."""
     refused: dict[str, list[str]] = {}
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
@@ -133,19 +133,21 @@ def _list_refusals(study: Study) -> dict[str, list[str]]:
 
 
 def _print_reductions(console: Console, study: Study) -> None:
-    """Print what the scenes do not require."""
+    """Print the computations that the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
     elif rows := list_omissions(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
-            console.print(f"  {row.what} ({row.models}; {name_some(row.scenes, NAMES)}): {row.why}", soft_wrap=True)
+            console.print(
+                f"  {row.what} ({row.models}; {name_some(row.scenes, MAX_LISTED_NAMES)}): {row.why}", soft_wrap=True
+            )
     else:
         console.print("Nothing is left out: the scenes require all of it.")
 
 
-def new_table(*headings: str) -> Table:
-    """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
+def make_table(*headings: str) -> Table:
+    """Return an empty table: words to the left, numbers to the right; if it is too wide, words are folded."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")

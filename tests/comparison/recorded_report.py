@@ -168,7 +168,9 @@ def recorded_lines(folder: Path) -> list[str]:
         known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED}
         known |= {"assumptions": known_assumptions(), "demands": known_demand_surfaces, **known_others()}
         analyses_are(patch, **known)
-        patch.setattr(reports, "PATIENCE", math.inf)  # no level before the last has a report, and no line tells the
+        patch.setattr(
+            reports, "MIN_REPORT_INTERVAL", math.inf
+        )  # no level before the last has a report, and no line tells the
         patch.setattr(progress, "EVERY", math.inf)  # time left, however slow the machine
         full = folder / "full" / "report"
         leave_beside(full, FILES, "fig3-I")

@@ -20,9 +20,9 @@ from comparison.analyses.assumptions.statements import (
 from comparison.analyses.assumptions.trials import CLOSE_ENOUGH, DURATION
 from comparison.analyses.assumptions.validity import MORE_PHASES, MORE_SIZES, Assumptions, Validity
 from comparison.analyses.assumptions.variations import DIRECTED, MANY, Variation
-from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, number_of_jobs
+from comparison.cli.arguments import STORED_RESULTS_HELP, CommandParser, command, read_number_of_jobs
 from comparison.cli.computing import compute_tasks
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import make_table
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import has_spatial_data
@@ -40,10 +40,10 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         "How far mu_i of the spatial model is from the translational one, over rings, heights, ovals, offsets, angles.",
     )
     parser.add_scenes("the paper's")
-    parser.add_out(STORED_RESULTS)
+    parser.add_out(STORED_RESULTS_HELP)
     parser.add_computing()
     options = parser.parse_args(argv)
-    number_of_jobs(options)  # refused before anything else is looked at
+    read_number_of_jobs(options)  # refused before anything else is looked at
     names = options.scenes or builtin_scenes()
     scenes = [_load_spatial_scene(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
@@ -77,7 +77,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
     cells = [cell for cell in found.cells if cell.scene == scene.name]
     about = f"largest change of mu_i, {found.reading}, against the translational model, per body"
     console.print(f"{scene.title} ({scene.name}): {about}")
-    table = new_table("ring, m", "heights x", "supports", "uneven", "change, %", "u_D, %", "outcomes")
+    table = make_table("ring, m", "heights x", "supports", "uneven", "change, %", "u_D, %", "outcomes")
     bodies, radius = range(1, len(scene.bodies) + 1), scene.support_radius or 0.0
     for cell in cells:
         each = cell.variation

@@ -33,7 +33,7 @@ from comparison.study.models import (
 )
 from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study, nested_grids
-from comparison.surfaces.sampling import sampling_error
+from comparison.surfaces.sampling import estimate_sampling_error
 from reference.problem import Outcome, Scene, phase_grid
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 from reference.problem.symmetry import distinct_pairs
@@ -235,7 +235,7 @@ def _statistics_at_speed(
     if not known.any():
         return _SpeedStatistics()
     place = int(np.nanargmax(mu))
-    sampling = sampling_error(over_supremum.reshape(grid, grid), answers.independent) if grid else 0.0
+    sampling = estimate_sampling_error(over_supremum.reshape(grid, grid), answers.independent) if grid else 0.0
     alpha1, alpha2 = answers.phases[place].tolist()
     return _SpeedStatistics(
         mean=float(mu[known].mean()),

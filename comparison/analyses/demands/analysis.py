@@ -19,7 +19,7 @@ from comparison.study.batches import import_function
 from comparison.study.costs import seconds_per_motion
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.distribution import CURVE, Fractile
+from comparison.surfaces.distribution import CURVE_PROBABILITIES, Fractile
 from comparison.surfaces.surfaces import NOT_ASKED, copy_to_mirror_images
 from reference.measures import Estimates, phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
@@ -200,5 +200,5 @@ def _statistics_of_demand(
         fractiles=tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles)),
         lowest=extreme(int(np.nanargmin(value))),
         highest=extreme(int(np.nanargmax(value))),
-        curve=tuple(fractile(value[known], p) for p in CURVE),
+        curve=tuple(fractile(value[known], p) for p in CURVE_PROBABILITIES),
     )

@@ -54,17 +54,17 @@ from comparison.analyses.ensemble.terminal import print_engine, print_equations
 from comparison.cli.arguments import (
     CommandParser,
     command,
-    number_of_jobs,
     read_bounds,
     read_number,
+    read_number_of_jobs,
     read_whole_number,
     report_write_errors,
     write_and_show,
 )
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.start import command_start
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.start import find_command_start
 from comparison.cli.terminal import print_buildings, print_records
-from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
+from comparison.report.junit import JUnitCase, JUnitSuite, format_junit
 from comparison.runner.attempts import attempt, publish_made
 from comparison.runner.output import publish_files, refuse_foreign_files, refuse_other_page, resolve_destination
 from comparison.runner.processes import Pool, process_pool
@@ -96,7 +96,7 @@ MAX_SCALES = 100
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Compute the ensemble that the command line names and write its files; return the exit code."""
     options = _parser().parse_args(argv)
-    jobs = number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    jobs = read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
     members = list_members([make_suite_family(options, scene) for scene in options.scenes])
     asked = parse_engine_option(options.engine, members)
     target = None
@@ -121,7 +121,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin = command_start().wall
+    begin = find_command_start().wall
     build = partial(build_result, tolerance=ensemble.tolerance, target=target, listed=read_listed_motions(options))
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
@@ -216,7 +216,7 @@ def write_ensemble(
 ) -> EnsembleResult:
     """Write the files of the ensemble, print its tables, write its page; return the result."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
-    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
+    run = {**collect_run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = build(points, run)
     result = replace(result, engine=replace(result.engine, pending=pending))
     checks = check(result)
@@ -247,7 +247,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
         )
         for bound in dict.fromkeys(each.bound for each in checks)
     ]
-    return junit_text(suites).encode()
+    return format_junit(suites).encode()
 
 
 def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineRequest) -> list[EnsembleMember]:

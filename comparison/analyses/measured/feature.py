@@ -24,7 +24,7 @@ FEATURE = Feature(
             "measured_units": {"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
             "measured_classes": CLASSES,
         },
-        verdict=lambda results: verdict_line(FOUND.of(results)),
+        verdict=lambda results: verdict_line(FOUND.read_from(results)),
         folded=False,
     ),
 )

@@ -12,7 +12,7 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.model_difference import difference_of
+from comparison.surfaces.model_difference import compute_difference
 from comparison.wording import exception_line
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
@@ -144,7 +144,7 @@ def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Moti
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):
         for body in range(1, len(scene.bodies) + 1):
-            if pair.key in largest and (place := difference_of(surfaces, scene.name, pair, body).place):
+            if pair.key in largest and (place := compute_difference(surfaces, scene.name, pair, body).largest_place):
                 places.setdefault(place, (largest[pair.key].format(body), set()))[1].add(pair.second.key)
     for k in range(EVENLY_SPREAD_PAIRS):
         row, column = (

@@ -15,9 +15,9 @@ import pytest
 from places import ROOT
 
 import reference
-from comparison.cli.start import commands, main, run_command
+from comparison.cli.start import list_commands, main, run_command
 
-COMMANDS = commands()
+COMMANDS = list_commands()
 MODULES = ("multibody.animate", "comparison.run")  # started by their own names, too
 BEGIN = """
 import os, signal, sys, types

@@ -28,7 +28,7 @@ from runs import no_executor
 
 import multibody.models.engine
 from comparison.analyses.motions.analysis import MotionPlace, StoredMotion
-from comparison.evidence.claims.table import paper_complete
+from comparison.evidence.claims.table import has_every_paper_scene
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.runner.cache import MAGIC, Cache, CacheKey
 from comparison.runner.environment import (
@@ -42,14 +42,14 @@ from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import Outcome, Scene, builtin_scenes, load_scene
 
 SCENE = load_scene("fig3-I")
 
 
 def _batch_task(**changed: Any) -> Task:
-    return surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
+    return make_surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
 
 
 def _task(scene: Scene = SCENE, *rest: Any) -> Task:
@@ -249,12 +249,12 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3, selection=EVERYTHING)
     tasks = first_tasks(study, ANALYSES)
-    assert paper_complete(study)
+    assert has_every_paper_scene(study)
     assert len({task.key for task in tasks}) == len(tasks)
     assert {task.stage for task in tasks} == {
         "effective values", "conditioning", "scaling test", "convergence", "assumptions",
     }  # fmt: skip
-    assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
+    assert not has_every_paper_scene(Study(study.scenes[:1], 6, 1e-3))
 
 
 def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
@@ -366,7 +366,7 @@ def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
 
 
 def test_a_batch_of_another_shape_or_ok_without_numbers_is_computed_again(tmp_path: Path) -> None:
-    task = surface_tasks(Study((SCENE,), 2, 1e-3, fake_hierarchy()))[0]
+    task = make_surface_tasks(Study((SCENE,), 2, 1e-3, fake_hierarchy()))[0]
     whole = execute_batch(task.argument)
 
     def is_taken(**changed: object) -> bool:

@@ -22,17 +22,17 @@ from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import batch_results, surface_tasks
+from comparison.surfaces.surfaces import collect_batch_results, make_surface_tasks
 from reference.problem import load_scene
 
 
 def _results(executor: Pool, done: Callable[[int], object] = lambda count: None) -> list[tuple[bytes | list[str], ...]]:
     """The engine's surface to the last bit; `done` is told how many batches are."""
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("uneven", batch=1))
-    tasks = [task for task in surface_tasks(study) if task.argument.model == "translational"]
+    tasks = [task for task in make_surface_tasks(study) if task.argument.model == "translational"]
     results, count = TaskResults(), iter(range(1, len(tasks) + 1))
     Runner(results, 2, executor, Display(1.0, 2, lambda display: done(next(count)))).run(tasks)
-    batches = batch_results(tasks, results)
+    batches = collect_batch_results(tasks, results)
     return [(each.mu.tobytes(), each.error.tobytes(), each.instant.tobytes(), each.status) for each in batches]
 
 

@@ -34,7 +34,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
-from comparison.surfaces.surfaces import batch_results, surface_tasks
+from comparison.surfaces.surfaces import collect_batch_results, make_surface_tasks
 from reference.problem import Outcome, load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
@@ -85,9 +85,12 @@ class Deadly(ThreadPoolExecutor):
 @pytest.mark.parametrize("batch", [2, 16])
 def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
     hierarchy = [model for model in fake_hierarchy(batch=batch, gap=0.0) if model.key == "translational"]
-    tasks, results = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)), TaskResults(Cache(tmp_path))
+    tasks, results = (
+        make_surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)),
+        TaskResults(Cache(tmp_path)),
+    )
     Runner(results, 2, Deadly).run(tasks)
-    found = batch_results(tasks, results)
+    found = collect_batch_results(tasks, results)
     assert [outcome for result in found for outcome in result.status] == ["ok"] * 15 + ["worker died"]
     expected = np.concatenate([execute_batch(task.argument).mu for task in tasks])
     np.testing.assert_array_equal(np.concatenate([result.mu for result in found])[:15], expected[:15])
@@ -275,7 +278,7 @@ def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
 def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
     model = user_model("mine", {"function": "user_engines:plain"})
-    tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
+    tasks = make_surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
     results = _run(tasks, Limited, jobs=1, folder=tmp_path)
     assert [result.outcome for result in results] == [*[Outcome.TIME_LIMIT] * 3, Outcome.NOT_ASKED]
     assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]

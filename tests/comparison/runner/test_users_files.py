@@ -271,7 +271,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
     def breaks(*rest: object) -> str:
         raise error  # the surfaces, the summary and the figures are written by then
 
-    monkeypatch.setattr(page, "page_data", breaks)
+    monkeypatch.setattr(page, "collect_page_data", breaks)
     run = command(*SMALL, "--tolerance", "2e-3")
     assert (run.code, run.err.count("\n")) == (code, 1)
     assert {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()} == before

@@ -21,13 +21,13 @@ from runs import Run
 from studies import body_comparisons, difference_rows, solved
 
 import reference
-from comparison.cli.user_models import as_words, look_at, user_models
+from comparison.cli.user_models import inspect_in_worker, load_user_models, word_engine_options
 from comparison.evidence.extremes.analysis import list_cells
-from comparison.evidence.extremes.columns import user_column
-from comparison.evidence.extremes.rows import extreme_cases
+from comparison.evidence.extremes.columns import make_user_column
+from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
-from comparison.evidence.tradeoff.feature import tradeoff_panels
+from comparison.evidence.tradeoff.feature import make_tradeoff_panels
 from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
@@ -35,10 +35,10 @@ from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, amplification, user_model
-from comparison.surfaces.budget import budget_entries
+from comparison.surfaces.budget import list_budget_entries
 from comparison.surfaces.headline import make_headline
-from comparison.surfaces.missing_values import list_missing_values, study_of_results
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
+from comparison.surfaces.surfaces import make_surface_tasks
 from comparison.surfaces.waterfall import make_waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
@@ -61,7 +61,7 @@ def studied(*models: Model) -> tuple[Study, xr.Dataset]:
     """A study with models of known answer and these, computed here."""
     study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
     surfaces = solved(study)
-    return study_of_results(study, surfaces), surfaces
+    return leave_out_empty_models(study, surfaces), surfaces
 
 
 def test_the_engine_of_the_documentation_appears_in_the_report(
@@ -155,7 +155,7 @@ def test_what_cannot_be_imported_or_called_is_named(
     (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
     (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
     monkeypatch.syspath_prepend(str(tmp_path))
-    said, _ = look_at(path)
+    said, _ = inspect_in_worker(path)
     assert said.startswith(fault)
     assert "\n" not in said
 
@@ -165,14 +165,14 @@ def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: p
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
     with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
-        user_models(["mine=engine_that_leaves:f"])
+        load_user_models(["mine=engine_that_leaves:f"])
 
 
 def test_functions_are_used_from_python_by_their_place() -> None:
-    words = as_words({"a": user_engines.plain, "b": "user_engines:raises@exact"})
+    words = word_engine_options({"a": user_engines.plain, "b": "user_engines:raises@exact"})
     assert words == ["--model", "a=user_engines:plain", "--model", "b=user_engines:raises@exact"]
     with pytest.raises(SceneError, match=r"models: a = '.*<lambda>': worker processes import an engine by its name"):
-        as_words({"a": lambda scene, phases: None})
+        word_engine_options({"a": lambda scene, phases: None})
 
 
 @pytest.mark.parametrize("form", ["plain", "with_error", "as_object", "as_full_object", "as_list"])
@@ -258,12 +258,12 @@ def test_a_user_engine_changes_no_other_number(function: str) -> None:
     study, surfaces = studied(supplied(function))
     others = [model.key for model in alone.hierarchy]
     xr.testing.assert_identical(surfaces.sel(model=others), without)
-    entries = [budget_entries(body_comparisons(*each)) for each in ((study, surfaces), (alone, without))]
+    entries = [list_budget_entries(body_comparisons(*each)) for each in ((study, surfaces), (alone, without))]
     assert repr(entries[0]) == repr(entries[1])  # repr: NaN is not equal to itself
     theirs = [row for row in difference_rows(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(difference_rows(alone, without))
-    keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
-    assert keys == [task.key for task in surface_tasks(alone)]
+    keys = [task.key for task in make_surface_tasks(study) if task.argument.model != "mine"]
+    assert keys == [task.key for task in make_surface_tasks(alone)]
     assert {gap.model for gap in list_missing_values(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
@@ -486,8 +486,8 @@ def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]
 
 
 def test_extremes_of_its_law_concern_a_user_engine() -> None:
-    every = list(extreme_cases())
-    met = {cell.row.name for cell in list_cells(every, [user_column(supplied("plain"))])}
+    every = list(list_extreme_cases())
+    met = {cell.row.name for cell in list_cells(every, [make_user_column(supplied("plain"))])}
     alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
     assert met == alike
 
@@ -507,7 +507,9 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
 
 def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: [])
-    monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
+    monkeypatch.setattr(
+        analysis, "list_questions", lambda scene: [one for one in QUESTIONS if one.key == "regularised"]
+    )
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})
     (measured,) = computed(TradeOff([scene], True, models), lambda jobs: ThreadPoolExecutor(1))
@@ -517,5 +519,5 @@ def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatc
     assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
     assert good.error_estimate == [None, None], "it states none"
     assert good.pareto_front == (True, True)
-    curves = {line["name"] for each in tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
+    curves = {line["name"] for each in make_tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
     assert curves == {good.method}, "one without an answer has no curve"
