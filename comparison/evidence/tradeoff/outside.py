@@ -14,7 +14,7 @@ from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, exponents, ground_acceleration, ground_peak
 from reference.problem.phases import check_phases
 from reference.solver.equations import exact_acceleration
-from reference.solver.system import pack
+from reference.solver.system import pack_scene
 
 ABSOLUTE = 1e-2  # absolute tolerance of a step, m and m/s, over its relative one
 SAMPLES = 2001  # samples of the motion in addition to the solver's own steps, to find where the peaks are
@@ -70,7 +70,7 @@ def state_derivatives(times: Array, states: Array, constants: Any) -> Array:
 
 def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
     """Return what `state_derivative` is called with after t and y."""
-    system = pack(scene, False, v_reg)
+    system = pack_scene(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * ALWAYS_LINEAR), ALWAYS_LINEAR
     return system, exponents(scene), np.asarray(phase, dtype=float), v_reg
