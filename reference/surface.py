@@ -31,7 +31,7 @@ from reference.solver.system import (
     Array,
     RunSettings,
     System,
-    pack,
+    pack_scene,
 )
 from reference.support.arguments import check_choice, check_number
 
@@ -247,7 +247,7 @@ def prepare_run(
         cutoff = check_number("cutoff", cutoff, CUTOFF)
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
-    system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
+    system = pack_scene(scene, equations == "small", regularization, rest_condition == "printed", axes)
     period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
     vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MAX_VIBRATION_STEPS)
     with np.errstate(over="ignore"):  # loads_are_finite refuses infinite loads

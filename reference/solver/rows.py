@@ -31,7 +31,7 @@ from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
 
 Row: TypeAlias = Any  # a row, which exists in compiled code alone
-Number: TypeAlias = Any  # a float or a row
+Number: TypeAlias = Any  # a float, or a row of floats
 
 _VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)
 _ALIGNMENT = 8  # bytes, the alignment that numpy's arrays guarantee
@@ -61,7 +61,7 @@ def _index(k: int) -> Any:
 
 
 def _shuffle(builder: Any, values: Any, places: list[int]) -> Any:
-    """Write code for a row of the numbers at these places of another."""
+    """Write code for a row of the numbers at these places of another row."""
     return builder.shuffle_vector(values, values, ir.Constant(ir.VectorType(ir.IntType(32), ROW_LENGTH), places))
 
 
@@ -107,7 +107,7 @@ def _lower_by_instruction(name: str) -> Lower:
 
 
 def _lower_one_by_one(operation: Any) -> Lower:
-    """Return code that applies a function to the number of every stage; the last place of the row becomes 0."""
+    """Return code that applies a function to the number at every stage; the last place of the row becomes 0."""
     # exp, expm1 and log are functions of the C library for one float: called for each number, they give the same bits
     # as at an instant.
 
@@ -193,7 +193,7 @@ def put(context: Any, array: Any, place: Any, values: Any) -> Any:
 
 @intrinsic
 def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
-    """Return a float, or a row with it in all places if `pattern` is a row."""
+    """Return a float unchanged, or a row with it in all places if `pattern` is a row."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return _broadcast(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
@@ -213,7 +213,7 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
 
 
 def _reduce_by(relation: str) -> Callable[..., Any]:
-    """Return a function that finds the largest or smallest number of all stages; a float is its own."""
+    """Return a function that finds the largest or smallest number of a row's stages, and returns a float unchanged."""
     # Three comparisons of a row with a rearranged copy of itself leave the extreme number in the first place. The last
     # place of a row has no meaning: the last stage is compared in its stead. Where a number is NaN, any of the numbers
     # may be returned: an ordered comparison with NaN is false.

@@ -14,11 +14,13 @@ from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, exponents, ground_acceleration, ground_peak
 from reference.problem.phases import check_phases
 from reference.solver.equations import exact_acceleration
-from reference.solver.system import pack
+from reference.solver.system import pack_scene
 
 ABSOLUTE_TOLERANCE_RATIO = 1e-2  # absolute tolerance of a step, m and m/s, over its relative tolerance
 MOTION_SAMPLES = 2001  # number of samples, in addition to the solver's own steps, that locate the peaks
-PEAK_NEIGHBORHOOD = 1e-3  # Around samples within this share of the peak, the motion is sampled FINER times as densely.
+PEAK_NEIGHBORHOOD = (
+    1e-3  # Around samples within this share of the peak, the motion is sampled PEAK_REFINEMENT times as densely.
+)
 PEAK_REFINEMENT = 50
 LUBRICATED_V_REG = 1e6  # m/s, v_reg above any speed: it makes the lubricated law mu = f_c |v| linear throughout
 
@@ -70,7 +72,7 @@ def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Ar
 
 def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
     """Return the arguments of `compute_state_derivative` after t and y."""
-    system = pack(scene, False, v_reg)
+    system = pack_scene(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * LUBRICATED_V_REG), LUBRICATED_V_REG
     return system, exponents(scene), np.asarray(phase, dtype=float), v_reg

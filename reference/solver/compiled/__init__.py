@@ -14,7 +14,7 @@ from typing import Any
 from reference.solver.compiled.parts import compiled_part
 from reference.support.build_cache import cache_on_disk
 
-# Divisions by zero give inf or NaN as in NumPy; other threads run meanwhile.
+# Divisions by zero give inf or NaN as in NumPy; other threads can run meanwhile.
 OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
