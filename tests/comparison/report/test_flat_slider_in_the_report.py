@@ -27,5 +27,5 @@ def test_every_motion_shows_a_plane_and_its_friction(model):
 def test_a_film_of_a_flat_slider_draws_a_straight_line():
     motion = trajectory(FLAT, (0.3, 1.1))
     drawn = make_drawing(FLAT, motion, 10.0, 4)
-    assert (drawn.swing[:, 1] == 0.0).all()
+    assert (drawn.swing_curve[:, 1] == 0.0).all()
     assert drawn.swing[:, 0].max() > 10.0 * demands(motion).displacement.value, "it is as long as the way of the bodies"
