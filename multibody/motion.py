@@ -17,7 +17,7 @@ from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, ground_acceleration
 from reference.problem.phases import check_phase
-from reference.problem.ranges import TOLERANCE, check_state
+from reference.problem.ranges import TOLERANCE_RANGE, check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import require_scene
 from reference.support.arguments import Range, check_choice, check_number

@@ -19,7 +19,7 @@ from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
 from reference.problem import Amplification, Outcome, Scene, ground_peak
 from reference.problem.phases import flat_phases
-from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
+from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE_RANGE
 from reference.problem.readings import SECOND_V_REG_RATIO, describe_law, reading_of
 from reference.problem.reductions import has_planar_chain, turn_loading_to_x
 from reference.problem.scene import require_scene

@@ -15,7 +15,7 @@ from multibody.integration.refine import MAX_WORK, WORK_RANGE
 from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
-from reference.problem.ranges import TOLERANCE
+from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 

@@ -83,6 +83,7 @@ class SceneError(ValueError):
 
     @property
     def _sentence(self) -> str:
+        """Return key, value and rule as one sentence."""
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
         value = "" if absent else f" = {quote(self.value)}"
         return f"{one_line(self.key)}{value}: {self.rule}"
