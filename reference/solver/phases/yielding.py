@@ -238,7 +238,7 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
 
 @compiled
 def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
-    """Return the share of the step up to the first event in it, 0 for an event at its start, NOT_IN_STEP without one."""
+    """Return the share of the step up to the first event in it, 0 for one at its start, NOT_IN_STEP for none."""
     # At the start of a phase the value is zero up to rounding, and the polynomial through the stages misses it there:
     # in the first step the first stage decides. In any other step the polynomial may be positive at its start by error.
     first = expand_event(system, work, contact, h)
