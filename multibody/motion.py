@@ -86,7 +86,7 @@ def trajectory(
     """
     scene = scene.softened() if softened else scene
     checked = check_phase(phase)
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
     initial = _check_initial(scene, initial)
     with silence_engine():

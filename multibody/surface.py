@@ -103,7 +103,7 @@ def amplification(
     """
     stated, scene = scene, scene.softened() if softened else scene
     pairs, leading = flat_phases(phases)
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
     clock = time.process_time()
     ground = ground_peak(scene, pairs)

@@ -60,7 +60,7 @@ def refusal(
     >>> multibody.refusal(reference.load_scene("fig3-I"))
     ''
     """
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
     if softened:
         try:
