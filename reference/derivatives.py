@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]
 
 STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # changes of the value, as shares of it; each derivative also uses twice its step
-FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # finite changes of the value, as shares of it
+FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # shares of the value by which the value changes
 RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)
 # A kink is sought where a mean slope differs from the derivative by at least this share of the largest slope: powers
 # up to the tenth differ by less over 5 % of the value

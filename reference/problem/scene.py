@@ -424,7 +424,7 @@ class Scene(Table):
 
     @cached_property
     def dry_friction(self) -> DryFriction:
-        """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
+        """Law of dry friction mu(|v|, N); a law without friction for a lubricated scene."""
         sliders = 1 if self.support_places is None else len(self.support_places)
         return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
 
@@ -442,7 +442,7 @@ class Scene(Table):
             raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
 
     def with_yield_displacement(self, way: float) -> Scene:
-        """Return the scene, of the same name, with friction that yields at `way`, m; 0: rigid, as without the keys."""
+        """Return the scene, of the same name, with friction that slides after an elastic `way`, m; rigid for 0."""
         friction = self.isolator.friction
         if not isinstance(friction, VelocityFriction) or (way == 0.0 and not self.dry_friction.elastic):
             return self if way == 0.0 else self._with_friction({"slow": friction, "yield_displacement": way})

@@ -150,7 +150,7 @@ def shorten_failed_step(
 def commit_within_travel(
     system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
 ) -> int:
-    """Make the end of the step the new state; return TRAVEL, with the instant in work.time, where its travel ends."""
+    """Make the end of the step the new state; return TRAVEL if the travel ends in it, at the instant work.time."""
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
         add_drift(system, work, h, angle)
