@@ -21,7 +21,7 @@ from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import Scene, load_family
 from reference.problem.acceptance import DemandLimits
 from reference.problem.keys import range_of
-from reference.problem.ranges import TOLERANCE
+from reference.problem.ranges import TOLERANCE_RANGE
 from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
@@ -97,7 +97,7 @@ def assert_consistent(
         raise ValueError(f"no limit: give one of {', '.join(limits)}")
     grid = check_whole_number("grid", grid, GRID)
     failed = check_whole_number("failed", failed, FAILED)
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     law = check_choice("law", law, LAWS)
     scenes = [scene] if isinstance(scene, Scene) else load_family(scene).scenes
     broken = [line for each in scenes for line in _broken_limits(each, stated, grid, tolerance, engine, law, failed)]

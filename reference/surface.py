@@ -15,7 +15,7 @@ from reference.analytical.frictionless import frictionless_peaks
 from reference.defaults import DEFAULT_TOLERANCE
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, exponents, ground_peak, loading_period
 from reference.problem.phases import flat_phases
-from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
+from reference.problem.ranges import CUTOFF_RANGE, LEAST_ACCELERATION, REGULARIZATION_RANGE, TOLERANCE_RANGE
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.reductions import is_linear, is_planar, turn_loading_to_x
 from reference.problem.scene import require_scene
@@ -240,11 +240,11 @@ def prepare_run(
     """Return the compiled scene and the settings of its runs from arguments of `amplification`. Raises ValueError."""
     check_choice("equations", equations, ("exact", "small"))
     check_choice("rest_condition", rest_condition, ("consistent", "printed"))
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     if regularization is not None:
-        regularization = check_number("regularization", regularization, REGULARIZATION)
+        regularization = check_number("regularization", regularization, REGULARIZATION_RANGE)
     if cutoff is not None:
-        cutoff = check_number("cutoff", cutoff, CUTOFF)
+        cutoff = check_number("cutoff", cutoff, CUTOFF_RANGE)
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack_scene(scene, equations == "small", regularization, rest_condition == "printed", axes)

@@ -16,7 +16,7 @@ from comparison.cli.requirement import make_requirement_line
 from comparison.runner.output import make_parents, refuse_unwritable, resolve_destination
 from reference.problem import SceneError
 from reference.support.command import OneLineParser
-from reference.support.files import NEW, staging_directory
+from reference.support.files import NEW_FILES_FOLDER, staging_directory
 
 DIRECTORY_ARGUMENT = "DIRECTORY"
 FILES_OF_TEMPLATE = {  # file of the new study, and the file of the template that it is a copy of
@@ -64,8 +64,8 @@ def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
     inside = place.is_dir()  # An existing directory is kept: the user may have typed the command in it.
     made = make_parents(place.parent)
     try:
-        with staging_directory(place / NEW if inside else place) as staging_folder:
-            new = staging_folder / NEW
+        with staging_directory(place / NEW_FILES_FOLDER if inside else place) as staging_folder:
+            new = staging_folder / NEW_FILES_FOLDER
             for name, content in contents.items():
                 (new / name).parent.mkdir(parents=True, exist_ok=True)
                 (new / name).write_bytes(content)

@@ -32,7 +32,7 @@ from comparison.runner.manifest import (
 )
 from reference.problem import SceneError
 from reference.support.files import (
-    NEW,
+    NEW_FILES_FOLDER,
     TEMPORARY_PREFIX,
     clear_staging,
     find_abandoned_staging,
@@ -156,7 +156,7 @@ def replace_report(out: Path) -> Iterator[StagedReport]:
     made = make_parents(place.parent)
     try:
         with staging_directory(place) as staging_folder:
-            report = StagedReport(staging_folder / NEW, place)
+            report = StagedReport(staging_folder / NEW_FILES_FOLDER, place)
             yield report
             # a thread of its own: what interrupts this one interrupts no move
             with hold_lock(place.parent), ThreadPoolExecutor(1) as mover:

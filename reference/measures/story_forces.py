@@ -157,6 +157,7 @@ def _overturning_moment_reader(scene: Scene, heights: Array, body: int) -> Calla
 
 
 def _largest_length(vectors: Array) -> float:
+    """Return the largest length of the vectors (T, axes)."""
     return float(np.linalg.norm(vectors, axis=1).max())
 
 

@@ -22,7 +22,7 @@ STAGES = 7
 ROW_LENGTH = STAGES + 1  # length of a row (rows.py)
 CHANNELS = (STAGES + 1) // 2  # number of channels: one for the real eigenvalue, and one for each conjugate pair
 GUESSED_DIGITS = 3  # number of decimals of LAPACK's results that serve as first guesses
-ITERATIONS = 12  # number of iterations from such a guess to rounding
+EIGENVALUE_ITERATIONS = 12  # number of iterations from such a guess to rounding
 
 
 def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -61,7 +61,7 @@ def _radau_nodes(stages: int) -> np.ndarray:
     """Return the right Radau points on (0, 1]: the roots of P_s - P_{s-1} (Hairer and Wanner, IV.5)."""
     polynomial = _legendre_basis(stages) - _legendre_basis(stages - 1)
     roots = np.round(np.sort(polynomial.roots().real), GUESSED_DIGITS)
-    for _ in range(ITERATIONS):
+    for _ in range(EIGENVALUE_ITERATIONS):
         roots -= polynomial(roots) / polynomial.deriv()(roots)
     roots[-1] = 1.0
     return roots
@@ -76,8 +76,8 @@ def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
 
 
 NODES = _radau_nodes(STAGES)
-A = _interpolation_weights(NODES, True)
-A2 = exact_product(A, A)
+A = _interpolation_weights(NODES, True)  # Butcher's matrix: integrals from the start of a step to the stages
+A2 = exact_product(A, A)  # matrix of the second integrals to the stages
 # Weights of the interpolating polynomial at theta = 0: its defect there against the known acceleration is the error
 AT_START = _interpolation_weights(np.zeros(1), False)[0]
 # Coefficients of the powers of theta of the interpolating polynomial
@@ -123,7 +123,7 @@ def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     vector = _solve_linear(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())
     value = guess
-    for _ in range(ITERATIONS):
+    for _ in range(EIGENVALUE_ITERATIONS):
         vector = np.array([[entry / vector[unit, 0].item()] for entry in vector[:, 0].tolist()])
         image = exact_product(A, vector)
         value = image[unit, 0].item()

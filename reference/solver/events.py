@@ -10,14 +10,14 @@ from reference.solver.contact.friction import static_limit
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.ground import k_t_at
 from reference.solver.polynomial import evaluate_polynomial, set_coefficients
-from reference.solver.rows import Row, broadcast_like, highest, put, row, where_positive
+from reference.solver.rows import Row, broadcast_like, put, row, row_maximum, where_positive
 from reference.solver.system import Load, System
 from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, Workspace
 
 # Kinds of events: the polynomial in powers[0] passes zero, friction at rest reaches its limit, the sliding speed passes
 # a given one. The kinds are numbers of NumPy, no literals (system.py).
-LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
-NEVER = 2.0  # theta of an event that is not in the step, which ends at 1
+LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
+NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
 # Golden sections of an interval that may hide an event: one shorter than 1e-6 of a step changes nothing
 GOLDEN_SECTIONS = 30
 GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
@@ -32,7 +32,7 @@ NEAR_LIMIT = 0.5
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
     """Return the first theta at which the polynomial through `values` passes `target`, coming from `start`."""
     expand_level(work, values, target)
-    return locate_first_event(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
+    return locate_first_event(system, work, LEVEL_EVENT, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
@@ -49,11 +49,11 @@ def locate_onset(system: System, work: Workspace) -> float:
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
     limit = static_limit(system, load.k_t, reaction)
-    most = highest(excess + NEAR_LIMIT * (limit * limit))
+    most = row_maximum(excess + NEAR_LIMIT * (limit * limit))
     if most < 0.0:  # the step does not come near the friction limit
-        return NEVER
+        return NOT_IN_STEP
     expand_drive(work)
-    return locate_first_event(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
+    return locate_first_event(system, work, ONSET_EVENT, 1.0, 0.0, excess_at(system, work, 0.0))
 
 
 @compiled
@@ -124,9 +124,9 @@ def speed_excess(work: Workspace, theta: float) -> float:
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
     """Return a value that is positive past an event at theta; `way` is 1 for an upward event, -1 for a downward one."""
-    if event == ONSET:
+    if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
-    return way * (speed_excess(work, theta) if event == SPEED else evaluate_polynomial(work.powers[0], theta))
+    return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
 
 
 @compiled
@@ -148,7 +148,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
             top, place = here, SEARCH_POINTS[n]
         before, low = here, SEARCH_POINTS[n]
     if top + change < 0.0:
-        return NEVER
+        return NOT_IN_STEP
     low, high = max(begin, place - SEARCH_POINTS[1]), min(1.0, place + SEARCH_POINTS[1])
     first = low
     for _ in range(GOLDEN_SECTIONS):
@@ -160,7 +160,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
             high = right
         else:
             low = left
-    return NEVER
+    return NOT_IN_STEP
 
 
 @compiled

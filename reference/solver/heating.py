@@ -16,7 +16,7 @@ from numba import njit
 
 from reference.problem.friction import Heat
 from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, STAGES, A
-from reference.solver.compiled import OPTIONS
+from reference.solver.compiled import NUMBA_OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System, dry_friction_of
 from reference.support.build_cache import cache_on_disk
@@ -31,7 +31,7 @@ FAR_DISTANCE = 4.0
 BLOCK_DISTANCE = 30.0
 MAX_LAST_CHANGE = 1e-14  # largest change of the friction factor k_T that ends the iteration within a piece
 MAX_ITERATIONS = 50  # largest number of iterations within a piece
-WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
+NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
 
 
 def set_initial_friction_factor(system: System) -> System:
@@ -84,6 +84,7 @@ def mean_factor(system: System) -> float:
 
 
 def _nodes_of_pieces(bounds: Array) -> Array:
+    """Return the instants of the collocation nodes of all pieces, (K S,), s."""
     return (bounds[:-1, None] + np.diff(bounds)[:, None] * NODES).ravel()
 
 
@@ -104,7 +105,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
     return power * np.minimum(speed / system.v_reg, 1.0) if system.v_reg > 0.0 else power
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
     """Return the integral of the polynomial in u with these coefficients over sqrt(theta - u), u up to theta or 1."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
@@ -116,16 +117,16 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
     return total
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
     """Return the integral of the polynomial through `power` at the nodes over sqrt(theta - u), far from the piece."""
     total = 0.0
     for k in range(STAGES):
-        total += WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
+        total += NODE_WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
     return total
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def past_temperature(
     time: float,
     piece: int,
@@ -162,7 +163,7 @@ def past_temperature(
     return past
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficients: Array, k_t: Array) -> None:
     """Set heat, its polynomial and k_T of a piece, whose power and k_T depend on each other by its own heat."""
     for _ in range(MAX_ITERATIONS):
@@ -201,20 +202,20 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
             level += 1
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def describe_block(start: float, length: float, heat: Array, moments: Array) -> None:
     """Set total heat, mean time and variance of one piece."""
     total, center, variance = 0.0, 0.0, 0.0  # whole arrays in place of loops would take three times as long to compile
     for k in range(STAGES):
-        total += WEIGHTS[k] * heat[k]
+        total += NODE_WEIGHTS[k] * heat[k]
     for k in range(STAGES):
-        center += WEIGHTS[k] * heat[k] / total * NODES[k]
+        center += NODE_WEIGHTS[k] * heat[k] / total * NODES[k]
     for k in range(STAGES):
-        variance += WEIGHTS[k] * heat[k] / total * (NODES[k] - center) ** 2
+        variance += NODE_WEIGHTS[k] * heat[k] / total * (NODES[k] - center) ** 2
     moments[0], moments[1], moments[2] = total * length, start + center * length, variance * length**2
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def join_blocks(a: Array, b: Array, both: Array) -> None:
     """Set total heat, mean time and variance of two blocks together."""
     heat = a[0] + b[0]
@@ -224,7 +225,7 @@ def join_blocks(a: Array, b: Array, both: Array) -> None:
         both[2] = (a[0] * (a[2] + (a[1] - center) ** 2) + b[0] * (b[2] + (b[1] - center) ** 2)) / heat
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def temperature_factor(temperature: float) -> float:
     """Return the friction factor k_T at a temperature in degrees C, as `Heat.factor`."""
     return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.rows import highest, put, row
+from reference.solver.rows import put, row, row_maximum
 from reference.solver.system import Array
 
 MOST_BLOCKS = 2  # a system has at most so many blocks: the platform's accelerations along x and y
@@ -82,7 +82,7 @@ def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> f
     sizes = abs(row(columns, (i, block))) * row(BELOW_DIAGONAL, (i, block))
     if block + 1 < blocks:
         sizes = max(sizes, abs(row(columns, (i, block + 1))))
-    largest: float = highest(sizes)
+    largest: float = row_maximum(sizes)
     return largest
 
 

@@ -134,7 +134,7 @@ def move_at_velocity(work: Workspace, h: float) -> None:
 @compiled
 def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
     """
-    Change the platform's velocity by one rough step of length h; return a bound on its acceleration.
+    Change the platform's velocity by one rough step of length h, s.
 
     Return a bound on its horizontal absolute acceleration, m/s^2, and True if it may come near its largest
     displacement, the rim, the end of the travel, liftoff or Painleve's paradox.

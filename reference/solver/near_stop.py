@@ -20,7 +20,7 @@ from reference.solver.contact.platform import acceleration_along, load_at_stages
 from reference.solver.ground import set_ground_at_stages, set_harmonics
 from reference.solver.linear_solve import IDENTITY, factorize, solve
 from reference.solver.polynomial import A_COLUMNS, NODES_ROW, integrate_to_stages
-from reference.solver.rows import highest, is_finite, lowest, put, row
+from reference.solver.rows import is_finite, put, row, row_maximum, row_minimum
 from reference.solver.steps import classify_unsolved_step, set_absolute_accelerations
 from reference.solver.system import OPEN, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
@@ -50,7 +50,7 @@ ROUNDING_ANGLE = 1e-13  # rad, change of the angles that rounding alone makes
 DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, which needs only a few digits
 SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by the logarithm of the speed
 MAX_GUESSED_TURN = 0.5  # rad: the direction turns towards the force, and the guess must not turn beyond it
-DIVERGED = 1e3  # a change of angle, rad, or logarithm of the speed beyond this ends the iteration
+MAX_CHANGE = 1e3  # a change of angle, rad, or logarithm of the speed beyond this ends the iteration
 
 
 @compiled
@@ -73,7 +73,7 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
             return classify_unsolved_step(system, work)
         set_path_acceleration(system, work, fresh)
         change = max(change, correct_turning(system, work, h, fresh))
-        if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
+        if not change < MAX_CHANGE or (iteration > 4 and change > 2.0 * before):
             return UNSOLVED
         slow = change > SLOW_CONVERGENCE * before
         before = change
@@ -84,7 +84,7 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
                     work.v1[i, axis] = work.velocities[i, axis, STAGES - 1]
             put(work.levels, (), row(work.turning, SIGMA) + log(row(work.turning, RATIO)))
             set_absolute_accelerations(system, work, SLIDING)
-            return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
+            return SOLVED if row_minimum(row(work.stage, REACTION)) > 0.0 else OPEN
     return UNSOLVED
 
 
@@ -140,7 +140,7 @@ def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
                 pull += system.above[i, axis] * (row(place, (i + 1, axis)) - row(place, (i, axis)))
                 pull += system.damping_above[i, axis] * (row(velocity, (i + 1, axis)) - row(velocity, (i, axis)))
             pull -= row(work.ground, axis)
-            change = max(change, highest(abs(pull - row(work.a, (i, axis))) * duration))
+            change = max(change, row_maximum(abs(pull - row(work.a, (i, axis))) * duration))
             put(work.a, (i, axis), pull)
     for axis in range(2):
         drive = -row(work.ground, axis)
@@ -157,7 +157,7 @@ def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
 def is_inside_rim(system: System, work: Workspace) -> bool:
     """Return True if the platform is within the cap at every stage (4.1)."""
     x, y = row(work.stage, POSITION), row(work.stage, POSITION + 1)
-    inside: bool = highest(x * x + y * y) < system.radius**2
+    inside: bool = row_maximum(x * x + y * y) < system.radius**2
     return inside
 
 
@@ -213,7 +213,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
         return inf
     put(turning, DIRECTION, row(turning, DIRECTION) + turn)
     put(turning, SIGMA, row(work.levels, ()))
-    change: float = highest(max(abs(turn), abs(rise)))
+    change: float = row_maximum(max(abs(turn), abs(rise)))
     return change
 
 

@@ -17,7 +17,7 @@ from reference.solver.collocation import (
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, turning_rate
 from reference.solver.polynomial import POWERS, set_coefficients
-from reference.solver.rows import broadcast_like, highest, lowest, put, row
+from reference.solver.rows import broadcast_like, put, row, row_maximum, row_minimum
 from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, YIELDING, System
 from reference.solver.work import SQUARED_SPEED, Workspace
 
@@ -116,7 +116,7 @@ def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
         return 0.0
     if contact != SLIDING:
         return decay_rate(system, contact)
-    return turning_rate(system, sqrt(min(work.squared_start_speed, lowest(row(work.stage, SQUARED_SPEED)))))
+    return turning_rate(system, sqrt(min(work.squared_start_speed, row_minimum(row(work.stage, SQUARED_SPEED)))))
 
 
 @compiled
@@ -147,7 +147,7 @@ def update_peaks(system: System, work: Workspace, contact: int, h: float, low: f
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
-        most = highest(x * x + y * y + z * z)
+        most = row_maximum(x * x + y * y + z * z)
         if most < (1.0 - MAX_RISE_BETWEEN_STAGES) * work.best[i]:
             continue
         for axis in range(3):
@@ -187,7 +187,7 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
     far = max(start, end)
     if stretched:
         x, y = row(work.positions, (0, 0)), row(work.positions, (0, 1))
-        far = max(far, highest(x * x + y * y))
+        far = max(far, row_maximum(x * x + y * y))
     elif sqrt(max(start, end)) + MAX_PATH_FACTOR * h * sqrt(squared_speed) > sqrt(work.squared_reach):
         for axis in range(2):
             expand_position(work, h, axis)

@@ -72,6 +72,7 @@ def _broadcast(builder: Any, number: Any) -> Any:
 
 
 def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
+    """Write code that makes rows of all numbers."""
     return [number if kind == _ROW else _broadcast(builder, number) for number, kind in zip(numbers, kinds)]
 
 
@@ -99,6 +100,8 @@ def _define_single(operation: Any, lower_call: Lower) -> None:
 
 
 def _lower_by_instruction(name: str) -> Lower:
+    """Return code that calls one instruction of LLVM for a whole row."""
+
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
@@ -123,6 +126,8 @@ def _lower_one_by_one(operation: Any) -> Lower:
 
 
 def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
+    """Return code that selects the smaller or larger numbers of two rows, by a relation of LLVM."""
+
     def lower_call(builder: Any, left: Any, right: Any) -> Any:
         return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
 
@@ -235,8 +240,8 @@ def _reduce_by(relation: str) -> Callable[..., Any]:
     return reduce
 
 
-lowest = intrinsic(_reduce_by("<"))
-highest = intrinsic(_reduce_by(">"))
+row_minimum = intrinsic(_reduce_by("<"))
+row_maximum = intrinsic(_reduce_by(">"))
 
 
 @intrinsic

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 
 from reference.solver.compiled import cached_entry_point, compiled
-from reference.solver.events import NEVER
+from reference.solver.events import NOT_IN_STEP
 from reference.solver.phases.follow import MAX_VIBRATION_ANGLE, MIN_DRIFT_ANGLE, add_drift, vibration_angle
 from reference.solver.phases.yielding import (
     begin_yielding,
@@ -90,7 +90,7 @@ def aim_at_event(
     if aims > 0:
         shift = shift_to_event(system, work, contact, h)
         near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMED_STEPS
-        return 1.0 if shift == NEVER or near else 1.0 + shift, shift != NEVER
+        return 1.0 if shift == NOT_IN_STEP or near else 1.0 + shift, shift != NOT_IN_STEP
     portion = locate_event(system, work, contact, h, begun)
     reached = portion * h <= MIN_EVENT_TIME * settings.period
     return 0.0 if reached else min(portion, 1.0), reached

@@ -11,7 +11,7 @@ from reference.solver.collocation import MONOMIALS, STAGES, A
 from reference.solver.system import STOPPING, Array, StepRecord
 
 BISECTIONS = 60  # number of bisections that locate an instant in a step near a stop to rounding
-BLOCK = 1024  # number of instants at a time, whose stages fit into the processor's cache
+INSTANTS_PER_BLOCK = 1024  # number of instants at a time, whose stages fit into the processor's cache
 FEWEST_PLACES, MOST_PLACES = 4, 48  # bounds on the number of instants per step in `step_instants`
 
 
@@ -32,7 +32,7 @@ def sample_motion(record: StepRecord, times: Array) -> SampledMotion:
     near = (record.contact[:steps] == STOPPING)[row]
     if near.any():
         theta[near] = _locate_in_steps(record.clock[row[near]], times[near])
-    blocks = [slice(first, first + BLOCK) for first in range(0, max(len(times), 1), BLOCK)]
+    blocks = [slice(first, first + INSTANTS_PER_BLOCK) for first in range(0, max(len(times), 1), INSTANTS_PER_BLOCK)]
     parts = [_sample_steps(record, row[block], theta[block], near[block]) for block in blocks]
     return SampledMotion(*map(np.concatenate, zip(*parts)))
 

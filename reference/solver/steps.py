@@ -26,7 +26,7 @@ from reference.solver.equations import vertical_motion
 from reference.solver.ground import set_ground_at_stages, set_harmonics
 from reference.solver.linear_solve import IDENTITY, factorize, solve
 from reference.solver.polynomial import A2_COLUMNS, A_COLUMNS, NODES_ROW
-from reference.solver.rows import Number, broadcast_like, highest, is_finite, lowest, put, row
+from reference.solver.rows import Number, broadcast_like, is_finite, put, row, row_maximum, row_minimum
 from reference.solver.system import CREEPING, OPEN, PAINLEVE, REST, RIM, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     BY_DRIVE,
@@ -96,7 +96,9 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
         code, size = set_residual(system, work, contact)
         if code != SOLVED:
             return code
-        if fresh or (contact == SLIDING and highest(row(work.stage, SQUARED_SPEED) - MAX_SPEED2_GROWTH * known) > 0.0):
+        if fresh or (
+            contact == SLIDING and row_maximum(row(work.stage, SQUARED_SPEED) - MAX_SPEED2_GROWTH * known) > 0.0
+        ):
             known = row(work.stage, SQUARED_SPEED)
             set_slopes(system, contact, work)
             set_matrix(work, h, system.axes)
@@ -111,7 +113,7 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
             set_platform_motion(work, h, system.axes)
             recover_chain_motion(system, work, h)
             set_absolute_accelerations(system, work, contact)
-            return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
+            return SOLVED if row_minimum(row(work.stage, REACTION)) > 0.0 else OPEN
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
@@ -122,7 +124,7 @@ def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, fl
     """Set the residual at the stages from the platform's equations; return the outcome and their size, m/s^2."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
-    if highest(load.px * load.px + load.py * load.py) >= system.radius**2:
+    if row_maximum(load.px * load.px + load.py * load.py) >= system.radius**2:
         return classify_unsolved_step(system, work), 0.0
     ax, ay, reaction, determinant, squared_speed = moving_acceleration(
         system, contact, load, row(stage, VELOCITY), row(stage, VELOCITY + 1)
@@ -135,7 +137,7 @@ def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, fl
     # Painleve's paradox is located to FATAL_STEP (step_control.py). Creep may respond within a shorter time: there a
     # determinant that is not positive counts as UNSOLVED, so that the steps may become shorter still.
     code = UNSOLVED if contact == CREEPING else PAINLEVE
-    return (SOLVED if lowest(determinant) > 0.0 else code), highest(abs(ax) + abs(ay))
+    return (SOLVED if row_minimum(determinant) > 0.0 else code), row_maximum(abs(ax) + abs(ay))
 
 
 @compiled
@@ -145,7 +147,7 @@ def correct_accelerations(work: Workspace, axes: int) -> float:
     for axis in range(axes):
         correction = row(work.residual, axis)
         put(work.a, (0, axis), row(work.a, (0, axis)) + correction)
-        change = max(change, highest(abs(correction)) if is_finite(correction) else inf)
+        change = max(change, row_maximum(abs(correction)) if is_finite(correction) else inf)
     return change
 
 
@@ -231,9 +233,9 @@ def step_error(system: System, work: Workspace, tolerance: float, weight: float)
     # acceleration shows an error of the position.
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
-    load = max(load, highest(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
+    load = max(load, row_maximum(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
     # Friction may decelerate a platform without any drive, so its own acceleration is a measure of the forces, too.
-    load = max(load, highest(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
+    load = max(load, row_maximum(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0

@@ -45,14 +45,14 @@ class System(NamedTuple):
     radius: float  # m, pendulum radius rho
     travel: float  # m, largest displacement that the isolator permits; infinite without such a limit
     gravity: float  # m/s^2
-    below: Array  # (N, 2), k_{i,i-1} / m_i, zero for the platform
-    above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
-    damping_below: Array  # (N, 2), c_{i,i-1} / m_i, 1/s
-    damping_above: Array  # (N, 2), c_{i+1,i} / m_i, 1/s
-    amplitudes: Array  # (3, 2), m/s^2
+    below: Array  # (N, 2), 1/s^2, stiffness of the link below over the mass, k_{i,i-1} / m_i; zero for the platform
+    above: Array  # (N, 2), 1/s^2, stiffness of the link above over the mass, k_{i+1,i} / m_i; zero for the last body
+    damping_below: Array  # (N, 2), 1/s, damping of the link below over the mass, c_{i,i-1} / m_i
+    damping_above: Array  # (N, 2), 1/s, damping of the link above over the mass, c_{i+1,i} / m_i
+    amplitudes: Array  # (3, 2), m/s^2, amplitudes of the two harmonics along x, y, z
     exponents: Complex  # (2,), 1/s, exponents s_i = -lambda_i + i nu_i of the harmonics
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
-    heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) without
+    heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) if cold
     k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without heating
     kinks: Array  # (J, 1) s, instants from which the friction factor k_T changes like a root of time
     duration: float  # s

@@ -20,16 +20,16 @@ from reference.solver.system import Array, Complex
 
 # Rows of Workspace.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
 POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
-# First rows of Workspace.slopes of the derivatives by px, vx, fx; two rows for each of x and y
+# First rows of Workspace.slopes with derivatives by position, velocity and drive; two rows for each of x and y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
-# Rows of Workspace.turning (near_stop.py)
+# Rows of Workspace.turning: direction, speed and time of a slide near its stop, and derivatives (near_stop.py)
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
 # Rows of Workspace.shear of friction that yields (contact/yielding.py), x and y. First what its motion depends on:
 # position, velocity, drive, friction force; then acceleration and rate of the force, each of which has four slopes in
-# Workspace.shear_slopes; at last the excess of the
-# square over that of the bound, the velocity along the force, m/s, and the bound
+# Workspace.shear_slopes; at last the excess of the squared force over the squared bound, the velocity along the
+# force, m/s, and the bound
 ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # largest number of separate parts of one step that count for the peaks
 SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics in a step

@@ -444,7 +444,7 @@ MISTAKES = (
     Mistake(SOLVER + "phases/yielding.py", "if system.rate == 0.0 or gain[0] >= 0.0:", "if True or gain[0] >= 0.0:",
             "Steps pass the kink of a coefficient of the speed.",
             (YIELDING + "factors_are_those_of_the_other_program[planar, rising]",)),
-    Mistake(SOLVER + "run_yielding.py", "1.0 + shift, shift != NEVER", "1.0 + shift, False",
+    Mistake(SOLVER + "run_yielding.py", "1.0 + shift, shift != NOT_IN_STEP", "1.0 + shift, False",
             "Friction does not slide where its force reaches the bound.",
             (YIELDING + "free_decay_has_the_turning_points_of_a_bilinear_oscillator",)),
     Mistake(MEASURES + "energy.py", " - float(self.sheared[-1] - self.sheared[0])", "",

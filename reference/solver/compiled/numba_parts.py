@@ -22,8 +22,8 @@ from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
 # Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
 # functions that numba inlines before their types are known, and no variable whose end must be marked.
-UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
-OPERATORS = {each for each in vars(operator).values() if callable(each)}
+UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
+PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
 
 class _NoEnvironment:
@@ -94,7 +94,7 @@ class _RememberedFunctions(Context):  # type: ignore[misc]
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
         """Return the signature."""
-        if kws or not (isinstance(func, types.Function) or func in OPERATORS):
+        if kws or not (isinstance(func, types.Function) or func in PYTHON_OPERATORS):
             return super().resolve_function_type(func, args, kws)
         if (func, args) not in self._known:
             self._known[func, args] = super().resolve_function_type(func, args, kws)
@@ -115,7 +115,7 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
     def define_pipelines(self) -> list[Any]:
         """Return the passes in their order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED]
+        passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED_PASSES]
         passes.add_pass_after(_LowerAsPart, AnnotateTypes)
         passes.finalize()
         return [passes]

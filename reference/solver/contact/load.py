@@ -15,7 +15,7 @@ from reference.problem.friction import LEAST_LOAD
 from reference.solver.compiled import compiled
 from reference.solver.compiled.variants import choose_variant
 from reference.solver.equations import exact_acceleration
-from reference.solver.rows import Number, broadcast_like, highest, where_positive
+from reference.solver.rows import Number, broadcast_like, row_maximum, where_positive
 from reference.solver.system import Load, System
 
 MAX_ITERATIONS = 40  # iterations of Newton's method for the reaction at most
@@ -72,6 +72,7 @@ def elasticity(system: System, reaction: Number) -> Number:
 def _acceleration_of_given_slip(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
+    """Return acceleration, reaction and determinant for a slip vector that is independent of the reaction."""
     pressure = system.gravity + load.uz
     return exact_acceleration(
         load.px, load.py, load.fx, load.fy, pressure, squared_speed, sx, sy, system.mass_ratio, system.radius
@@ -100,7 +101,7 @@ def _acceleration_of_load(
         misfit = drive - reaction * (plain - factor * taken)
         change = misfit / slope
         reaction += change
-        if not highest(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
+        if not row_maximum(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
             break
     factor = load_factor(system, load.k_t, reaction)
     determinant = plain - (1.0 + elasticity(system, reaction)) * factor * taken

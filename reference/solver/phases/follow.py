@@ -6,7 +6,7 @@ from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, kinetic_coefficient, rising_rate
-from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, mark_parts
+from reference.solver.events import LEVEL_EVENT, SPEED_EVENT, expand_level, expand_speed, mark_parts
 from reference.solver.look_ahead import end_run_early
 from reference.solver.near_stop import solve_near_stop_step
 from reference.solver.peaks import link_error_rate
@@ -32,7 +32,7 @@ from reference.solver.phases.stopping import (
     propose_stretched_length,
 )
 from reference.solver.record import record_stick
-from reference.solver.rows import highest, lowest, row
+from reference.solver.rows import row, row_maximum, row_minimum
 from reference.solver.step_control import (
     FAILURE_SHORTENING,
     MAX_SHORTENING,
@@ -150,7 +150,7 @@ def shorten_failed_step(
 def commit_within_travel(
     system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
 ) -> int:
-    """Make the end of the step the new state; return TRAVEL, with the instant in work.time, where its travel ends."""
+    """Make the end of the step the new state; return TRAVEL if the travel ends in it, at the instant work.time."""
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
         add_drift(system, work, h, angle)
@@ -212,7 +212,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
     if contact == REST:
         solve_rest_step(system, work, h)
         set_reaction(system, work)
-        return OPEN if lowest(row(work.stage, REACTION)) <= 0.0 else SOLVED
+        return OPEN if row_minimum(row(work.stage, REACTION)) <= 0.0 else SOLVED
     set_step_loads(system, work, h)
     enough = NEWTON_FRACTION * settings.tolerance * work.scale[0]
     if contact == SLIDING:
@@ -262,17 +262,17 @@ def mark_counted_parts(
     # slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:
         level, start2 = system.v_reg * system.v_reg, squared_speed_in_state(system, work)
-        if max(start2, highest(row(work.stage, SQUARED_SPEED))) > level:
+        if max(start2, row_maximum(row(work.stage, SQUARED_SPEED))) > level:
             expand_speed(work, h, level)
-            return mark_parts(system, work, SPEED, -1.0, start2 - level)
+            return mark_parts(system, work, SPEED_EVENT, -1.0, start2 - level)
     if settings.cutoff > 0.0 and contact == SLIDING:
         level = settings.cutoff * settings.cutoff
         expand_speed(work, h, level)
-        return mark_parts(system, work, SPEED, 1.0, work.squared_start_speed - level)
+        return mark_parts(system, work, SPEED_EVENT, 1.0, work.squared_start_speed - level)
     if settings.cutoff > 0.0 and contact == STOPPING:
         level = log(settings.cutoff)
         expand_level(work, row(work.levels, ()), level)
-        return mark_parts(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
+        return mark_parts(system, work, LEVEL_EVENT, 1.0, work.log_speed + work.log_ratio - level)
     early = max(since - work.time, 0.0) if contact == REST else 0.0
     work.edges[0], work.edges[1] = early / h, 1.0
     return 1 if early < h else 0

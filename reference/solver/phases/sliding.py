@@ -20,7 +20,7 @@ from reference.solver.events import locate_level_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import update_peak_by_limit
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import Row, broadcast_like, lowest, put, row
+from reference.solver.rows import Row, broadcast_like, put, row, row_minimum
 from reference.solver.step_control import (
     ERROR_ORDER,
     MAX_LENGTH_FACTOR,
@@ -237,7 +237,7 @@ def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[floa
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
-    if lowest(row(work.stage, SQUARED_SPEED)) < NEAR_LEVEL_FACTOR * floor2:
+    if row_minimum(row(work.stage, SQUARED_SPEED)) < NEAR_LEVEL_FACTOR * floor2:
         start = max(work.squared_start_speed, floor2 * (1.0 + LEVEL_TOLERANCE))
         slowed = locate_level_crossing(system, work, row(work.stage, SQUARED_SPEED), start, floor2)
         if slowed < NEGLIGIBLE_STEP:

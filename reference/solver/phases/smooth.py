@@ -7,7 +7,7 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate
 from reference.solver.events import locate_level_crossing
 from reference.solver.phases.sliding import squared_speed_in_state
-from reference.solver.rows import highest, row
+from reference.solver.rows import row, row_maximum
 from reference.solver.step_control import begin_from_state
 from reference.solver.system import CREEPING, SLIDING, System
 from reference.solver.work import SQUARED_SPEED, Workspace
@@ -32,7 +32,7 @@ def limit_step_to_slide(system: System, work: Workspace, contact: int, h: float)
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact
-    if highest(row(work.stage, SQUARED_SPEED)) > NEAR_LEVEL_FRACTION * level:
+    if row_maximum(row(work.stage, SQUARED_SPEED)) > NEAR_LEVEL_FRACTION * level:
         start = min(squared_speed_in_state(system, work), level * (1.0 - LEVEL_TOLERANCE))
         crossing = locate_level_crossing(system, work, row(work.stage, SQUARED_SPEED), start, level)
         if crossing < EARLY_CROSSING and work.hold_time == 0.0:

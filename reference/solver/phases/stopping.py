@@ -14,7 +14,7 @@ from reference.solver.events import locate_level_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import SETTLED_FRACTION, update_peak_by_limit
 from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
-from reference.solver.rows import lowest, row
+from reference.solver.rows import row, row_minimum
 from reference.solver.step_control import MIN_STEP, begin_with_acceleration, next_kink
 from reference.solver.system import CREEPING, PLATFORM, REGULARIZED, REST, SLIDING, STOPPING, Load, RunSettings, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Workspace
@@ -98,7 +98,7 @@ def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSe
     if system.law != REGULARIZED:
         return h, STOPPING
     level = log(system.v_reg)
-    if lowest(row(work.levels, ())) < level - LEVEL_TOLERANCE:
+    if row_minimum(row(work.levels, ())) < level - LEVEL_TOLERANCE:
         start = max(work.log_speed + work.log_ratio, level)
         portion = locate_level_crossing(system, work, row(work.levels, ()), start, level - 0.5 * LEVEL_TOLERANCE)
         if portion < EARLY_CROSSING:

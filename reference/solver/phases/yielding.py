@@ -13,11 +13,11 @@ from reference.solver.collocation import A2, NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_in_state
 from reference.solver.contact.yielding import yielding_motion
-from reference.solver.events import LEVEL, NEVER, expand_level, locate_first_event
+from reference.solver.events import LEVEL_EVENT, NOT_IN_STEP, expand_level, locate_first_event
 from reference.solver.ground import ground_at
 from reference.solver.linear_solve import factorize_all, solve_all
 from reference.solver.polynomial import A_COLUMNS, NODES_ROW, evaluate_polynomial, set_coefficients
-from reference.solver.rows import broadcast_like, highest, lowest, put, row
+from reference.solver.rows import broadcast_like, put, row, row_maximum, row_minimum
 from reference.solver.step_control import begin_with_acceleration
 from reference.solver.steps import (
     MAX_ITERATIONS,
@@ -98,7 +98,7 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
             code, _ = set_yielding_residual(system, work, contact, h)
             recover_chain_motion(system, work, h)
             set_absolute_accelerations(system, work, contact)
-            return OPEN if code == SOLVED and lowest(row(work.stage, REACTION)) <= 0.0 else code
+            return OPEN if code == SOLVED and row_minimum(row(work.stage, REACTION)) <= 0.0 else code
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
@@ -137,7 +137,7 @@ def set_yielding_residual(system: System, work: Workspace, contact: int, h: floa
         put(shear, ARGUMENTS + 2 + axis, row(stage, VELOCITY + axis))
         put(shear, DRIVE_ARGUMENT + axis, row(stage, DRIVE + axis))
     px, py = row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1)
-    if highest(px * px + py * py) >= system.radius**2:
+    if row_maximum(px * px + py * py) >= system.radius**2:
         return classify_unsolved_step(system, work), 0.0
     set_motion(system, work, contact)
     size = 0.0
@@ -149,8 +149,8 @@ def set_yielding_residual(system: System, work: Workspace, contact: int, h: floa
         missing_q = moved - row(shear, FORCE + axis)
         for m in range(STAGES):
             right[axis * STAGES + m], right[(2 + axis) * STAGES + m] = missing_a[m], missing_q[m]
-        size += highest(abs(row(shear, MOTION + axis)))
-    return (SOLVED if lowest(row(stage, DETERMINANT)) > 0.0 else PAINLEVE), size
+        size += row_maximum(abs(row(shear, MOTION + axis)))
+    return (SOLVED if row_minimum(row(stage, DETERMINANT)) > 0.0 else PAINLEVE), size
 
 
 @compiled
@@ -238,7 +238,7 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
 
 @compiled
 def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
-    """Return the share of the step up to the first event in it, 0 for an event at its start, NEVER without one."""
+    """Return the share of the step up to the first event in it, 0 for one at its start, NOT_IN_STEP for none."""
     # At the start of a phase the value is zero up to rounding, and the polynomial through the stages misses it there:
     # in the first step the first stage decides. In any other step the polynomial may be positive at its start by error.
     first = expand_event(system, work, contact, h)
@@ -246,20 +246,20 @@ def locate_event(system: System, work: Workspace, contact: int, h: float, begun:
         return 0.0
     start = evaluate_polynomial(work.powers[0], 0.0)
     if begun or (start > 0.0 and first <= 0.0):
-        return locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, first)
-    return 0.5 * FIRST_NODE if start > 0.0 else locate_first_event(system, work, LEVEL, 1.0, 0.0, start)
+        return locate_first_event(system, work, LEVEL_EVENT, 1.0, FIRST_NODE, first)
+    return 0.5 * FIRST_NODE if start > 0.0 else locate_first_event(system, work, LEVEL_EVENT, 1.0, 0.0, start)
 
 
 @compiled
 def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return the relative change of the step's length that puts its end at the event; NEVER where it turns back."""
+    """Return the relative change of the step's length that puts its end at the event; NOT_IN_STEP if it turns back."""
     expand_event(system, work, contact, h)
     slope = 0.0
     for k in range(1, STAGES):
         slope += k * work.powers[0, k]
     end = evaluate_polynomial(work.powers[0], 1.0)
     if not slope > 0.0:  # such as behind a kink of the bound, where the value jumps
-        return 0.0 if end > 0.0 else NEVER
+        return 0.0 if end > 0.0 else NOT_IN_STEP
     return min(max(-end / slope, -MAX_SHIFT), MAX_SHIFT)
 
 
@@ -271,7 +271,7 @@ def step_share_to_slowest_point(system: System, work: Workspace) -> float:
     if system.rate == 0.0 or gain[0] >= 0.0:
         return 1.0
     expand_level(work, gain, 0.0)
-    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, gain[0])
+    portion = locate_first_event(system, work, LEVEL_EVENT, 1.0, FIRST_NODE, gain[0])
     return 1.0 if portion > 1.0 - LATE_EVENT_SHARE else portion
 
 
