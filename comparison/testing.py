@@ -14,7 +14,7 @@ import xarray as xr
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_steps_of_scenes
 from comparison.study.study import STUDY_TOLERANCE, Study
-from comparison.study.user_models import LAWS, user_model
+from comparison.study.user_models import REFERENCE_MODEL_KEYS, make_user_model
 from comparison.surfaces.missing_values import MissingValues, list_missing_values
 from comparison.surfaces.model_difference import compute_difference
 from comparison.surfaces.surfaces import label_surfaces
@@ -98,7 +98,7 @@ def assert_consistent(
     grid = check_whole_number("grid", grid, GRID)
     failed = check_whole_number("failed", failed, FAILED)
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
-    law = check_choice("law", law, LAWS)
+    law = check_choice("law", law, REFERENCE_MODEL_KEYS)
     scenes = [scene] if isinstance(scene, Scene) else load_family(scene).scenes
     broken = [line for each in scenes for line in _broken_limits(each, stated, grid, tolerance, engine, law, failed)]
     if broken:
@@ -118,7 +118,7 @@ def _broken_limits(
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_steps_of_scenes(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
     if engine is not None:
-        hierarchy.append(replace(user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
+        hierarchy.append(replace(make_user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
     alike = "like-for-like" if engine is None else ENGINE
     asked = {name: pairs.get("total" if name.startswith("total") else alike) for name in stated}

@@ -13,14 +13,14 @@ import xarray as xr
 from comparison.cli.arguments import format_command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
+from comparison.registry import FEATURES, list_first_tasks, make_report, select_analyses
 from comparison.report.feature import ResultField
 from comparison.report.results import Results
 from comparison.report.section import Report
 from comparison.runner.attempts import LostParts
 from comparison.runner.environment import describe_provenance
-from comparison.runner.output import on_stderr, replace_report
-from comparison.runner.runner import Runner, compiling_task
+from comparison.runner.output import print_on_stderr, replace_report
+from comparison.runner.runner import Runner, make_compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import StudyLevel
@@ -46,7 +46,7 @@ def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
     """Compute what a level lacks: surfaces and analyses without need of them, then those that the surfaces choose."""
     analyses = select_analyses(level.study)
     tasks = make_surface_tasks(level.study)
-    runner.run([*tasks, *first_tasks(level.study, analyses)], compiling_task)
+    runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
     batches = [task.argument for task in tasks]
     surfaces = label_surfaces(level.study, batches, collect_batch_results(tasks, runner.results))
     study = leave_out_empty_models(level.study, surfaces)
@@ -103,7 +103,7 @@ class ReportWriter:
         for analysis in select_analyses(whole):
             if analysis.key in later:
                 tasks = analysis.tasks(whole.selecting(analysis.key), complete.surfaces)
-                if not tasks or runner.results.missing(tasks):
+                if not tasks or runner.results.find_missing(tasks):
                     unfinished.append(analysis.key)
         if self.level is not complete.level or set(unfinished) != set(later):
             study = replace(complete.study, selection=whole.selection.without(unfinished))
@@ -138,7 +138,7 @@ class ReportWriter:
         found |= {field.name: _load_stored(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _list_solver_messages(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, families=families, lost=lost.lines)
+        return make_report(study, surfaces, found, faults, run, families=families, lost=lost.lines)
 
 
 def _list_solver_messages(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
@@ -157,5 +157,5 @@ def _load_stored(field: ResultField[Any], out: Path) -> Any:
     try:
         return field.load(out)
     except (OSError, ValueError) as error:
-        on_stderr(str(error))
+        print_on_stderr(str(error))
         return None

@@ -102,7 +102,7 @@ class Study:
     def absent(self) -> dict[str, str]:
         """The analyses that are made of no scene, with the reason."""
         return {
-            analysis: self.selection.why_absent(analysis)
+            analysis: self.selection.explain_absence(analysis)
             for analysis in self.selection.names
             if not self.selecting(analysis).scenes
         }

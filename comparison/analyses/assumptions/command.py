@@ -23,8 +23,8 @@ from comparison.analyses.assumptions.variations import DIRECTED, MANY, Variation
 from comparison.cli.arguments import STORED_RESULTS_HELP, CommandParser, command, read_number_of_jobs
 from comparison.cli.computing import compute_tasks
 from comparison.cli.terminal import make_table
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
@@ -33,7 +33,7 @@ ENGINE = "multibody:amplification"  # what the workers ask
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Vary the scenes the command line names and print what that does; the exit code."""
     parser = CommandParser(
         "assumptions",
@@ -47,7 +47,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     names = options.scenes or builtin_scenes()
     scenes = [_load_spatial_scene(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
-    console = wide_console()
+    console = make_wide_console()
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
     about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
-from comparison.wording import difference_with_error
+from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
@@ -142,4 +142,4 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
 
 
 def _write_size(size: float, error: float) -> str:
-    return difference_with_error(size, error) + ("" if math.isfinite(error) else " (error unknown)")
+    return word_difference(size, error) + ("" if math.isfinite(error) else " (error unknown)")

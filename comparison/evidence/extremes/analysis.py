@@ -18,7 +18,7 @@ from comparison.result_types import Array
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
 from reference.problem.validation import first_scene_error
@@ -209,7 +209,7 @@ def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> 
         status = tuple(str(outcome) for outcome in result.status)
         return ModelAnswer(np.array(result.mu, dtype=float), np.array(result.error, dtype=float), status)
     except Exception as error:
-        text = exception_line(error)
+        text = word_exception(error)
         if isinstance(error, ValueError) and not isinstance(error, np.linalg.LinAlgError):
             return ModelAnswer(nothing, nothing, (), invalid=text.partition(": ")[2])
         return ModelAnswer(nothing, nothing, (), raised=text)
