@@ -86,12 +86,12 @@ make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)
 
 def select_analyses(study: Study) -> list[Analysis[Any]]:
     """Return those of ANALYSES that are made of some scene of the study."""
-    return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
+    return [analysis for analysis in ANALYSES if study.restrict_to(analysis.key).scenes]
 
 
 def estimate_stage_seconds(study: Study) -> dict[str, float]:
     """Return the rough processor time of every stage of the analyses of a study, s."""
-    return {each.stage: each.estimate_seconds(study.selecting(each.key)) for each in select_analyses(study)}
+    return {each.stage: each.estimate_seconds(study.restrict_to(each.key)) for each in select_analyses(study)}
 
 
 def estimate_study_seconds(study: Study) -> float:
@@ -106,7 +106,7 @@ def list_first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Ta
         task
         for analysis in analyses
         if not analysis.needs_surfaces
-        for task in analysis.tasks(study.selecting(analysis.key))
+        for task in analysis.tasks(study.restrict_to(analysis.key))
     ]
 
 

@@ -14,7 +14,7 @@ goes on where it stopped.
 if __name__ == "__main__":
     from comparison.cli.start import run_command
 
-    run_command("comparison.run")  # does not return: the module is loaded once, under its own name
+    run_command("comparison.run")  # It does not return: the module is loaded once, under its own name.
 
 import sys
 from collections.abc import Sequence
@@ -56,7 +56,8 @@ from comparison.study.study import Study
 from comparison.surfaces.surfaces import make_surface_tasks
 from reference.support.command import stop_on_signals
 
-import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
+# Workers load it again; if loading fails, the command ends here with one line.
+import_module("multibody.models.engine")
 
 
 @command
@@ -151,7 +152,7 @@ class StudyRun:
 
     def _close(self, reports: ReportWriter, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
-        Print what the last report says and what to do next; return the exit code.
+        Print the last report's results and the next commands; return the exit code.
 
         Raises `stop`, what interrupted the run, and EndedEarlyError without any report.
         """
@@ -178,7 +179,7 @@ class StudyRun:
         first = list_first_tasks(self._study, select_analyses(self._study))
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)
-        if self._options.fresh:  # gone before anything is computed: what an interrupted run left is new
+        if self._options.fresh:  # Deleted before anything is computed, so that results of an interrupted run are new.
             self._cache.remove([*keys, *(task.key for task in first)])
         results = TaskResults(self._cache, self._options.fresh)
         print_stored(self._console, results, surfaces, first)
@@ -201,7 +202,7 @@ class StudyRun:
                         print_level(self._console, said, before, level, reports.place)
         except TimeUpError:
             deadline.keep_free(0.0)
-            with suppress(TimeUpError):  # then the report before stays
+            with suppress(TimeUpError):  # At the deadline the earlier report stays.
                 reports.write_stopped(complete, runner)
         except KeyboardInterrupt as stop:
             reports.write_stopped(complete, runner)

@@ -51,7 +51,7 @@ def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
     surfaces = label_surfaces(level.study, batches, collect_batch_results(tasks, runner.results))
     study = leave_out_empty_models(level.study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
-    runner.run([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
+    runner.run([task for each in later for task in each.tasks(study.restrict_to(each.key), surfaces)])
     return CompleteLevel(level, study, tasks, surfaces)
 
 
@@ -102,7 +102,7 @@ class ReportWriter:
         unfinished = []
         for analysis in select_analyses(whole):
             if analysis.key in later:
-                tasks = analysis.tasks(whole.selecting(analysis.key), complete.surfaces)
+                tasks = analysis.tasks(whole.restrict_to(analysis.key), complete.surfaces)
                 if not tasks or runner.results.find_missing(tasks):
                     unfinished.append(analysis.key)
         if self.level is not complete.level or set(unfinished) != set(later):
@@ -132,7 +132,7 @@ class ReportWriter:
         lost = LostParts()
         found: dict[str, Any] = {}
         for analysis in select_analyses(study):
-            collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
+            collect = partial(analysis.collect, study.restrict_to(analysis.key), surfaces, runner.results)
             found[analysis.key] = lost.attempt(f"section {analysis.key}", collect)
         fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
         found |= {field.name: _load_stored(field, self._options.out) for field in fields}

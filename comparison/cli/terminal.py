@@ -66,7 +66,7 @@ def _print_analyses(console: Console, study: Study) -> list[Task]:
     """Print the number of tasks of every analysis, where it is known before the surfaces are; return those tasks."""
     first, counts = [], {}
     for each in select_analyses(study):
-        tasks = [] if each.needs_surfaces else each.tasks(study.selecting(each.key))
+        tasks = [] if each.needs_surfaces else each.tasks(study.restrict_to(each.key))
         counts[each.stage] = "chosen by the surfaces" if each.needs_surfaces else len(tasks)
         first += tasks
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counts.items()) or 'none'}.")

@@ -35,7 +35,7 @@ class StudyLevel:
 
 def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
     """Return the levels of a study from coarse to fine; first: first level of each analysis, by its key."""
-    made = [key for key in first if study.selecting(key).scenes]
+    made = [key for key in first if study.restrict_to(key).scenes]
     studies: list[Study] = []
     for number, most in enumerate(MAX_PHASES_OF_LEVEL, start=1):
         later = [key for key in made if first[key] > number]

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from comparison.analyses.assumptions.trials import WITHIN, DirectionTrial
+from comparison.analyses.assumptions.trials import CHANGE_LIMITS, DirectionTrial
 from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, line_of
 from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UNDER_LOAD, Axis, Variation
 from comparison.wording import percent, word_difference
@@ -17,7 +17,7 @@ NO_EFFECT = "no effect by symmetry"
 Base = Literal["the translational model", "the stated spatial model"]
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
-SHARE = WITHIN[0]  # change of mu_i: a larger change shows an assumption false
+SHARE = CHANGE_LIMITS[0]  # change of mu_i: a larger change shows an assumption false
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ RELATIVE_ROUNDING = 1e-12  # Two runs that differ by less, relatively, give the 
 # Groups of extremes that --quick runs with the engine's models as well
 GROUPS_QUICK_BY_ENGINE = {"lubrication, s/m", "start at the friction limit", "outside the rules"}
 STAGE = "extremes"  # name of the stage of these tasks on the terminal
-# S of processor time of one cell with its finer runs: twice what the most expensive takes on a busy machine
+# s of processor time of one cell with its finer runs: twice what the most expensive takes on a busy machine
 CELL_TIME_LIMIT = 300.0
 SECONDS_OF_LONG_ROWS = 30.0  # s, cost of a long row with the equations, in place of the usual cost of its column
 # Words for the failures of processes; every other failure is an exception

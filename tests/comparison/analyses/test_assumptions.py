@@ -189,7 +189,7 @@ def test_the_worst_direction_is_followed_until_limits_are_close(monkeypatch: pyt
         if r.key == "offset"
     }
     first = by[1, 0.05]  # mu_1 falls by 1.4 times the offset
-    assert first.holds <= 0.05 / 1.4 < first.fails <= trials.CLOSE * first.holds
+    assert first.holds <= 0.05 / 1.4 < first.fails <= trials.BISECTION_RATIO * first.holds
     assert first.direction == pytest.approx(math.pi / 2.0)
     assert by[2, 0.05].holds >= 0.1
 

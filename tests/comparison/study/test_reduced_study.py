@@ -22,8 +22,8 @@ from comparison.study.models import (
     SPATIAL,
     TRANSLATIONAL,
     Model,
+    applies_to_no_scene,
     models_of,
-    no_scene,
 )
 from comparison.study.reductions import list_skipped_computations
 from comparison.study.study import Study
@@ -142,7 +142,7 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
     assert len(odd.solved(odd.scenes[0], EXACT)) == 25, "an odd grid is computed in full"
     few = replace(odd, grid=7, hierarchy=[replace(EXACT, most=4)])
     assert len(few.solved(few.scenes[0], few.hierarchy[0])) == 16, "the last phase and the first are closer"
-    plain = replace(EXACT, symmetric=no_scene)
+    plain = replace(EXACT, symmetric=applies_to_no_scene)
     assert len(study.solved(load_scene("fig3-I"), plain)) == GRID**2
     uneven = load_scene("fig3-I").with_values({"isolator.supports": 3})
     assert len(replace(study, hierarchy=[SPATIAL]).solved(uneven, SPATIAL)) == GRID**2
