@@ -28,9 +28,9 @@ from comparison.evidence.claims.peaks_and_valleys import MAX_SHARE, MIN_SHARE
 from comparison.evidence.claims.readings import READINGS, STATEMENT_CASES, PeakReading, effective_reading
 from comparison.evidence.claims.table import CLAIMS_GRID, Claims, ClaimTable, word_claims
 from comparison.evidence.forced_ratios import compute_forced_ratios
-from comparison.json_file import json_text
+from comparison.json_file import format_json
 from comparison.runner.environment import describe_provenance
-from comparison.runner.task import execute
+from comparison.runner.task import execute_task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.figures.paper import PRINT_STYLE, draw_surface
@@ -50,7 +50,7 @@ def compute_table(grid: int = CLAIMS_GRID) -> ClaimTable:
     """Return the table that `phase-resonance claims --grid GRID` prints, in this process."""
     study, claims, results = Study(tuple(map(load_scene, builtin_scenes())), 1, 1e-3), Claims(grid), TaskResults()
     for task in claims.tasks(study):
-        results.put(task, execute(task))
+        results.put(task, execute_task(task))
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     return table
@@ -120,7 +120,7 @@ def main() -> None:
             "table": TABLE.dump_python(compute_table(), mode="json"),
             "met_by_grid": {str(grid): numbers_met(compute_table(grid)) for grid in GRIDS},
         }
-        RECORD.write_text(json_text(record), encoding="utf-8")
+        RECORD.write_text(format_json(record), encoding="utf-8")
         for reading in READINGS:
             draw_reading(FOLDER / f"claims-{reading.name.replace(' ', '-')}.png", reading)
     (FOLDER / "claims.md").write_text(render_page(record), encoding="utf-8")

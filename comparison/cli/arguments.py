@@ -17,7 +17,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 from comparison.runner.attempts import attempt
 from comparison.runner.cache import Cache
 from comparison.runner.processes import count_cores
-from comparison.runner.task import BATCH, RESULT
+from comparison.runner.task import BATCH_KIND, RESULT_KIND
 from reference.problem import SceneError
 from reference.problem.families import BOUND_FACTOR
 from reference.support.command import OneLineParser, UsageError
@@ -193,9 +193,9 @@ def edit_command_line(
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
     """Return where the finished results are kept, and the command for the rest; batches: their number in a study."""
     rest = edit_command_line(words, flags=["--fresh"])
-    tasks = cache.kept[RESULT]
+    tasks = cache.kept[RESULT_KIND]
     if batches is None:
         kept = f"{tasks} results are"
     else:
-        kept = f"{cache.kept[BATCH]} of {batches} batches{f' and {tasks} analyses' if tasks else ''} are"
+        kept = f"{cache.kept[BATCH_KIND]} of {batches} batches{f' and {tasks} analyses' if tasks else ''} are"
     return f"{kept} kept in {str(cache.folder)!r}; go on with: {format_command_line(rest, command)}"

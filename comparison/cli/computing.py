@@ -27,9 +27,9 @@ from comparison.runner.cache import Cache, StoreError, locate_store, refuse_fore
 from comparison.runner.dask import connect_cluster
 from comparison.runner.environment import describe_provenance
 from comparison.runner.output import resolve_destination
-from comparison.runner.processes import ExecutorLostError, Pool, process_pool
+from comparison.runner.processes import ExecutorLostError, Pool, make_process_pool
 from comparison.runner.progress import Display, show_progress
-from comparison.runner.runner import Runner, compiling_task
+from comparison.runner.runner import Runner, make_compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 
@@ -71,7 +71,7 @@ def compute_tasks(
     if options.fresh:
         cache.remove(task.key for task in tasks)
     results = TaskResults(cache)
-    missing = results.missing(tasks)
+    missing = results.find_missing(tasks)
     if stored := len(tasks) - len(missing):
         line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."
         console.print(line, soft_wrap=True)  # no line break inside the path, so that a user can copy it
@@ -81,8 +81,8 @@ def compute_tasks(
         show_progress(console, sum(task.seconds for task in missing), count) as display,
     ):
         runner = Runner(results, count, pool, display)
-        runner.run(missing, compiling_task)
-        runner.run(add_tasks(results, display), compiling_task)
+        runner.run(missing, make_compiling_task)
+        runner.run(add_tasks(results, display), make_compiling_task)
     return results
 
 
@@ -104,8 +104,8 @@ def open_workers(
         if scheduler is not None:
             with connect_cluster(scheduler, models) as remote:
                 yield remote.width, remote
-        elif executor is process_pool:
-            with process_pool(jobs) as pool:
+        elif executor is make_process_pool:
+            with make_process_pool(jobs) as pool:
                 yield jobs, pool
         else:
             yield jobs, executor

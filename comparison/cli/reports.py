@@ -13,14 +13,14 @@ import xarray as xr
 from comparison.cli.arguments import format_command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
+from comparison.registry import FEATURES, list_first_tasks, make_report, select_analyses
 from comparison.report.feature import ResultField
 from comparison.report.results import Results
 from comparison.report.section import Report
 from comparison.runner.attempts import LostParts
 from comparison.runner.environment import describe_provenance
-from comparison.runner.output import on_stderr, replace_report
-from comparison.runner.runner import Runner, compiling_task
+from comparison.runner.output import print_on_stderr, replace_report
+from comparison.runner.runner import Runner, make_compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import StudyLevel
@@ -46,12 +46,12 @@ def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
     """Compute what a level lacks: surfaces and analyses without need of them, then those that the surfaces choose."""
     analyses = select_analyses(level.study)
     tasks = make_surface_tasks(level.study)
-    runner.run([*tasks, *first_tasks(level.study, analyses)], compiling_task)
+    runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
     batches = [task.argument for task in tasks]
     surfaces = label_surfaces(level.study, batches, collect_batch_results(tasks, runner.results))
     study = leave_out_empty_models(level.study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
-    runner.run([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
+    runner.run([task for each in later for task in each.tasks(study.restrict_to(each.key), surfaces)])
     return CompleteLevel(level, study, tasks, surfaces)
 
 
@@ -102,8 +102,8 @@ class ReportWriter:
         unfinished = []
         for analysis in select_analyses(whole):
             if analysis.key in later:
-                tasks = analysis.tasks(whole.selecting(analysis.key), complete.surfaces)
-                if not tasks or runner.results.missing(tasks):
+                tasks = analysis.tasks(whole.restrict_to(analysis.key), complete.surfaces)
+                if not tasks or runner.results.find_missing(tasks):
                     unfinished.append(analysis.key)
         if self.level is not complete.level or set(unfinished) != set(later):
             study = replace(complete.study, selection=whole.selection.without(unfinished))
@@ -132,13 +132,13 @@ class ReportWriter:
         lost = LostParts()
         found: dict[str, Any] = {}
         for analysis in select_analyses(study):
-            collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
+            collect = partial(analysis.collect, study.restrict_to(analysis.key), surfaces, runner.results)
             found[analysis.key] = lost.attempt(f"section {analysis.key}", collect)
         fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
         found |= {field.name: _load_stored(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _list_solver_messages(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, families=families, lost=lost.lines)
+        return make_report(study, surfaces, found, faults, run, families=families, lost=lost.lines)
 
 
 def _list_solver_messages(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
@@ -157,5 +157,5 @@ def _load_stored(field: ResultField[Any], out: Path) -> Any:
     try:
         return field.load(out)
     except (OSError, ValueError) as error:
-        on_stderr(str(error))
+        print_on_stderr(str(error))
         return None

@@ -8,15 +8,15 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import seconds_of_study, select_analyses, study_levels
+from comparison.registry import estimate_study_seconds, make_study_levels, select_analyses
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import refusal_of
-from comparison.study.costs import COMPILING, STARTING, WRITING
+from comparison.study.batches import find_refusal
+from comparison.study.costs import COMPILING_SECONDS, STARTING_SECONDS, WRITING_SECONDS
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.records import describe_records
-from comparison.study.reductions import list_omissions
+from comparison.study.reductions import list_skipped_computations
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import make_surface_tasks
 from reference.building import Building, describe_building, word_buildings
@@ -42,8 +42,8 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print("A recorded motion has no phases: one point per model.")
     results = TaskResults(Cache(locate_store(options.out)), options.fresh)
     print_stored(console, results, make_surface_tasks(study), first)
-    wall = STARTING + seconds_of_study(study) / options.jobs + WRITING
-    compiling = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
+    wall = STARTING_SECONDS + estimate_study_seconds(study) / options.jobs + WRITING_SECONDS
+    compiling = f" and {COMPILING_SECONDS:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{compiling}; nothing was computed.")
     console.print(f"The report would go to {options.out}.", soft_wrap=True)
 
@@ -66,7 +66,7 @@ def _print_analyses(console: Console, study: Study) -> list[Task]:
     """Print the number of tasks of every analysis, where it is known before the surfaces are; return those tasks."""
     first, counts = [], {}
     for each in select_analyses(study):
-        tasks = [] if each.needs_surfaces else each.tasks(study.selecting(each.key))
+        tasks = [] if each.needs_surfaces else each.tasks(study.restrict_to(each.key))
         counts[each.stage] = "chosen by the surfaces" if each.needs_surfaces else len(tasks)
         first += tasks
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counts.items()) or 'none'}.")
@@ -75,7 +75,7 @@ def _print_analyses(console: Console, study: Study) -> list[Task]:
 
 def _print_levels(console: Console, study: Study) -> None:
     """Print the grids of phases of every level; a study without phases has none."""
-    for level in study_levels(study) if study.phased else ():
+    for level in make_study_levels(study) if study.phased else ():
         models = level.study.hierarchy
         kinds = {"equations" if m.side == "reference" else m.title: len(level.study.phase_indices(m)) for m in models}
         grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
@@ -127,7 +127,7 @@ def _list_refusals(study: Study) -> dict[str, list[str]]:
     refused: dict[str, list[str]] = {}
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
-            if reason := refusal_of(scene, model, model.tolerance(study.tolerance), study.full):
+            if reason := find_refusal(scene, model, model.tolerance(study.tolerance), study.full):
                 refused.setdefault(reason, []).append(f"{scene.name}, {model.title}")
     return refused
 
@@ -136,7 +136,7 @@ def _print_reductions(console: Console, study: Study) -> None:
     """Print the computations that the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
-    elif rows := list_omissions(study):
+    elif rows := list_skipped_computations(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
             console.print(

@@ -15,20 +15,20 @@ from pathlib import Path
 from typing import Any
 
 from comparison.cli.arguments import CommandParser, read_number
-from comparison.runner.environment import engine_fingerprint
+from comparison.runner.environment import fingerprint_engine
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.user_models import (
-    LAWS,
-    LIKE,
+    DEFAULT_LIKE,
+    REFERENCE_MODEL_KEYS,
     TIME_LIMIT,
-    names_of,
+    list_argument_names,
+    load_user_function,
+    make_user_model,
     note_line,
     silence_output,
-    user_function,
-    user_model,
 )
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
 
@@ -51,7 +51,8 @@ def add_models(parser: CommandParser) -> None:
         default=[],
         metavar=MODEL_FORM,
         help="add an engine of your own, a function like multibody.amplification; it is compared with the "
-        f"model KEY of the equations: {', '.join(LAWS)} (default {LIKE}); repeatable; see docs/other-engines.md",
+        f"model KEY of the equations: {', '.join(REFERENCE_MODEL_KEYS)} (default {DEFAULT_LIKE}); repeatable; see "
+        "docs/other-engines.md",
     )
     parser.add_argument(
         LIMIT_OPTION,
@@ -77,7 +78,7 @@ def load_user_models(specs: Sequence[str], limit: str | None = None, scheduler: 
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
         sys.path.append(folder)  # last in the path, so that a user's file hides no module of the project
     return tuple(
-        user_model(name, _inspect_function(spec, function), like, seconds)
+        make_user_model(name, _inspect_function(spec, function), like, seconds)
         for spec, (name, function, like) in zip(specs, parts)
     )
 
@@ -102,11 +103,11 @@ def _split_spec(spec: str) -> tuple[str, str, str]:
     match = MODEL_SPEC.fullmatch(spec)
     if match is None:
         raise _make_refusal(spec, f"must be {MODEL_FORM}, as mine=my_engine:amplification")
-    name, function, like = match["name"], match["function"], match["like"] or LIKE
+    name, function, like = match["name"], match["function"], match["like"] or DEFAULT_LIKE
     if not ENGINE_NAME.fullmatch(name):
         raise _make_refusal(spec, "NAME must begin with a letter and have at most 30 letters, digits and -")
-    if like not in LAWS:
-        raise _make_refusal(spec, f"KEY must be one of {', '.join(LAWS)}")
+    if like not in REFERENCE_MODEL_KEYS:
+        raise _make_refusal(spec, f"KEY must be one of {', '.join(REFERENCE_MODEL_KEYS)}")
     return name, function, like
 
 
@@ -131,8 +132,8 @@ def inspect_in_worker(path: str) -> tuple[str, dict[str, str]]:
     module, name = path.split(":")
     with silence_output():
         try:
-            function = user_function(path)
-            return "", {"names": names_of(function), **engine_fingerprint(module)}
+            function = load_user_function(path)
+            return "", {"names": list_argument_names(function), **fingerprint_engine(module)}
         except ModuleNotFoundError as error:
             missing = error.name or module
             where = ": run the command in the folder of its file, or install it" if module.startswith(missing) else ""
@@ -144,5 +145,5 @@ def inspect_in_worker(path: str) -> tuple[str, dict[str, str]]:
         except BaseException as error:
             spec = find_spec(module.split(".")[0])
             note_line(error, Path(spec.origin) if spec is not None and spec.origin else None)
-            fault = f"importing {module} raises {exception_line(error)}"
+            fault = f"importing {module} raises {word_exception(error)}"
     return " ".join(fault.split()), {}

@@ -13,7 +13,7 @@ import numpy as np
 from comparison.report.section import Report
 from comparison.result_types import Array
 from comparison.runner.attempts import attempt
-from comparison.runner.output import on_stderr
+from comparison.runner.output import print_on_stderr
 from comparison.study.models import Model, Pair, label_of, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.model_difference import compute_difference
@@ -26,7 +26,7 @@ MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of mu and of an error
 COMPRESSION_LEVEL = 6  # compression level: the next one takes half as long again for 2 % less
 
 
-def collect_page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
+def collect_page_data(report: Report, say: Callable[[str], object] = print_on_stderr) -> str:
     """
     Return the drawn data as JSON, with null for NaN; a feature that raises is left out, with a line to `say`.
 

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from comparison.json_file import json_text
+from comparison.json_file import format_json
 from comparison.report.scene_result import SceneResult
 from comparison.result_types import Part, Text
 from comparison.surfaces.acceptance import Limit
@@ -156,7 +156,7 @@ class Results(Part):
 
     def as_json(self) -> str:
         """Return the content of summary.json."""
-        return json_text(self.model_dump(mode="json", by_alias=True))
+        return format_json(self.model_dump(mode="json", by_alias=True))
 
 
 @cache
@@ -164,4 +164,4 @@ def format_schema(results: type[Results]) -> str:
     """Return the JSON schema (draft 2020-12) of summary.json."""
     schema = results.model_json_schema(by_alias=True, mode="serialization")
     title = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "summary.json of a study"}
-    return json_text({**schema, **title})
+    return format_json({**schema, **title})

@@ -14,7 +14,7 @@ from comparison.report.results import format_schema
 from comparison.report.section import Report
 from comparison.report.summary_text import render_summary_text
 from comparison.runner.attempts import LostParts
-from comparison.runner.output import netcdf_content
+from comparison.runner.output import encode_netcdf
 
 
 def write_report(folder: Path, report: Report) -> None:
@@ -48,4 +48,4 @@ def encode_surfaces(report: Report) -> bytes:
         if feature.dataset:
             surfaces = feature.dataset(surfaces, report.found.get(feature.key))
     run = report.results.run
-    return netcdf_content(surfaces.assign_attrs({"command": run.command, **run.provenance}))
+    return encode_netcdf(surfaces.assign_attrs({"command": run.command, **run.provenance}))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import computed_field
 
 from comparison.result_types import Text, result
-from comparison.study.batches import refusal_of
+from comparison.study.batches import find_refusal
 from comparison.study.models import Model, chain_of, models_of
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import usable_mu
@@ -128,7 +128,7 @@ def advise_on_outcome(study: Study, scene: Scene, model: Model, outcome: str) ->
         return "see what the solvers reported"
     refused = ""
     if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # Bars that would buckle may cause these outcomes.
-        refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
+        refused = find_refusal(scene, model, model.tolerance(study.tolerance), study.full)
     return refused or ADVICE[Outcome(outcome)]
 
 

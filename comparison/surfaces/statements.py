@@ -8,7 +8,7 @@ from itertools import groupby
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from comparison.wording import degrees, difference_with_error, more_or_less, percent, signed
+from comparison.wording import degrees, more_or_less, percent, signed, word_difference
 from reference.problem.readings import BOTH_READINGS
 from reference.support.arguments import name_some
 
@@ -42,7 +42,7 @@ def word_total(numbers: Headline) -> str:
         return f"the models from {first} to {second} have no value in common{where}."
     if numbers.phases_per_axis == 1:
         return _word_total_under_record(numbers)
-    size = difference_with_error(numbers.mean, numbers.error)
+    size = word_difference(numbers.mean, numbers.error)
     grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
     over = grid if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of {grid}"
     ends = word_range(numbers)
@@ -64,7 +64,7 @@ def word_total(numbers: Headline) -> str:
 def _word_total_under_record(numbers: Headline) -> str:
     """Return by how much the last model differs from the first under a record."""
     first, second = numbers.first_name, numbers.second_name
-    size = difference_with_error(numbers.mean, numbers.error)
+    size = word_difference(numbers.mean, numbers.error)
     if numbers.resolved:
         return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
     if numbers.within_error:
@@ -79,7 +79,7 @@ def word_range(numbers: Headline) -> str:
         (numbers.high, numbers.high_error, numbers.high_phases),
     )
     (low, high) = (
-        f"{difference_with_error(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends
+        f"{word_difference(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends
     )
     return low if numbers.low == numbers.high else f"from {low} to {high}"
 
@@ -103,7 +103,7 @@ def word_causes(numbers: Headline) -> str:
 def word_effect(effect: Effect) -> str:
     """Return one cause with its mean, its share of the total, and its mean in another order where that differs."""
     other = f", {signed(effect.elsewhere)} {effect.order}" if effect.depends_on_order else ""
-    return f"{effect.effect} {difference_with_error(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
+    return f"{effect.effect} {word_difference(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
 
 
 def word_agreement(numbers: Headline) -> str:
@@ -154,7 +154,7 @@ def word_engine(row: Difference, title: str, like: str) -> str:
     places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
     pairs = "1 phase pair lacks" if row.unanswered == 1 else f"{row.unanswered} phase pairs lack"
     missing = f", as {pairs} a usable value" if row.unanswered else ""
-    mean = difference_with_error(row.mean, row.error)
+    mean = word_difference(row.mean, row.error)
     sizes = f"{mean} in the mean over {places}{missing}, and by {signed(row.largest)} at most,{where}"
     return f"{name_engine(title)} differs from the {like} by {sizes}: {verdict}."
 
@@ -237,7 +237,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
     """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
-    size = difference_with_error(abs(largest.mean), largest.error).removeprefix("+")
+    size = word_difference(abs(largest.mean), largest.error).removeprefix("+")
     over = " in the mean over the initial phases" if largest.phases_per_axis > 1 else " under the record"
     than = "lower" if largest.mean < 0.0 else "higher"
     rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
@@ -245,7 +245,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
     if phased:
         low = min((each.low, each.low_error) for each in phased)
         high = max((each.high, each.high_error) for each in phased)
-        single = f", and by {difference_with_error(*low)} to {difference_with_error(*high)} at single phase pairs"
+        single = f", and by {word_difference(*low)} to {word_difference(*high)} at single phase pairs"
     first = " or ".join(sorted({each.first_name for each in known}))
     second = " or ".join(sorted({each.second_name for each in known}))
     # Scenes in which both readings are equal count for the second reading as well.
@@ -295,7 +295,7 @@ def word_difference_cell(numbers: Headline) -> str:
         return "no value in common"
     if math.isnan(numbers.error) and numbers.phases_per_axis > 1:
         return f"{signed(numbers.mean)}, too few phases for an error"
-    return difference_with_error(numbers.mean, numbers.error)
+    return word_difference(numbers.mean, numbers.error)
 
 
 def word_range_cell(numbers: Headline) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult, execute_batch
-from comparison.study.costs import seconds_per_point
+from comparison.study.costs import estimate_point_seconds
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import Scene
@@ -38,7 +38,7 @@ def make_surface_tasks(study: Study) -> list[Task]:
             execute_batch,
             batch,
             models[batch.model].title,
-            batch.points * seconds_per_point(batch.scene, models[batch.model]),
+            batch.points * estimate_point_seconds(batch.scene, models[batch.model]),
             batch.question,
             needs_compiled_reference=batch.amplification.startswith("reference:"),
             timeout=batch.timeout,

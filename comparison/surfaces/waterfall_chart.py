@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from comparison.surfaces.waterfall import WaterfallBar
-from comparison.wording import difference_with_error
+from comparison.wording import word_difference
 
 SCALE_MARGIN = 0.03  # share of the scale that is left free beyond the longest bar
 MAX_TICKS = 5
@@ -109,7 +109,7 @@ def _place_bar(bar: WaterfallBar, model: str, start: float, scale: LinearScale) 
         round(abs(end - begin), 3),
         ends,
         end,
-        difference_with_error(bar.size, _finite_error(bar)),
+        word_difference(bar.size, _finite_error(bar)),
     )
 
 

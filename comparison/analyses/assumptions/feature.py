@@ -10,7 +10,7 @@ from comparison.analyses.assumptions.statements import (
     largest_change,
     range_cell,
 )
-from comparison.analyses.assumptions.trials import WITHIN
+from comparison.analyses.assumptions.trials import CHANGE_LIMITS
 from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
 from comparison.analyses.assumptions.variations import Axis
 from comparison.report.feature import Feature, ResultField
@@ -26,7 +26,9 @@ AXES: dict[Axis, str] = {
     "offset": "offset of bodies in the worst direction, m",
     "yaw": "angle of bodies and links in the worse sense, rad",
 }
-BANDS = [{"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in WITHIN]
+BANDS = [
+    {"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in CHANGE_LIMITS
+]
 
 
 def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
@@ -70,7 +72,7 @@ def section_context(report: Report) -> Mapping[str, Any]:
                     "directions": tried,
                 }
             )
-    return {"assumption_scenes": shown, "range_cell": range_cell, "within": WITHIN}
+    return {"assumption_scenes": shown, "range_cell": range_cell, "within": CHANGE_LIMITS}
 
 
 def assumption_verdict(results: Results) -> str:

@@ -16,7 +16,7 @@ from comparison.result_types import Array, Number, Phases, UncertainNumber, resu
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
-from comparison.study.costs import seconds_per_motion
+from comparison.study.costs import estimate_motion_seconds
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE_PROBABILITIES, Fractile
@@ -82,7 +82,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
     def estimate_seconds(self, study: Study) -> float:
         """Return the rough processor time of all motions, s."""
         return sum(
-            seconds_per_motion(scene, model) * len(study.solved(scene, model))
+            estimate_motion_seconds(scene, model) * len(study.solved(scene, model))
             for scene in study.scenes
             for model in _models_with_own_motions(study, scene)
         )

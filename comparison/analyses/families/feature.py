@@ -20,7 +20,7 @@ from comparison.report.section import Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.waterfall import UNEQUAL_PHASES
-from comparison.wording import MAX_NAMES
+from comparison.wording import MAX_AXIS_NAMES
 
 MOTION_KEY = "excitation.record.motion"  # key whose values name motions, so that no axis can have them as numbers
 LOG_AXIS_RATIO = 30.0  # Largest over smallest value of the varied key: beyond this ratio the axis is logarithmic.
@@ -95,7 +95,7 @@ def _value_axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
-        every = -(-len(names) // MAX_NAMES)
+        every = -(-len(names) // MAX_AXIS_NAMES)
         return places, {"title": family.key, "ticks": names[::every], "range": [-0.3, len(places) - 0.7]}
     values = [float(value) for value in family.values]
     if min(values) > 0.0 and max(values) >= LOG_AXIS_RATIO * min(values):

@@ -13,7 +13,7 @@ from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import compute_difference
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Outcome, Scene, Trajectory
@@ -174,7 +174,7 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
             )
         return _store_motion(place, model, motion)
     except Exception as error:
-        return _motion_without_values(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
+        return _motion_without_values(place, model.key, Outcome.SOLVER_FAILED, word_exception(error))
 
 
 def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> StoredMotion:

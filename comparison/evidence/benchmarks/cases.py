@@ -227,7 +227,7 @@ MASTODON_DURATION = 8.0  # s that are computed of 50 s: later displacements are 
 MASTODON_SAMPLES, MASTODON_STEP = 5002, 0.01
 MASTODON_PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, peaks of the MASTODON input along x, y and z
 INPUT_TOLERANCE = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
-# Mm, published displacements: smallest and largest along x, then along y
+# mm, published displacements: smallest and largest along x, then along y
 MASTODON_EXTREMES = -432.0, 330.0, -197.0, 152.0
 MASTODON_FRICTION = {
     "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)

@@ -27,10 +27,10 @@ from comparison.evidence.benchmarks.table import (
     word_with_error,
 )
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.runner.attempts import publish_made
+from comparison.runner.attempts import publish_attempted
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.verdicts import NOT_COMPARED
 from reference.problem import SceneError
 
@@ -39,7 +39,7 @@ WORKER_FUNCTIONS = {model.trajectory for model in MODEL_OF_SIDE.values()}  # fun
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Solve the benchmarks that the command line names; return the exit code."""
     begin = time.monotonic()
     parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
@@ -57,14 +57,14 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
     out = resolve_destination(options.out)
     refuse_foreign_files(out, [STORED.name, TABLE_PAGE])
-    console = wide_console()
+    console = make_wide_console()
     results = compute_tasks("benchmarks", options, argv, analysis.tasks(), WORKER_FUNCTIONS, console, executor)
     solved = analysis.collect(results)
     table = replace(solved, run=collect_run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
-        return files + publish_made(out, TABLE_PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
+        return files + publish_attempted(out, TABLE_PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
 
     files = write_and_show(out, write, partial(print_benchmarks, console, table))
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)

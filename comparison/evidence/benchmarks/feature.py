@@ -9,7 +9,7 @@ from comparison.evidence.benchmarks.table import (
 )
 from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
-from comparison.verdicts import CLASSES
+from comparison.verdicts import STYLE_CLASSES
 
 FOUND = make_stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
 FEATURE = Feature(
@@ -20,7 +20,7 @@ FEATURE = Feature(
         STORED.word_how_to_make(),
         lambda report: {
             "benchmark_sentences": word_explanations,
-            "benchmark_colors": CLASSES,
+            "benchmark_colors": STYLE_CLASSES,
             "stated": word_published_number,
             "word_with_error": word_with_error,
         },

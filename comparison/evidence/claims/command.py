@@ -9,15 +9,15 @@ from comparison.cli.arguments import STORED_RESULTS_HELP, CommandParser, command
 from comparison.cli.computing import compute_tasks
 from comparison.evidence.claims.table import CLAIMS_GRID, Claims, ClaimTable, word_claims
 from comparison.evidence.forced_ratios import compute_forced_ratios
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.study.models import SMALL
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import builtin_scenes, load_scene
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Print the table of statements; return the exit code."""
     parser = CommandParser("claims", "The statements of section 5 of the paper in both readings of (5.1).")
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {CLAIMS_GRID})")
@@ -26,7 +26,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     options = parser.parse_args(argv)
     grid = CLAIMS_GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, STUDY_TOLERANCE)
-    console = wide_console()
+    console = make_wide_console()
     claims = Claims(grid)
     results = compute_tasks("claims", options, argv, claims.tasks(study), {SMALL.amplification}, console, executor)
     table = claims.collect(study, None, results)

@@ -27,7 +27,7 @@ class Evidence:
     error: float = float("nan")  # largest absolute error estimate
     statuses: tuple[str, ...] = ()  # distinct outcomes of the phase pairs
     bends: tuple[SharpestCurvature, ...] = ()  # sharpest curvature of each body's surface
-    # Max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTION_PHASES
+    # max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTION_PHASES
     apart: tuple[float, ...] = ()
     swing: float = float("nan")  # max (x_1^2 + y_1^2) / rho^2 over MOTION_PHASES
     resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s

@@ -29,7 +29,7 @@ from reference.problem import Amplification, Outcome, Scene, ground_peak, loadin
 
 RelativeDifferences = tuple[Array, Array]  # relative differences and their errors, (P, S, N)
 
-# Rad, phase pairs that the equations compute
+# rad, phase pairs that the equations compute
 EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
 ENGINE_PHASES = EQUATION_PHASES[[0, 3]]  # rad, phase pairs that the engine computes
 EQUATION_PERIODS = 6.0  # duration in periods of the slower harmonic: the loading is strongest in the first of them

@@ -14,7 +14,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
-from comparison.wording import exception_line, percent
+from comparison.wording import percent, word_exception
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
@@ -83,7 +83,7 @@ def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
         ended = {"error_message": f"the motion ended: {motion.status}"}
         return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:
-        return replace(nothing, error_message=exception_line(error))
+        return replace(nothing, error_message=word_exception(error))
 
 
 class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):

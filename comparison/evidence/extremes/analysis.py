@@ -18,7 +18,7 @@ from comparison.result_types import Array
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
 from reference.problem.validation import first_scene_error
@@ -40,7 +40,7 @@ RELATIVE_ROUNDING = 1e-12  # Two runs that differ by less, relatively, give the 
 # Groups of extremes that --quick runs with the engine's models as well
 GROUPS_QUICK_BY_ENGINE = {"lubrication, s/m", "start at the friction limit", "outside the rules"}
 STAGE = "extremes"  # name of the stage of these tasks on the terminal
-# S of processor time of one cell with its finer runs: twice what the most expensive takes on a busy machine
+# s of processor time of one cell with its finer runs: twice what the most expensive takes on a busy machine
 CELL_TIME_LIMIT = 300.0
 SECONDS_OF_LONG_ROWS = 30.0  # s, cost of a long row with the equations, in place of the usual cost of its column
 # Words for the failures of processes; every other failure is an exception
@@ -209,7 +209,7 @@ def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> 
         status = tuple(str(outcome) for outcome in result.status)
         return ModelAnswer(np.array(result.mu, dtype=float), np.array(result.error, dtype=float), status)
     except Exception as error:
-        text = exception_line(error)
+        text = word_exception(error)
         if isinstance(error, ValueError) and not isinstance(error, np.linalg.LinAlgError):
             return ModelAnswer(nothing, nothing, (), invalid=text.partition(": ")[2])
         return ModelAnswer(nothing, nothing, (), raised=text)

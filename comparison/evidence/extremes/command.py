@@ -21,15 +21,15 @@ from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STA
 from comparison.evidence.extremes.matrix import FILE, STORED, CellVerdict, Matrix
 from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from reference.problem import SceneError
 
 WORKER_FUNCTIONS = {EQUATIONS, ENGINE, STATED_ENGINE}  # functions that the workers call
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Judge the cells that the command line selects; return the exit code."""
     parser = CommandParser(
         "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
@@ -49,7 +49,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     extremes = _choose_cells(options)
     out = resolve_destination(options.out)
     refuse_foreign_files(out, [FILE])
-    console = wide_console()
+    console = make_wide_console()
     matrix = judge_matrix(extremes, options, argv, console, executor)
 
     def show() -> None:

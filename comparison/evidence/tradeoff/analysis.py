@@ -22,8 +22,8 @@ from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model
-from comparison.study.user_models import engine_of
-from comparison.wording import exception_line
+from comparison.study.user_models import engine_description
+from comparison.wording import word_exception
 from reference.problem import Amplification, Scene
 
 STAGE = "trade-off"  # name of the stage of these tasks on the terminal
@@ -82,7 +82,7 @@ def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -
     try:
         answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
-        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
+        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, word_exception(error))
     seconds = time.process_time() - clock
     if isinstance(answer, tuple):
         answer, step = answer
@@ -141,8 +141,8 @@ class TradeOff:
         """Return the tasks of one function on the sample of a question; seconds: rough cost of a point over 20 s."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
-        engine = engine_of(function[1]).get("function", "")
-        limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
+        engine = engine_description(function[1]).get("function", "")
+        limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}
         limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
         more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
         return [

@@ -29,10 +29,10 @@ from comparison.evidence.tradeoff.settings import (
     SCIPY_FACTORS,
 )
 from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, SceneTrade, TradeFile, load_trades
-from comparison.runner.attempts import publish_made
-from comparison.runner.output import netcdf_content, publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.attempts import publish_attempted
+from comparison.runner.output import encode_netcdf, publish_files, refuse_foreign_files, resolve_destination
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.study.study import refuse_same_names
 from comparison.surfaces.figures.file_names import name_figure_file
 from reference.problem import Scene, SceneError, load_scene
@@ -46,7 +46,7 @@ WORKER_FUNCTIONS = {REFERENCE, ENGINE, REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STE
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Measure the scenes of the command line; return the exit code."""
     parser = CommandParser(
         "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
@@ -69,7 +69,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     _load_trades(out)  # a file that is no trade-off is refused before anything is measured
     written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
     refuse_foreign_files(out, written)
-    console = wide_console()
+    console = make_wide_console()
     if options.growth:
         return _measure_cost_growth(scenes[0], options, argv, out, console, executor)
     measured = measure_trades(scenes, options, argv, console, executor)
@@ -78,7 +78,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
-            publish_made(out, _values_file(each.trade.scene), partial(netcdf_content, each.values), COMMAND)
+            publish_attempted(out, _values_file(each.trade.scene), partial(encode_netcdf, each.values), COMMAND)
         return files
 
     def show() -> None:
@@ -96,7 +96,7 @@ def _measure_cost_growth(
     begin, tasks = time.monotonic(), CostGrowth(scene).tasks()
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
-    series = [*CostGrowth(scene).collect(results), measure_by_workers(scene, process_pool)]
+    series = [*CostGrowth(scene).collect(results), measure_by_workers(scene, make_process_pool)]
     facts = collect_run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
     write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)

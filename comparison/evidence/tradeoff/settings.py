@@ -12,7 +12,7 @@ import numpy as np
 
 from comparison.evidence.tradeoff.trade import StatedSetting
 from comparison.study.models import EXACT, TRANSLATIONAL, V_REG_TEXT, Model, has_dry_friction, has_spatial_data
-from comparison.study.user_models import engine_of
+from comparison.study.user_models import engine_description
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
 
@@ -203,7 +203,7 @@ def list_user_settings(models: Sequence[Model]) -> list[Setting]:
         if question not in {each.key for each in QUESTIONS}:
             question, against = "exact", (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE})
         parameter, values = "as it is, beside a tolerance of", [1e-3]
-        if "tolerance" in engine_of(model.settings).get("names", ""):
+        if "tolerance" in engine_description(model.settings).get("names", ""):
             parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
         call = _VariedCall(model.amplification, "tolerance", model.settings)
         measured += _make_curve_settings(

@@ -30,9 +30,9 @@ from comparison.evidence.validation.files import (
 from comparison.evidence.validation.table import STORED, ExperimentFindings, Validation, join_findings, load_record
 from comparison.runner.environment import describe_provenance
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.progress import wide_console
+from comparison.runner.progress import make_wide_console
 from comparison.verdicts import NOT_COMPARED, word_counts
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import SceneError
 
 MAX_REASON_LETTERS = 150  # largest number of letters of a library's error message that is shown
@@ -53,7 +53,7 @@ def main(argv: Sequence[str]) -> int:
     )
     parser.add_out(f"where {STORED.name} goes")
     options = parser.parse_args(argv)
-    console = wide_console()
+    console = make_wide_console()
     if options.folder is None:
         print_validation(console, load_record())
         console.print("Recorded in the package. To compute it anew, or with other runs of the frame, get the files:")
@@ -98,7 +98,7 @@ def _compare_file(file: str, compare: Callable[[Any], ExperimentFindings], measu
         TypeError,
         AssertionError,
     ) as error:  # raised by NumPy, SciPy or pydantic
-        reason = exception_line(error)[:MAX_REASON_LETTERS]
+        reason = word_exception(error)[:MAX_REASON_LETTERS]
         rule = f"must hold motions like the published ones: none can be compared with these ({reason})"
         raise make_file_error(file, rule) from error
 

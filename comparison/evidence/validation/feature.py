@@ -9,7 +9,7 @@ from comparison.evidence.validation.table import STORED, Validation, verdict_lin
 from comparison.report.feature import Feature, make_stored_field
 from comparison.report.panels import Panel, make_panel
 from comparison.report.section import Section
-from comparison.verdicts import CLASSES, MEANING
+from comparison.verdicts import MEANING_OF_VERDICT, STYLE_CLASSES
 
 LINE_STYLES: dict[str, dict[str, Any]] = {
     "measured": {"color": "ink", "width": 2.4},
@@ -44,8 +44,8 @@ FEATURE = Feature(
         STORED.word_how_to_make(" FOLDER"),
         lambda report: {
             "validation_panels": make_experiment_panels,
-            "validation_verdicts": MEANING,
-            "validation_colors": CLASSES,
+            "validation_verdicts": MEANING_OF_VERDICT,
+            "validation_colors": STYLE_CLASSES,
             "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
         },
         verifies=True,

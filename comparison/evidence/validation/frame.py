@@ -35,7 +35,7 @@ FRICTION_GROWTH = 1.0  # growth of friction at infinite speed: only its slope at
 COMPUTED_CYCLES = 12  # cycles that are computed, of which the last one is read
 ENGINE_V_REG = 1e-4  # m/s, v_reg of the engine
 FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run to which the friction ratio is fitted, if the folder has it
-# Kg, disc of the second run to which load-dependent friction is fitted, if the folder has it
+# kg, disc of the second run to which load-dependent friction is fitted, if the folder has it
 SECOND_FITTED_WEIGHT = 0.450
 DIFFERENCE_STEP = 0.005  # relative step of ratio and scale in difference quotients
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")

@@ -22,9 +22,9 @@ TURN_ENCODER_STEPS = 3  # number of encoder steps by which the pendulum must go 
 FITTED_HALF_SWINGS, PERIOD_HALF_SWINGS = 10, 5
 SHOWN_TURNING_POINTS = (5, 10, 11, 12, 13)  # numbers of the turning points in the table; the first one is number 0
 HALF_SWING_INSTANTS = 20_001  # number of instants in a half swing
-# Rad, amplitudes at which half periods are predicted, fitted, and fitted again
+# rad, amplitudes at which half periods are predicted, fitted, and fitted again
 PREDICTED_ANGLES, FITTED_ANGLE, REFITTED_ANGLE = (1.5, 1.25, 1.0), 0.3, 0.6
-# Rad, half width of the window of amplitudes around each angle; smallest number of half swings in it
+# rad, half width of the window of amplitudes around each angle; smallest number of half swings in it
 ANGLE_HALF_WIDTH, MIN_HALF_SWINGS = 0.1, 4
 
 

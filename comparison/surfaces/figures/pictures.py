@@ -9,7 +9,7 @@ import xarray as xr
 
 from comparison.runner.analysis import Analysis
 from comparison.runner.attempts import attempt
-from comparison.runner.task import Task, fingerprint
+from comparison.runner.task import Task, describe_contents
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import Pair
 from comparison.study.selection import Selection
@@ -43,7 +43,7 @@ class Pictures(Analysis[dict[str, bytes]]):
                 pictures.append(("paper", alone, shown, 0, None))
                 totals = [pair for pair in study.pairs(scene) if pair.key == "total"]
                 pictures += [("total", alone, shown, body, pair) for body in bodies for pair in totals]
-            about = fingerprint(shown)
+            about = describe_contents(shown)
             tasks += [
                 Task(draw_picture, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures
             ]

@@ -78,7 +78,7 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Sig
         assert time.monotonic() < end
         time.sleep(0.1)
     tasks = make_surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("endless", batch=1)))
-    missing = TaskResults(Cache(tmp_path / "report.tiles")).missing(tasks)
+    missing = TaskResults(Cache(tmp_path / "report.tiles")).find_missing(tasks)
     assert {task.argument.model for task in missing} == {"translational", "spatial"}, "the others are whole"
     if number == signal.SIGKILL:
         return

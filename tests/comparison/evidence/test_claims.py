@@ -38,7 +38,7 @@ from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import SMALL
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import label_surfaces, make_surface_tasks
-from comparison.verdicts import MEANING, MET, NOT_COMPARED, NOT_MET, Verdict
+from comparison.verdicts import MEANING_OF_VERDICT, MET, NOT_COMPARED, NOT_MET, Verdict
 from reference import amplification, modes, trajectory
 from reference.problem import builtin_scenes, load_scene
 
@@ -185,7 +185,7 @@ def test_a_verdict_without_its_reason_is_refused() -> None:
 
 def _table(integrated: str, supremum: str) -> ClaimTable:
     """A table of verdicts, a letter for each statement: + met, - not met, ? not compared."""
-    words: Mapping[str, Verdict] = dict(zip("+-?", MEANING))
+    words: Mapping[str, Verdict] = dict(zip("+-?", MEANING_OF_VERDICT))
     columns = zip((AS_INTEGRATED, LITERAL_SUPREMUM), (integrated, supremum))
     return make_claim_table(
         {r.name: [StatementVerdict(words[c], f"{k}{c}") for k, c in enumerate(row)] for r, row in columns}
@@ -311,7 +311,7 @@ def test_the_command_prints_the_table(monkeypatch, capsys, tmp_path, out):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setattr(table_module, "gather_evidence", _known_evidence)
-    monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
+    monkeypatch.setattr(computing, "make_compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
     assert main(["--jobs", "2", "--grid", "16", "--out", out], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
     rows = rows_under(printed, "as integrated", "literal supremum")

@@ -18,7 +18,7 @@ from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import CellVerdict
 from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.extremes.scenes import make_plain_scene
-from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
+from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
 
@@ -130,7 +130,7 @@ def test_a_row_has_the_quantity_that_it_names():
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
     extremes = analysis.Extremes(analysis.select_quick(list(list_extreme_cases())), limit=120.0)
-    matrix = computed(extremes, process_pool)
+    matrix = computed(extremes, make_process_pool)
     assert [
         (row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(CellVerdict.FAILED)
     ] == []

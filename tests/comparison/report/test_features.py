@@ -70,7 +70,7 @@ def load_without(copy, keys):
     surfaces = label_surfaces(study, [], [])
     for name, value in {"mu": 2.0, "error": 1e-9, "status": "ok"}.items():
         surfaces[name][:] = value
-    report = registry.report_of(study, surfaces, {}, [], RUN, families=())
+    report = registry.make_report(study, surfaces, {}, [], RUN, families=())
     place = copy / "report"
     place.mkdir()
     write_report(place, report)

@@ -18,7 +18,7 @@ from runs import quick_figures
 
 import comparison.registry
 from comparison.cli.reports import CompleteLevel, ReportWriter
-from comparison.json_file import json_text
+from comparison.json_file import format_json
 from comparison.registry import FEATURES
 from comparison.report import page, writing
 from comparison.report.results import Results
@@ -180,6 +180,6 @@ def test_data_of_a_feature_that_fail_cost_neither_the_surfaces_nor_those_of_othe
 
 
 def test_what_json_cannot_hold_is_null() -> None:
-    assert json.loads(json_text({"a": float("nan"), "b": [1.5, (float("inf"), {"c": -float("inf")})]})) == {
+    assert json.loads(format_json({"a": float("nan"), "b": [1.5, (float("inf"), {"c": -float("inf")})]})) == {
         "a": None, "b": [1.5, [None, {"c": None}]],
     }  # fmt: skip

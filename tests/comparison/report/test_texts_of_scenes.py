@@ -13,10 +13,10 @@ from rich.console import Console
 from runs import RUN, Run
 from studies import solved
 
-from comparison.registry import EVERYTHING, report_of
+from comparison.registry import EVERYTHING, make_report
 from comparison.report.junit import format_limits_as_junit
 from comparison.report.summary_text import render_summary_text
-from comparison.runner.progress import show_progress, wide_console
+from comparison.runner.progress import make_wide_console, show_progress
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import name_figure_file
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
@@ -46,7 +46,7 @@ def test_brackets_in_names_and_titles_are_printed(command: Callable[..., Run], t
 
 
 def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) -> None:
-    wide_console().print("[red]a[/b] :warning:")
+    make_wide_console().print("[red]a[/b] :warning:")
     assert capsys.readouterr().out == "[red]a[/b] :warning:\n"
     console = Console(width=80, force_terminal=True)
     with console.capture() as shown, show_progress(console, 1.0, 1) as display:
@@ -61,7 +61,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     study = Study((scene,), 2, 1e-3, fake_hierarchy(), selection=EVERYTHING)
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
-    results = report_of(study, surfaces, {}, [], RUN, families=[]).results
+    results = make_report(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
     suites = ElementTree.fromstring(format_limits_as_junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"

@@ -26,10 +26,10 @@ from comparison.runner.progress import Deadline, Display, TimeUpError, show_prog
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.levels import levels_of
+from comparison.study.levels import make_levels
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study, levels_of_phases, nested_grids
-from comparison.study.user_models import user_model
+from comparison.study.user_models import make_user_model
 from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import load_scene
 from reference.support.command import StoppedError
@@ -53,7 +53,7 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
     assert all(fine % coarse == 0 and fine > coarse for coarse, fine in itertools.pairwise(chain))
     assert [(level <= number).sum() for number in range(len(chain))] == list(chain)
     study = Study(SCENES, grid, 1e-3, MODEL_HIERARCHY)
-    found = levels_of(study, {"motions": 3})
+    found = make_levels(study, {"motions": 3})
     assert found[-1].study is study
     asked = [{task.key for task in make_surface_tasks(level.study)} for level in found]
     assert all(coarse <= fine for coarse, fine in itertools.pairwise(asked))
@@ -63,9 +63,9 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
 
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
-    models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
+    models = [*MODEL_HIERARCHY, make_user_model("mine", {"function": "user_engines:plain"})]
     study = Study((load_scene("fig3-I"),), 48, 1e-3, models, selection=registry.EVERYTHING)
-    first, second, last = (level.study for level in registry.study_levels(study))
+    first, second, last = (level.study for level in registry.make_study_levels(study))
     grids = [[len(study.phase_indices(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
     assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
     why = "follows at a later level of the study"

@@ -29,12 +29,12 @@ from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
 from comparison.evidence.tradeoff.feature import make_tradeoff_panels
 from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
-from comparison.runner.environment import engine_fingerprint, source_digest
-from comparison.runner.processes import process_pool
+from comparison.runner.environment import fingerprint_engine, hash_source
+from comparison.runner.processes import make_process_pool
 from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
 from comparison.study.study import Study
-from comparison.study.user_models import LAWS, amplification, user_model
+from comparison.study.user_models import REFERENCE_MODEL_KEYS, amplification, make_user_model
 from comparison.surfaces.budget import list_budget_entries
 from comparison.surfaces.headline import make_headline
 from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
@@ -54,7 +54,7 @@ ASKS = user_engines.asks_us_wrongly.__code__.co_firstlineno + 3
 
 
 def supplied(function: str, name: str = "mine", like: str = "regularised") -> Model:
-    return user_model(name, {"function": f"user_engines:{function}"}, like)
+    return make_user_model(name, {"function": f"user_engines:{function}"}, like)
 
 
 def studied(*models: Model) -> tuple[Study, xr.Dataset]:
@@ -232,7 +232,7 @@ def test_values_that_are_none_are_never_ok(monkeypatch: pytest.MonkeyPatch) -> N
     assert 7.5 <= cost < 8.5, "what its processes cost is its own"
 
 
-@pytest.mark.parametrize("like", LAWS)
+@pytest.mark.parametrize("like", REFERENCE_MODEL_KEYS)
 def test_the_documentation_names_every_argument(like: str) -> None:
     table = DOCS.read_text(encoding="utf-8").split("| by name | passed | value |")[1].split("\n\n")[0]
     rows = {line.split("`")[1]: line for line in table.splitlines()[2:]}
@@ -446,7 +446,7 @@ def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tm
 
 def test_it_is_compared_with_the_model_of_its_law() -> None:
     wet = load_scene("fig4-viscous")
-    for like in LAWS:
+    for like in REFERENCE_MODEL_KEYS:
         dry_pairs, wet_pairs = (
             {pair.key: pair.first.key for pair in pairs_of(scene, [*fake_hierarchy(), supplied("plain", like=like)])}
             for scene in (SCENE, wet)
@@ -461,21 +461,21 @@ def test_its_results_belong_to_its_source_and_its_helpers(tmp_path: Path, monkey
     for helper, engine in (("1", "1"), ("2", "1"), ("2", "2"), ("2", "2")):
         (tmp_path / "its_helper.py").write_text(f"NUMBER = {helper}\n")
         (tmp_path / "its_engine.py").write_text(f"import json, numpy\nimport its_helper\nNUMBER = {engine}\n")
-        source_digest.cache_clear()
-        seen.append(engine_fingerprint("its_engine"))
+        hash_source.cache_clear()
+        seen.append(fingerprint_engine("its_engine"))
     assert seen[2] == seen[3]
     assert len({json.dumps(about, sort_keys=True) for about in seen}) == 3
     assert set(seen[0]) == {"numpy", "source of its_engine", "source of its_helper"}
     (tmp_path / "its_folder").mkdir()  # without __init__.py
     (tmp_path / "its_folder" / "inner.py").write_text("import reference\n")
-    assert {"source of its_folder.inner", "source of reference"} <= set(engine_fingerprint("its_folder.inner"))
+    assert {"source of its_folder.inner", "source of reference"} <= set(fingerprint_engine("its_folder.inner"))
 
 
 @pytest.mark.long
 def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]) -> None:
     engines = ("prints", "computes-for-ever", "waits-for-ever", "leaves", "spoils-its-process")
     words = [word for name in engines for word in ("--model", f"{name}=user_engines:{name.replace('-', '_')}")]
-    run = command("fig3-I", "--grid", "2", *words, *ONLY, "--model-limit", "2", executor=process_pool)
+    run = command("fig3-I", "--grid", "2", *words, *ONLY, "--model-limit", "2", executor=make_process_pool)
     assert run.code == 0
     assert "noise" not in run.out + run.err
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
@@ -494,12 +494,12 @@ def test_extremes_of_its_law_concern_a_user_engine() -> None:
 
 def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
-        model = user_model("mine", {"function": "user_engines:plain", "names": names}, like)
+        model = make_user_model("mine", {"function": "user_engines:plain", "names": names}, like)
         return [(one.question, one.value, one.against is None) for one in list_user_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
-    models = (user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
+    models = (make_user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
     tasks = TradeOff([SCENE], True, models).tasks()
     mine = [task.timeout / len(task.argument.phases) for task in tasks if task.group]
     assert set(mine) == {7.0}
