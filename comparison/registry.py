@@ -1,5 +1,5 @@
 """
-The features of a study, in the order of the pages: what is run, planned, reported, and selected by key.
+Registry of the features of a study in the order of the pages: they are run, planned, reported and selected by key.
 
 A feature is one folder, whose module `feature` has a `FEATURE`, and one line of `FEATURES`.
 """
@@ -12,14 +12,14 @@ from typing import Any
 from pydantic import Field, create_model
 
 from comparison.report import surface_sections as core
-from comparison.report.building import build_report
+from comparison.report.building import assemble_report
 from comparison.report.feature import Feature
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
-from comparison.study.costs import seconds_of_model
-from comparison.study.levels import StudyLevel, levels_of
+from comparison.study.costs import estimate_model_seconds
+from comparison.study.levels import StudyLevel, make_levels
 from comparison.study.selection import Selection
 from comparison.study.study import Study
 
@@ -57,11 +57,11 @@ FEATURES: tuple[Feature, ...] = (
     core.PICTURES,
 )
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
-SELECTABLE = tuple(feature.choice for feature in FEATURES if feature.selectable)
-EVERYTHING = Selection(SELECTABLE)  # all but what is made on request, of every scene
+SELECTABLE = tuple(feature.selectable_entry for feature in FEATURES if feature.selectable)
+EVERYTHING = Selection(SELECTABLE)  # all analyses but those made on request, for every scene
 
 
-def _results_type(features: Sequence[Feature]) -> type[Results]:
+def _make_results_type(features: Sequence[Feature]) -> type[Results]:
     """Return the results of a study with the fields of its features."""
     of_scenes: dict[str, Any] = {
         field.name: (field.kind, Field(description=field.meaning))
@@ -80,36 +80,36 @@ def _results_type(features: Sequence[Feature]) -> type[Results]:
     return results
 
 
-StudyResults = _results_type(FEATURES)
-report_of = partial(build_report, features=FEATURES, kind=StudyResults)
+StudyResults = _make_results_type(FEATURES)
+make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)
 
 
 def select_analyses(study: Study) -> list[Analysis[Any]]:
-    """Those of ANALYSES that are made of a scene of the study."""
-    return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
+    """Return those of ANALYSES that are made of some scene of the study."""
+    return [analysis for analysis in ANALYSES if study.restrict_to(analysis.key).scenes]
 
 
-def seconds_by_stage(study: Study) -> dict[str, float]:
-    """Rough processor time of every stage of the analyses of a study, s."""
-    return {each.stage: each.estimate_seconds(study.selecting(each.key)) for each in select_analyses(study)}
+def estimate_stage_seconds(study: Study) -> dict[str, float]:
+    """Return the rough processor time of every stage of the analyses of a study, s."""
+    return {each.stage: each.estimate_seconds(study.restrict_to(each.key)) for each in select_analyses(study)}
 
 
-def seconds_of_study(study: Study) -> float:
-    """Rough processor time of all models and analyses of a study, s."""
-    models = sum(seconds_of_model(study, model) for model in study.hierarchy)
-    return models + sum(seconds_by_stage(study).values())
+def estimate_study_seconds(study: Study) -> float:
+    """Return the rough processor time of all models and analyses of a study, s."""
+    models = sum(estimate_model_seconds(study, model) for model in study.hierarchy)
+    return models + sum(estimate_stage_seconds(study).values())
 
 
-def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
-    """Return what can be computed without knowing the surfaces."""
+def list_first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
+    """Return the tasks that do not depend on the surfaces."""
     return [
         task
         for analysis in analyses
         if not analysis.needs_surfaces
-        for task in analysis.tasks(study.selecting(analysis.key))
+        for task in analysis.tasks(study.restrict_to(analysis.key))
     ]
 
 
-def study_levels(study: Study) -> list[StudyLevel]:
-    """The levels of a study, from coarse to fine."""
-    return levels_of(study, {analysis.key: analysis.level for analysis in select_analyses(study)})
+def make_study_levels(study: Study) -> list[StudyLevel]:
+    """Return the levels of a study, from coarse to fine."""
+    return make_levels(study, {analysis.key: analysis.level for analysis in select_analyses(study)})

@@ -1,5 +1,5 @@
 """
-What every part of the results is made of.
+Types that every part of the results is made of.
 
 Three types hold what JSON cannot: `Number` writes NaN as null, `Radius` also writes infinity as "inf", and `Text`
 replaces what UTF-8 does not know.
@@ -27,7 +27,7 @@ def _null_as_nan(value: Any) -> Any:
 
 
 def _replace_surrogates(value: Any) -> Any:
-    """The text with single surrogates, which no UTF-8 holds, replaced."""
+    """Return the text with single surrogates, which UTF-8 cannot hold, replaced."""
     return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
 
 
@@ -43,7 +43,7 @@ Phases = tuple[Number, Number]
 
 
 class Part(BaseModel):
-    """A part of the results: read from the attributes of what an analysis returns; unknown keys are refused."""
+    """Part of the results, read from the attributes of an analysis's value; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)
 
@@ -68,7 +68,7 @@ def require_size(what: str, values: Sized, count: int) -> None:
     require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 
-RESULT = ConfigDict(
+RESULT_CONFIG = ConfigDict(
     use_attribute_docstrings=True, revalidate_instances="always", json_schema_extra={"additionalProperties": False}
 )
 
@@ -78,17 +78,18 @@ Class = TypeVar("Class")
 @dataclass_transform(frozen_default=True)
 def result(cls: type[Class]) -> type[Class]:
     """
-    A frozen dataclass that summary.json or a file of its own holds as it is; unknown keys of a file are refused.
+    Return a frozen dataclass that summary.json or a file of its own holds; unknown keys in a file are refused.
 
     The text after the type of a field, or below the field, is its meaning, with the unit. What a property adds to the
     file is a `computed_field`.
     """
     for base in filter(is_dataclass, cls.__bases__):
         properties = TypeAdapter(base).json_schema()["properties"]
-        for field in fields(base):  # pydantic reads the texts of a class itself, not of its base
+        for field in fields(base):  # pydantic reads the attribute texts of a class itself, not of its base
             field.metadata = MappingProxyType({"description": properties[field.name]["description"]})
-    computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())  # which a file has, too
-    cls.__pydantic_config__ = {**RESULT, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
+    # A file also has the computed fields
+    computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())
+    cls.__pydantic_config__ = {**RESULT_CONFIG, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
     made = dataclass(frozen=True)(cls)
     kinds = get_type_hints(made, include_extras=True)
     for field in fields(made):  # type: ignore[arg-type]

@@ -14,7 +14,7 @@ goes on where it stopped.
 if __name__ == "__main__":
     from comparison.cli.start import run_command
 
-    run_command("comparison.run")  # does not return: the module is loaded once, under its own name
+    run_command("comparison.run")  # It does not return: the module is loaded once, under its own name.
 
 import sys
 from collections.abc import Sequence
@@ -22,36 +22,49 @@ from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 
-from comparison.cli.arguments import EndedEarlyError, command, command_line, edit_command_line, resume_hint
-from comparison.cli.closing import print_check, print_closing, print_faults, print_level
+from comparison.cli.arguments import (
+    EndedEarlyError,
+    command,
+    edit_command_line,
+    format_command_line,
+    word_resume_hint,
+)
+from comparison.cli.closing import print_check, print_closing, print_level, print_solver_messages
 from comparison.cli.computing import open_workers
 from comparison.cli.options import Options, parse_options
-from comparison.cli.reports import CompleteLevel, Reports, compute_level
-from comparison.cli.start import Clock, command_start
+from comparison.cli.reports import CompleteLevel, ReportWriter, compute_level
+from comparison.cli.start import Clock, find_command_start
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
-from comparison.cli.user_models import Engines, as_words
-from comparison.registry import first_tasks, seconds_by_stage, seconds_of_study, select_analyses, study_levels
+from comparison.cli.user_models import Engines, word_engine_options
+from comparison.registry import (
+    estimate_stage_seconds,
+    estimate_study_seconds,
+    list_first_tasks,
+    make_study_levels,
+    select_analyses,
+)
 from comparison.runner.cache import Cache, locate_store
-from comparison.runner.output import clear_dead
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import Deadline, TimeUpError, show_progress, wide_console
+from comparison.runner.output import remove_abandoned_reports
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import Deadline, TimeUpError, make_wide_console, show_progress
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.costs import WRITING
+from comparison.study.costs import WRITING_SECONDS
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_steps_of_scenes
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.support.command import stop_on_signals
 
-import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
+# Workers load it again; if loading fails, the command ends here with one line.
+import_module("multibody.models.engine")
 
 
 @command
 def main(
     argv: Sequence[str],
     hierarchy: Sequence[Model] = MODEL_HIERARCHY,
-    executor: Pool = process_pool,
+    executor: Pool = make_process_pool,
     models: Engines | None = None,
 ) -> int:
     """
@@ -62,10 +75,10 @@ def main(
     open. models: engines of the user by name, as `--model` enters them: a function at the top level of a module, or its
     place as "module:function".
     """
-    began = command_start()
+    began = find_command_start()
     with stop_on_signals():
         try:
-            words = edit_command_line(argv, as_words(models or {}))
+            words = edit_command_line(argv, word_engine_options(models or {}))
             options = parse_options(words)
             run = StudyRun(options, words, hierarchy, began)
             run.describe()
@@ -75,7 +88,7 @@ def main(
             code = run.compute(executor)
             if options.check and code < 2 and any(scene.acceptance.confirm for scene in options.scenes):
                 words = _tighter_command(options, words)
-                run.say(f"Again at a tenth of the tolerance: {command_line(words)}")
+                run.say(f"Again at a tenth of the tolerance: {format_command_line(words)}")
                 again = StudyRun(parse_options(words), words, hierarchy, Clock.now()).compute(executor)
                 return max(code, again)
             return code
@@ -109,7 +122,7 @@ class StudyRun:
 
     def __init__(self, options: Options, words: Sequence[str], hierarchy: Sequence[Model], began: Clock) -> None:
         self._options, self._words, self._began = options, words, began
-        self._study, self._console = _make_study(options, hierarchy), wide_console()
+        self._study, self._console = _make_study(options, hierarchy), make_wide_console()
         self._cache = Cache(locate_store(options.out))
 
     def describe(self) -> None:
@@ -124,28 +137,28 @@ class StudyRun:
         """Compute the study on the workers of the options and close it; return the exit code."""
         options, models = self._options, {model.amplification for model in self._study.hierarchy}
         with open_workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
-            clear_dead(options.out)
-            surfaces = surface_tasks(self._study)
+            remove_abandoned_reports(options.out)
+            surfaces = make_surface_tasks(self._study)
             results = self._open_results(surfaces)
-            total = WRITING + seconds_of_study(self._study)
-            reports = Reports(options, jobs, self._words, self._began)
+            total = WRITING_SECONDS + estimate_study_seconds(self._study)
+            reports = ReportWriter(options, jobs, self._words, self._began)
             with (
                 show_progress(self._console, total, jobs) as display,
                 Deadline(self._began.wall, options.budget) as deadline,
             ):
-                runner = Runner(results, jobs, pool, display, seconds_by_stage(self._study))
+                runner = Runner(results, jobs, pool, display, estimate_stage_seconds(self._study))
                 stop = self._compute_levels(runner, surfaces, reports, deadline)
             return self._close(reports, jobs, stop)
 
-    def _close(self, reports: Reports, jobs: int, stop: KeyboardInterrupt | None) -> int:
+    def _close(self, reports: ReportWriter, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
-        Print what the last report says and what to do next; return the exit code.
+        Print the last report's results and the next commands; return the exit code.
 
         Raises `stop`, what interrupted the run, and EndedEarlyError without any report.
         """
         options, found = replace(self._options, jobs=jobs), reports.results
         if found is not None:
-            print_faults(found)
+            print_solver_messages(found)
             print_closing(self._console, found, options, self._words, reports.place)
             if options.check:
                 print_check(found, options.scenes)
@@ -163,23 +176,23 @@ class StudyRun:
 
     def _open_results(self, surfaces: Sequence[Task]) -> TaskResults:
         """Return the results of earlier runs, less those that this one computes anew, and say how many there are."""
-        first = first_tasks(self._study, select_analyses(self._study))
+        first = list_first_tasks(self._study, select_analyses(self._study))
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)
-        if self._options.fresh:  # gone before anything is computed: what an interrupted run left is new
+        if self._options.fresh:  # Deleted before anything is computed, so that results of an interrupted run are new.
             self._cache.remove([*keys, *(task.key for task in first)])
         results = TaskResults(self._cache, self._options.fresh)
         print_stored(self._console, results, surfaces, first)
         return results
 
     def _compute_levels(
-        self, runner: Runner, surfaces: Sequence[Task], reports: Reports, deadline: Deadline
+        self, runner: Runner, surfaces: Sequence[Task], reports: ReportWriter, deadline: Deadline
     ) -> KeyboardInterrupt | None:
         """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
         complete: CompleteLevel | None = None
         try:
-            planned = study_levels(self._study)
-            for level in planned if runner.results.missing(surfaces) else planned[-1:]:
+            planned = make_study_levels(self._study)
+            for level in planned if runner.results.find_missing(surfaces) else planned[-1:]:
                 complete = compute_level(level, runner)
                 if level.last or reports.is_due(complete, runner):
                     before = reports.results
@@ -189,7 +202,7 @@ class StudyRun:
                         print_level(self._console, said, before, level, reports.place)
         except TimeUpError:
             deadline.keep_free(0.0)
-            with suppress(TimeUpError):  # then the report before stays
+            with suppress(TimeUpError):  # At the deadline the earlier report stays.
                 reports.write_stopped(complete, runner)
         except KeyboardInterrupt as stop:
             reports.write_stopped(complete, runner)
@@ -197,4 +210,4 @@ class StudyRun:
         return None
 
     def _hint(self, words: Sequence[str]) -> str:
-        return resume_hint(self._cache, words, batches=len(self._study.batches()))
+        return word_resume_hint(self._cache, words, batches=len(self._study.batches()))

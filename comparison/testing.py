@@ -14,14 +14,14 @@ import xarray as xr
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_steps_of_scenes
 from comparison.study.study import STUDY_TOLERANCE, Study
-from comparison.study.user_models import LAWS, user_model
+from comparison.study.user_models import REFERENCE_MODEL_KEYS, make_user_model
 from comparison.surfaces.missing_values import MissingValues, list_missing_values
-from comparison.surfaces.model_difference import difference_of
+from comparison.surfaces.model_difference import compute_difference
 from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import Scene, load_family
 from reference.problem.acceptance import DemandLimits
 from reference.problem.keys import range_of
-from reference.problem.ranges import TOLERANCE
+from reference.problem.ranges import TOLERANCE_RANGE
 from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
@@ -85,7 +85,7 @@ def assert_consistent(
     >>> from comparison.testing import assert_consistent
     >>> assert_consistent("fig4-dry", like_for_like=1e-3, grid=2)
     """
-    __tracebackhide__ = True  # pytest shows the line of the test
+    __tracebackhide__ = True  # Hides this frame, so that pytest shows the line of the test.
     limits = {
         "like_for_like": like_for_like,
         "like_for_like_maximum": like_for_like_maximum,
@@ -97,8 +97,8 @@ def assert_consistent(
         raise ValueError(f"no limit: give one of {', '.join(limits)}")
     grid = check_whole_number("grid", grid, GRID)
     failed = check_whole_number("failed", failed, FAILED)
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
-    law = check_choice("law", law, LAWS)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
+    law = check_choice("law", law, REFERENCE_MODEL_KEYS)
     scenes = [scene] if isinstance(scene, Scene) else load_family(scene).scenes
     broken = [line for each in scenes for line in _broken_limits(each, stated, grid, tolerance, engine, law, failed)]
     if broken:
@@ -118,7 +118,7 @@ def _broken_limits(
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_steps_of_scenes(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
     if engine is not None:
-        hierarchy.append(replace(user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
+        hierarchy.append(replace(make_user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
     alike = "like-for-like" if engine is None else ENGINE
     asked = {name: pairs.get("total" if name.startswith("total") else alike) for name in stated}
@@ -137,7 +137,7 @@ def _broken_limits(
 
 
 def _word_missing_values(gaps: Sequence[MissingValues], answers: Sequence[BatchResult], failed: int) -> list[str]:
-    """Return a line for each model without some of its values, and what the solvers said; none if as few as allowed."""
+    """Return a line for each model without some of its values, and the solvers' messages; none if few enough."""
     if not sum(gap.points + gap.unusable for gap in gaps) > failed:
         return []
     why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
@@ -206,8 +206,9 @@ def assert_demands(
     >>> from comparison.testing import assert_demands
     >>> assert_demands("synthetic-pair", displacement=0.2, base_shear=0.6)
     """
-    __tracebackhide__ = True  # pytest shows the line of the test
-    from comparison.analyses.ensemble.gate import check_demands  # loaded on first use
+    __tracebackhide__ = True  # Hides this frame, so that pytest shows the line of the test.
+    # Loaded on first use, because most tests do not need it
+    from comparison.analyses.ensemble.gate import check_demands
 
     limits = {
         "displacement": displacement, "support_displacement": support_displacement, "drift_ratio": drift_ratio,
@@ -228,12 +229,12 @@ def assert_demands(
 def _word_breaches(
     surfaces: xr.Dataset, scene: Scene, pair: Pair | None, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
-    """One line for each body beyond the limit, which is on the largest difference or on the median."""
+    """Yield a line for each body beyond the limit, which is on the largest difference or on the median."""
     if pair is None:
         yield f"{scene.name}: {name}: the study has no pair of models for it"
         return
     for body in range(1, len(scene.bodies) + 1):
-        step = difference_of(surfaces, scene.name, pair, body)
+        step = compute_difference(surfaces, scene.name, pair, body)
         if not step.known.any():
             both = f"{pair.first.title} and {pair.second.title}"
             yield f"{scene.name}, body {body}: {name}: no phase pair has a value by {both}"

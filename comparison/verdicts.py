@@ -1,5 +1,5 @@
 """
-The three words in which every comparison with a number from outside ends, and their text.
+Verdicts: the three words in which every comparison with a number from outside ends, and their text.
 
 The comparison error E is the computed less the stated value. It is met where its size is within the uncertainties of
 both together, for measured motions u_val of ASME V&V 20. Why a value is not met is an explanation, never a verdict.
@@ -16,16 +16,17 @@ Verdict = Literal["met", "not met", "not compared"]
 MET: Verdict = "met"
 NOT_MET: Verdict = "not met"
 NOT_COMPARED: Verdict = "not compared"
-MEANING: Mapping[Verdict, str] = {
+MEANING_OF_VERDICT: Mapping[Verdict, str] = {
     MET: "the computed value is the stated one within the uncertainties of both together",
     NOT_MET: "it is not; “by” is the computed less the stated value, and an explanation follows where there is one",
     NOT_COMPARED: "no value was computed, or its uncertainty is not known",
 }
-CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-limit", NOT_COMPARED: "v-refused"}  # on the page
+# Style class of each verdict on the page
+STYLE_CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-limit", NOT_COMPARED: "v-refused"}
 
 
 def judge_error(error: float | None, allowed: float | None) -> Verdict:
-    """Return whether an error is within what the uncertainties together allow; not compared where either is unknown."""
+    """Return the verdict on an error that the uncertainties allow so much; "not compared" if either is unknown."""
     if error is None or allowed is None or not (math.isfinite(error) and math.isfinite(allowed)):
         return NOT_COMPARED
     return MET if abs(error) <= allowed else NOT_MET
@@ -55,9 +56,9 @@ def word_verdict(
 
 
 def count_verdicts(verdicts: Iterable[Verdict]) -> dict[Verdict, int]:
-    """Return how many there are of each verdict, zeros included."""
+    """Return the number of each verdict, zeros included."""
     seen = Counter(verdicts)
-    return {verdict: seen[verdict] for verdict in MEANING}
+    return {verdict: seen[verdict] for verdict in MEANING_OF_VERDICT}
 
 
 def word_counts(counts: Mapping[Verdict, int], what: str = "comparison") -> str:
@@ -69,7 +70,7 @@ def word_counts(counts: Mapping[Verdict, int], what: str = "comparison") -> str:
 def word_counts_and_largest(
     counts: Mapping[Verdict, int], off: Iterable[tuple[float, float, str]], what: str = "comparison"
 ) -> str:
-    """Return the counts in words with the largest relative error of those not met; off: error, stated value, place."""
+    """Return the counts and the largest relative error not met, in words; off: error, stated value, place."""
     words = word_counts(counts, what)
     relative = [(error / stated, place) for error, stated, place in off if stated]
     if not relative:

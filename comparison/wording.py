@@ -1,4 +1,4 @@
-"""How numbers and symbols are written in the report."""
+"""Wording of numbers and symbols in the report."""
 
 import math
 import re
@@ -7,26 +7,26 @@ from markupsafe import Markup, escape
 
 from reference.support.drawing import escape_for_matplotlib
 
-MAX_DECIMALS = 4  # percentage below which a size is nothing
-SHOWN_ERROR = 0.01  # share of a size below which its error is not seen in two digits
-MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
-POWERS = re.compile(r"\^(\w)")
-PERCENT = re.compile(r"(?<=\d) %")
-SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
-INDEXED = re.compile(r"\b([^\W\d_]+)_(\w+)")
-SMALL = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
-GREEK = {**SMALL, "Delta": "Δ", "Phi": "Φ"}
-LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
+MAX_PERCENT_DECIMALS = 4  # largest number of decimals of a percentage: smaller sizes are shown as zero
+MIN_SHOWN_ERROR = 0.01  # share of a size below which its error does not show in two digits
+MAX_AXIS_NAMES = 12  # largest number of names on an axis; with more values every n-th is named
+POWER_PATTERN = re.compile(r"\^(\w)")
+PERCENT_PATTERN = re.compile(r"(?<=\d) %")
+SUBSCRIPT_PATTERN = re.compile(r"(?<=[\w>])_(\w+)")
+INDEX_PATTERN = re.compile(r"\b([^\W\d_]+)_(\w+)")
+SMALL_GREEK = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
+GREEK_LETTERS = {**SMALL_GREEK, "Delta": "Δ", "Phi": "Φ"}
+GREEK_PATTERN = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK_LETTERS)})(?![a-zA-Z])")
 
 
-def exception_line(error: BaseException) -> str:
-    """Return what was raised, and what its notes say of the place, in one line."""
+def word_exception(error: BaseException) -> str:
+    """Return an error and the notes on its place in one line."""
     notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
     return " ".join(f"{type(error).__name__}: {error}{notes}".split())
 
 
 def percent(value: float) -> str:
-    """A share in percent with two digits."""
+    """Return a share in percent with two digits."""
     if not math.isfinite(value):
         return "none"
     if value <= -1e-6:
@@ -37,18 +37,18 @@ def percent(value: float) -> str:
 
 
 def signed(value: float) -> str:
-    """A share with its sign: what a difference is worth."""
+    """Return a share in percent with its sign."""
     if not math.isfinite(value) or abs(value) < 1e-6:
         return percent(abs(value))
     return ("+" if value > 0.0 else "−") + percent(abs(value))
 
 
-def difference_with_error(size: float, error: float) -> str:
-    """A share with its sign and as many digits as its error leaves; with the error where these digits show it."""
-    decimals = _decimals(size, error)
+def word_difference(size: float, error: float) -> str:
+    """Return a signed share with the digits that its error leaves, and with the error where these digits show it."""
+    decimals = _count_decimals(size, error)
     if decimals is None:
         return signed(size)
-    if decimals > MAX_DECIMALS:
+    if decimals > MAX_PERCENT_DECIMALS:
         return "0 %"
     digits = f"{100.0 * abs(size):.{decimals}f}"
     sign = "−" if size < 0.0 else "+"
@@ -56,47 +56,47 @@ def difference_with_error(size: float, error: float) -> str:
 
 
 def more_or_less(size: float, error: float) -> str:
-    """A share in the digits of `difference_with_error`, its sign in words."""
-    return f"{difference_with_error(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
+    """Return a share in the digits of `difference_with_error`, with "more" or "less" for its sign."""
+    return f"{word_difference(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
 
 
-def _decimals(size: float, error: float) -> int | None:
-    """Decimals of a percentage that its error leaves, None where the error is not seen or not known."""
-    if not (math.isfinite(error) and error > SHOWN_ERROR * abs(size)):
+def _count_decimals(size: float, error: float) -> int | None:
+    """Return the decimals of a percentage that its error leaves, None where the error is unknown or does not show."""
+    if not (math.isfinite(error) and error > MIN_SHOWN_ERROR * abs(size)):
         return None
     return max(0, -math.floor(math.log10(100.0 * error)))
 
 
 def shorten_text(text: str, letters: int) -> str:
-    """Return a text of at most `letters` letters; of a longer one the end is three dots."""
+    """Return a text of at most `letters` letters; the end of a longer one is replaced by three dots."""
     return text if len(text) <= letters else text[: letters - 1] + "…"
 
 
 def scientific(value: float) -> str:
-    """A number with its exponent and two digits."""
+    """Return a number in scientific notation with two digits."""
     return "none" if not math.isfinite(value) else f"{value:.1e}"
 
 
 def significant(value: float) -> str:
-    """Seven digits, enough to tell what differs by 1e-6; an infinite number by its sign."""
+    """Return a number with seven digits, enough to distinguish a relative 1e-6; an infinite number by its sign."""
     return "" if math.isnan(value) else "\N{INFINITY}" if value == math.inf else f"{value:.7g}"
 
 
 def degrees(phase: float) -> str:
-    """A phase in degrees."""
+    """Return a phase in degrees."""
     return "none" if not math.isfinite(phase) else f"{math.degrees(phase):.0f}°"
 
 
 def symbols(text: str) -> Markup:
     """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays next to its number."""
-    greek = _with_greek(str(escape(PERCENT.sub("\u00a0%", text))))
-    return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
+    greek = _with_greek(str(escape(PERCENT_PATTERN.sub("\u00a0%", text))))
+    return Markup(SUBSCRIPT_PATTERN.sub(r"<sub>\1</sub>", POWER_PATTERN.sub(r"<sup>\1</sup>", greek)))
 
 
 def mathtext(text: str) -> str:
-    """Names such as v_reg and mu_1 for matplotlib, with indices and Greek letters."""
-    return INDEXED.sub(r"$\1_{\\mathrm{\2}}$", escape_for_matplotlib(_with_greek(text)))
+    """Return names such as v_reg and mu_1 in matplotlib's notation, with indices and Greek letters."""
+    return INDEX_PATTERN.sub(r"$\1_{\\mathrm{\2}}$", escape_for_matplotlib(_with_greek(text)))
 
 
 def _with_greek(text: str) -> str:
-    return LETTERS.sub(lambda found: found.group(1) + GREEK[found.group(2)], text)
+    return GREEK_PATTERN.sub(lambda found: found.group(1) + GREEK_LETTERS[found.group(2)], text)

@@ -24,33 +24,33 @@ from PIL import Image
 from pydantic import TypeAdapter
 
 from comparison.evidence.claims.evidence import CaseInReading, gather_evidence
-from comparison.evidence.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE
-from comparison.evidence.claims.readings import CASES, READINGS, PeakReading, effective_reading
-from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
-from comparison.evidence.forced_ratios import forced_ratios
-from comparison.json_file import json_text
+from comparison.evidence.claims.peaks_and_valleys import MAX_SHARE, MIN_SHARE
+from comparison.evidence.claims.readings import READINGS, STATEMENT_CASES, PeakReading, effective_reading
+from comparison.evidence.claims.table import CLAIMS_GRID, Claims, ClaimTable, word_claims
+from comparison.evidence.forced_ratios import compute_forced_ratios
+from comparison.json_file import format_json
 from comparison.runner.environment import describe_provenance
-from comparison.runner.task import execute
+from comparison.runner.task import execute_task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.figures.paper import PRINT, draw_surface
+from comparison.surfaces.figures.paper import PRINT_STYLE, draw_surface
 from comparison.verdicts import MET
 from reference.problem import builtin_scenes, load_scene
 
 FOLDER = Path(__file__).parent
 RECORD = FOLDER / "claims.json"
-GRIDS = 16, GRID, 32, 48, 64  # phases per axis on which the statements are counted
+GRIDS = 16, CLAIMS_GRID, 32, 48, 64  # phases per axis on which the statements are counted
 DRAWN = 32  # phases per axis of the pictures
 RESOLUTION, COLORS = 110, 32  # dots per inch, and shades of a picture of lines on white
 PANELS = (("fig3-I", "3", "ab"), ("fig3-II", "3", "cd"), ("fig4-dry", "4", "ab"), ("fig4-viscous", "4", "cd"))
 TABLE = TypeAdapter(ClaimTable)
 
 
-def compute_table(grid: int = GRID) -> ClaimTable:
+def compute_table(grid: int = CLAIMS_GRID) -> ClaimTable:
     """Return the table that `phase-resonance claims --grid GRID` prints, in this process."""
     study, claims, results = Study(tuple(map(load_scene, builtin_scenes())), 1, 1e-3), Claims(grid), TaskResults()
     for task in claims.tasks(study):
-        results.put(task, execute(task))
+        results.put(task, execute_task(task))
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     return table
@@ -72,12 +72,14 @@ def grids_line(met: Mapping[str, Mapping[str, int]]) -> str:
 
 def draw_reading(path: Path, reading: PeakReading) -> None:
     """Write the eight surfaces of Figures 3 and 4 in one reading, PNG."""
-    with mpl.rc_context(PRINT):
+    with mpl.rc_context(PRINT_STYLE):
         figure = Figure(figsize=(11.0, 6.2))
         FigureCanvasAgg(figure)
         figure.suptitle(f"Figures 3 and 4, parameters as printed, {reading.name}", fontsize=10.0, y=0.985)
         for column, (case, number, letters) in enumerate(PANELS):
-            surfaces = gather_evidence(CaseInReading(case, effective_reading(reading, CASES[case]()), DRAWN)).mu
+            surfaces = gather_evidence(
+                CaseInReading(case, effective_reading(reading, STATEMENT_CASES[case]()), DRAWN)
+            ).mu
             phase = 2.0 * np.pi * np.arange(DRAWN + 1) / DRAWN
             for row, name in enumerate((r"$\mu_1$", r"$\mu_2$")):
                 mu = np.pad(surfaces[..., row], ((0, 1), (0, 1)), mode="wrap")
@@ -97,14 +99,14 @@ def render_page(record: dict[str, Any]) -> str:
         loader=FileSystemLoader(FOLDER), trim_blocks=True, undefined=StrictUndefined, keep_trailing_newline=True
     )
     table = TABLE.validate_python(record["table"])
-    ratios = {each.axis: each for each in forced_ratios(load_scene("fig3-I"))}
+    ratios = {each.axis: each for each in compute_forced_ratios(load_scene("fig3-I"))}
     return templates.get_template("claims.md.j2").render(
         record=record,
         table=table,
-        line=claims_line(table),
+        line=word_claims(table),
         grids_line=grids_line(record["met_by_grid"]),
         readings=READINGS,
-        shares=(LEAST_SHARE, MOST_SHARE),
+        shares=(MIN_SHARE, MAX_SHARE),
         ratios=ratios,
     )
 
@@ -118,7 +120,7 @@ def main() -> None:
             "table": TABLE.dump_python(compute_table(), mode="json"),
             "met_by_grid": {str(grid): numbers_met(compute_table(grid)) for grid in GRIDS},
         }
-        RECORD.write_text(json_text(record), encoding="utf-8")
+        RECORD.write_text(format_json(record), encoding="utf-8")
         for reading in READINGS:
             draw_reading(FOLDER / f"claims-{reading.name.replace(' ', '-')}.png", reading)
     (FOLDER / "claims.md").write_text(render_page(record), encoding="utf-8")

@@ -25,7 +25,7 @@ import yielding_friction
 from matplotlib.figure import Figure
 
 import reference
-from comparison.runner.environment import PACKAGES
+from comparison.runner.environment import COMPUTING_PACKAGES
 from comparison.runner.processes import Workers
 from comparison.study.user_models import amplification
 from reference.problem import GRAVITY, load_scene, phase_grid
@@ -301,7 +301,7 @@ def _page(rows: list[dict[str, Any]]) -> str:
         if measured:
             text.append(f"| {engine.name} | {engine.package} {measured[-1]} | {engine.law} | {engine.lacks} |")
     text += ["", *yielding_friction.opensees_section()]
-    with_versions = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
+    with_versions = ", ".join(f"{name} {version(name)}" for name in COMPUTING_PACKAGES)
     return "\n".join([*text, "", f"Measured with Python {sys.version.split()[0]}, {with_versions}.", ""])
 
 

@@ -21,7 +21,7 @@ from pydantic import TypeAdapter
 from comparison.registry import FEATURES, StudyResults
 from comparison.report.page import word_measurements
 from comparison.surfaces.headline import Headline
-from comparison.surfaces.statements import CELLS, word_verdict
+from comparison.surfaces.statements import CELL_WORDINGS, word_verdict
 from comparison.wording import percent, signed
 
 DOCS = Path(__file__).parent
@@ -48,7 +48,7 @@ def record(report: Path) -> dict[str, Any]:
     leads = {
         each.key: each.section.lead(results)
         for each in FEATURES
-        if each.section and each.section.lead and each.section.present(results)
+        if each.section and each.section.lead and each.section.is_present(results)
     }
     kept = ("body", "pair", "first", "second", "base", "reading", "mean", "numerical_error", "sampling_error")
     rows = [
@@ -80,8 +80,8 @@ def answers(known: Mapping[str, Any]) -> str:
         "|---|---|---|---|---|---|",
     ]
     for line in headlines(known):
-        cells = (CELLS.causes(line), CELLS.agreement(line), CELLS.supremum(line))
-        size = f"**{CELLS.difference(line)}** {CELLS.range(line)}"
+        cells = (CELL_WORDINGS.causes(line), CELL_WORDINGS.agreement(line), CELL_WORDINGS.supremum(line))
+        size = f"**{CELL_WORDINGS.difference(line)}** {CELL_WORDINGS.range(line)}"
         lines.append(f"| `{line.scene}` | {line.name} | {size} | {' | '.join(cells)} |")
     return "\n".join(lines)
 

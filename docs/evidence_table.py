@@ -29,7 +29,7 @@ from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.command import compare_folder
 from comparison.evidence.validation.table import STORED as MEASURED
 from comparison.evidence.validation.table import load_record, verdict_line
-from comparison.report.verification import CHECKS, Check
+from comparison.report.verification import CHECKS, CodeCheck
 from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge_error, word_counts, word_verdict
 
 DOCS = Path(__file__).parent
@@ -120,7 +120,7 @@ def record_measured(folder: Path) -> None:
     place.write_bytes(MEASURED.as_json(replace(compare_folder(folder), curves=[])))
 
 
-def check_row(check: Check) -> str:
+def check_row(check: CodeCheck) -> str:
     """Return one row; a limit of 1 is that of an error which each value states."""
     found = json.loads(STORE.read_text(encoding="utf-8")).get(check.test)
     if found is None:

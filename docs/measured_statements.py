@@ -4,7 +4,14 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from comparison.evidence.sides import EQUATIONS
-from comparison.evidence.validation.table import BOTH, LOADED, MeasuredQuantity, Validation, verdict_on, worse_side
+from comparison.evidence.validation.table import (
+    JUDGED_SIDES,
+    LOAD_FRICTION_SUFFIX,
+    MeasuredQuantity,
+    Validation,
+    find_worse_side,
+    worse_verdict,
+)
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, word_error, word_verdict
 from comparison.wording import percent
 
@@ -15,7 +22,7 @@ FRAME, PENDULUM = "frame, ", "pendulum, "  # begin the names of the experiments
 
 def word_quantity(each: MeasuredQuantity) -> str:
     """Return the worse verdict with the numbers behind it: "met (E = +1.4 %, within 2.2 %)", "not met (by +12 %)"."""
-    found = each.sides[worse_side(each)]
+    found = each.sides[find_worse_side(each)]
     if found.verdict != MET or found.error is None or found.validation is None:
         return word_verdict(found.verdict, found.error, each.base, each.unit)
     allowed = word_error(found.validation, each.base, each.unit).removeprefix("+")
@@ -25,12 +32,12 @@ def word_quantity(each: MeasuredQuantity) -> str:
 def frame_rows(table: Validation, loaded: bool, use: str) -> list[MeasuredQuantity]:
     """Return the quantities of the frame by one law of friction, predicted or calibrated."""
     rows = [each for each in table.quantities if each.experiment.startswith(FRAME) and each.use == use]
-    return [each for each in rows if each.experiment.endswith(LOADED) == loaded]
+    return [each for each in rows if each.experiment.endswith(LOAD_FRICTION_SUFFIX) == loaded]
 
 
 def name_run(each: MeasuredQuantity) -> str:
     """Return the weight of the disc in the run of a quantity, in words."""
-    return each.experiment.removeprefix(FRAME).removesuffix(LOADED)
+    return each.experiment.removeprefix(FRAME).removesuffix(LOAD_FRICTION_SUFFIX)
 
 
 def word_fit(table: Validation, loaded: bool) -> str:
@@ -49,13 +56,13 @@ def word_runs(table: Validation, loaded: bool, use: str) -> str:
 
 def word_met_of(rows: Sequence[MeasuredQuantity]) -> str:
     """Return how many of the quantities both sides meet: "6 of 10"."""
-    return f"{sum(verdict_on(each) == MET for each in rows)} of {len(rows)}"
+    return f"{sum(worse_verdict(each) == MET for each in rows)} of {len(rows)}"
 
 
 def word_what_is_validated(table: Validation) -> str:
     """Return what the measured motions validate, and what not, without the last full stop."""
     loaded = [each for each in frame_rows(table, True, "predicted") if each.name == HALF_RANGE]
-    held = bool(loaded) and all(verdict_on(each) == MET for each in loaded)
+    held = bool(loaded) and all(worse_verdict(each) == MET for each in loaded)
     head = "Validated is one quantity" if held else "Nothing is validated, not even one quantity"
     load, ratio = (f"with {word_fit(table, law)}, {word_runs(table, law, 'predicted')}" for law in (True, False))
     what = f"the {HALF_RANGE} of a frame shaken against dry friction"
@@ -83,8 +90,15 @@ def word_calibrated(table: Validation) -> str:
 
 def word_motions(table: Validation, loaded: bool) -> str:
     """Return by how much the predicted motions of the frame are off as a whole, by one law of friction."""
-    rows = [each for each in table.residuals if each.use == "predicted" and each.experiment.endswith(LOADED) == loaded]
-    sizes = [f"{percent(each.share)} at {each.experiment.removeprefix(FRAME).removesuffix(LOADED)}" for each in rows]
+    rows = [
+        each
+        for each in table.residuals
+        if each.use == "predicted" and each.experiment.endswith(LOAD_FRICTION_SUFFIX) == loaded
+    ]
+    sizes = [
+        f"{percent(each.share)} at {each.experiment.removeprefix(FRAME).removesuffix(LOAD_FRICTION_SUFFIX)}"
+        for each in rows
+    ]
     return f"whole motion off by {', '.join(sizes)} (rms over the half range)"
 
 
@@ -94,7 +108,7 @@ def word_motions_farther_off(table: Validation) -> str:
     farther = 0
     for run in runs:
         rows = [each for each in table.quantities if each.experiment == run.experiment and each.base]
-        farther += all(run.share > abs(each.sides[worse_side(each)].error or 0.0) / each.measured for each in rows)
+        farther += all(run.share > abs(each.sides[find_worse_side(each)].error or 0.0) / each.measured for each in rows)
     quantities = "half range and rms about the mean, which are means of both directions"
     return f"the whole motion is farther off than {quantities}, in {farther} of {len(runs)} predicted runs"
 
@@ -116,7 +130,7 @@ def word_last_swings(table: Validation) -> str:
 def word_large_angles(table: Validation) -> str:
     """Return at how many of the large angles both sides give a half period that is too short."""
     rows = [each for each in table.quantities if each.name.startswith("half period at ")]
-    short = sum(all((each.sides[side].error or 0.0) < 0.0 for side in BOTH) for each in rows)
+    short = sum(all((each.sides[side].error or 0.0) < 0.0 for side in JUDGED_SIDES) for each in rows)
     return f"the computed half period is too short at {short} of {len(rows)} large angles"
 
 
@@ -148,8 +162,8 @@ def word_instants(table: Validation, experiment: str = f"{FRAME}450 g") -> str:
     starts, stops, share = (rows[name] for name in INSTANTS)
     named = {"starts": starts, "stops": stops, share.name: share}
     words = f"{experiment}: " + ", ".join(f"{name} {word_quantity(each)}" for name, each in named.items())
-    errors = [each.sides[worse_side(each)].error or 0.0 for each in (starts, stops)]
-    hidden = verdict_on(share) == MET and NOT_MET in (verdict_on(starts), verdict_on(stops))
+    errors = [each.sides[find_worse_side(each)].error or 0.0 for each in (starts, stops)]
+    hidden = worse_verdict(share) == MET and NOT_MET in (worse_verdict(starts), worse_verdict(stops))
     alike = errors[0] * errors[1] > 0.0
     return f"{words}, because starts and stops shift alike" if hidden and alike else words
 
@@ -157,7 +171,7 @@ def word_instants(table: Validation, experiment: str = f"{FRAME}450 g") -> str:
 def word_predicted_pendulum(table: Validation) -> str:
     """Return how many of the pendulum's predicted values both sides meet, in a sentence without the full stop."""
     rows = [each for each in table.quantities if each.experiment.startswith(PENDULUM) and each.use == "predicted"]
-    met = sum(verdict_on(each) == MET for each in rows)
+    met = sum(worse_verdict(each) == MET for each in rows)
     count = f"{met or 'none'} of the {len(rows)} predicted values of the pendulum"
     return f"{count} {'is' if met < 2 else 'are'} met"
 
@@ -166,6 +180,6 @@ def word_largest(rows: Sequence[MeasuredQuantity]) -> str:
     """Return the largest relative error of some quantities and where it is: "rms about the mean at 550 g +13 %"."""
     each = max(
         (each for each in rows if each.base),
-        key=lambda row: abs(row.sides[worse_side(row)].error or 0.0) / row.measured,
+        key=lambda row: abs(row.sides[find_worse_side(row)].error or 0.0) / row.measured,
     )
-    return f"{each.name} at {name_run(each)} {word_error(each.sides[worse_side(each)].error or 0.0, each.base)}"
+    return f"{each.name} at {name_run(each)} {word_error(each.sides[find_worse_side(each)].error or 0.0, each.base)}"

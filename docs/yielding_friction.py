@@ -33,9 +33,9 @@ from scipy.optimize import least_squares
 import reference
 from comparison.analyses.conditioning.analysis import QUESTIONS, YIELDS, conditioning_curves
 from comparison.evidence.benchmarks import cases
-from comparison.evidence.sides import EQUATIONS, spline_along
+from comparison.evidence.sides import EQUATIONS, interpolate_platform
 from comparison.evidence.validation import frame, pendulum, table
-from comparison.evidence.validation.files import Swing, read_folder
+from comparison.evidence.validation.files import FreeSwing, read_folder
 from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, ground_peak, load_scene
 from reference.problem.friction import Heat
@@ -63,20 +63,20 @@ TRIED = (0.0, 5e-3, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)  # mm, yield displacemen
 
 def move_frame(cycles: frame.Cycles, ratio: float, yields: float) -> Trajectory:
     """Return the motion of a run with a friction ratio and a yield displacement, mm; 0: rigid friction."""
-    scene, phases = frame.scene_of(cycles, frame.Setup(ratio=ratio))
+    scene, phases = frame.make_frame_scene(cycles, frame.Setup(ratio=ratio))
     if yields > 0.0:
         stated = scene.model_dump(exclude_none=True)["isolator"]["friction"]
         stiffness = ratio * cycles.run.weight * GRAVITY / (PLACE * yields)
         scene = scene.with_values({"isolator.friction": stated | {"initial_stiffness": stiffness}})
     start = np.array([PLACE * cycles.amplitude, 0.0])
-    return table.motion_of(EQUATIONS, scene, phases, start, V_REG, TOLERANCE, "small")
+    return table.compute_released_motion(EQUATIONS, scene, phases, start, V_REG, TOLERANCE, "small")
 
 
 def fit_ratio(cycles: frame.Cycles, yields: float) -> tuple[float, float]:
     """Fit the friction ratio of a run at a yield displacement, mm; return it and the rms misfit of the cycle, mm."""
 
     def misfit(ratio: Any) -> Any:
-        return frame.last_cycle(move_frame(cycles, float(ratio[0]), yields), cycles.frequency) - cycles.mean
+        return frame.read_last_cycle(move_frame(cycles, float(ratio[0]), yields), cycles.frequency) - cycles.mean
 
     found = least_squares(misfit, [0.3], diff_step=1e-3, xtol=1e-5, ftol=1e-7)
     return float(found.x[0]), float(np.sqrt(np.mean(found.fun**2)))
@@ -96,9 +96,9 @@ def compare_frame(runs: list[frame.Cycles], recorded: dict[str, dict[str, Any]])
             for weight, run in by_weight.items():
                 ratio = first[k][1] * (weight / 250.0) ** exponent
                 motion = move_frame(run, ratio, yields)
-                curve = frame.last_cycle(motion, run.frequency)
-                values = frame.read_cycle(curve, run.frequency)
-                name = f"frame, {weight} g" + (table.LOADED if "load" in law and weight != 250 else "")
+                curve = frame.read_last_cycle(motion, run.frequency)
+                values = frame.measure_cycle(curve, run.frequency)
+                name = f"frame, {weight} g" + (table.LOAD_FRICTION_SUFFIX if "load" in law and weight != 250 else "")
                 for number, quantity in enumerate(frame.NAMES):
                     within = recorded[f"{name}: {quantity}"]
                     error = values[number] - within["measured"]
@@ -109,15 +109,17 @@ def compare_frame(runs: list[frame.Cycles], recorded: dict[str, dict[str, Any]])
     return found
 
 
-def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[str, Any]:
+def compare_pendulum(swing: FreeSwing, recorded: dict[str, dict[str, Any]]) -> dict[str, Any]:
     """Fit loss and yield displacement to turning points 0 to 10, and judge those behind."""
-    instants, turns = pendulum._find_turns(swing, pendulum.STEPS * float(np.min(np.diff(np.unique(swing.angle)))))
-    numbers = np.arange(pendulum.SHOWN[-1] + 1)
+    instants, turns = pendulum._find_turns(
+        swing, pendulum.TURN_ENCODER_STEPS * float(np.min(np.diff(np.unique(swing.angle))))
+    )
+    numbers = np.arange(pendulum.SHOWN_TURNING_POINTS[-1] + 1)
     sides = (-1.0) ** numbers
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
     along = np.sign(turns[0]) * sides * turns[: len(numbers)]
     (_, loss, middle), *_ = np.linalg.lstsq(terms[:11], along[:11])
-    half = float(np.diff(instants)[: pendulum.HALF].mean())
+    half = float(np.diff(instants)[: pendulum.PERIOD_HALF_SWINGS].mean())
     measured = along - middle * sides
 
     def turning_points(yields: float, lost: float, period: float) -> Any:
@@ -135,8 +137,8 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
         }
         made = Scene.model_validate(scene)
         place = np.array([made.radius * np.sin(measured[0])])
-        motion = table.motion_of(EQUATIONS, made, (0.0, 0.0), place, 1e-5, 1e-4, "exact")
-        track = spline_along(motion)
+        motion = table.compute_released_motion(EQUATIONS, made, (0.0, 0.0), place, 1e-5, 1e-4, "exact")
+        track = interpolate_platform(motion)
         ends = [0.0, *pendulum._find_zeros(motion), float(motion.time[-1])]
         sizes = [(track(np.linspace(a, b, 2001)) * (-1.0) ** k).max() for k, (a, b) in enumerate(pairwise(ends))]
         rest = [float(track(ends[-1])) * (-1.0) ** k for k in range(len(sizes), len(numbers))]
@@ -151,7 +153,7 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
     rows = []
     for yields, lost, _ in (tried[0], best):
         sizes = turning_points(yields, lost, half)
-        for number in pendulum.SHOWN:
+        for number in pendulum.SHOWN_TURNING_POINTS:
             within = recorded[f"pendulum, decay: turning point {number}"]
             error = 1e3 * float(sizes[number]) - within["measured"]
             rows.append(
@@ -171,7 +173,7 @@ def compute_mastodon(path: Path, yields: float, step: float) -> list[float]:
     The equations refuse heat with friction that yields. The restoring force is theirs, N y / sqrt(R^2 - y^2) along each
     axis. Velocity Verlet with the closest point on the circle.
     """
-    case = cases.mastodon_case(path)
+    case = cases.load_mastodon_case(path)
     scene = case.scene
     law, weight = scene.dry_friction, scene.total_mass * GRAVITY
     assert law.heat is not None
@@ -541,7 +543,7 @@ def compare_mastodon(path: Path) -> dict[str, Any]:
     """Compare MASTODON's bearing with its published displacements."""
     return {
         "mastodon": {
-            "published": list(cases.LIMITS),
+            "published": list(cases.MASTODON_EXTREMES),
             "u_y = 0.01 mm": compute_mastodon(path, 1e-5, 5e-5),
             "u_y = 1 mm": compute_mastodon(path, 1e-3, 1e-4),
         }

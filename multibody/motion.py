@@ -17,7 +17,7 @@ from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, ground_acceleration
 from reference.problem.phases import check_phase
-from reference.problem.ranges import TOLERANCE, check_state
+from reference.problem.ranges import TOLERANCE_RANGE, check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import require_scene
 from reference.support.arguments import Range, check_choice, check_number
@@ -86,7 +86,7 @@ def trajectory(
     """
     scene = scene.softened() if softened else scene
     checked = check_phase(phase)
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
     initial = _check_initial(scene, initial)
     with silence_engine():

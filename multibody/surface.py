@@ -19,7 +19,7 @@ from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
 from reference.problem import Amplification, Outcome, Scene, ground_peak
 from reference.problem.phases import flat_phases
-from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
+from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE_RANGE
 from reference.problem.readings import SECOND_V_REG_RATIO, describe_law, reading_of
 from reference.problem.reductions import has_planar_chain, turn_loading_to_x
 from reference.problem.scene import require_scene
@@ -103,7 +103,7 @@ def amplification(
     """
     stated, scene = scene, scene.softened() if softened else scene
     pairs, leading = flat_phases(phases)
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
     clock = time.process_time()
     ground = ground_peak(scene, pairs)

@@ -16,9 +16,8 @@ from reference.problem.result import Array
 from reference.problem.scene import require_scene
 from reference.support.arguments import name_some
 
-MAX_DESCRIBED_MODES = (
-    10  # number of modes along each axis in a description; of a tall chain only the lowest modes are computed
-)
+# Number of modes along each axis in a description; of a tall chain only the lowest modes are computed
+MAX_DESCRIBED_MODES = 10
 MAX_NAMES_PER_LINE = 6  # a line names at most so many modes, or buildings
 EQUAL_LOAD_TOLERANCE = 1e-6  # share of the mean within which the dead loads of supports count as equal
 MAX_KINDS = 3  # at most so many kinds of buildings are described

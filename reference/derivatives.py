@@ -21,9 +21,9 @@ from reference.support.arguments import quote
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]
 
-STEPS = (1e-3, 4e-3, 1.6e-2)  # changes of the value, as shares of it; each derivative also uses twice its step
-FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # finite changes of the value, as shares of it
-RUNS_PER_KEY = 4 * len(STEPS) + len(FINITE_CHANGES)
+STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # changes of the value, as shares of it; each derivative also uses twice its step
+FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # shares of the value by which the value changes
+RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)
 # A kink is sought where a mean slope differs from the derivative by at least this share of the largest slope: powers
 # up to the tenth differ by less over 5 % of the value
 MIN_CONTRADICTION = 0.05
@@ -87,7 +87,9 @@ class Sensitivity(Estimates):
         return f"<Sensitivity to {self.key} at {self.at:g}: {slope}; {basis}{law}{said}>"
 
 
-class _Numbers(NamedTuple):
+class _ComputedQuantity(NamedTuple):
+    """Value and error of a quantity, with its reading of (5.1) and its friction law."""
+
     value: Array
     error: Array
     reading: str
@@ -162,7 +164,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     for number, (key, value) in enumerate(values.items(), start=1):
         progress.start(f"sensitivity to {key}, key {number} of {len(values)}")
         assert middle is not None
-        found[key] = _find_sensitivity(_Line(scene, key, value, quantity, middle, progress))
+        found[key] = _find_sensitivity(_VariedQuantity(scene, key, value, quantity, middle, progress))
     return found
 
 
@@ -186,17 +188,23 @@ class _ProgressLines:
             self._line = ""
 
 
-class _Line:
+class _VariedQuantity:
     """The quantity as a function of one key of the scene, with all values computed so far."""
 
     def __init__(
-        self, scene: Scene, key: str, value: float, quantity: Quantity, middle: _Numbers, progress: _ProgressLines
+        self,
+        scene: Scene,
+        key: str,
+        value: float,
+        quantity: Quantity,
+        middle: _ComputedQuantity,
+        progress: _ProgressLines,
     ) -> None:
         self.scene, self.key, self.value, self.middle = scene, key, value, middle
         self._quantity, self._progress = quantity, progress
-        self.known: dict[float, _Numbers] = {value: middle}
+        self.known: dict[float, _ComputedQuantity] = {value: middle}
 
-    def at(self, value: float) -> _Numbers:
+    def at(self, value: float) -> _ComputedQuantity:
         """Return the quantity of the scene in which the key has this value."""
         if value not in self.known:
             began = time.monotonic()
@@ -204,7 +212,7 @@ class _Line:
             self._progress.count(time.monotonic() - began)
         return self.known[value]
 
-    def value_or_nan_at(self, value: float) -> _Numbers:
+    def value_or_nan_at(self, value: float) -> _ComputedQuantity:
         """Return the quantity at a value, or NaN if the scene with it is invalid or has no answer."""
         try:
             return self.at(value)
@@ -214,7 +222,7 @@ class _Line:
             return self.known[value]
 
 
-def _find_sensitivity(line: _Line) -> Sensitivity:
+def _find_sensitivity(line: _VariedQuantity) -> Sensitivity:
     """Return the derivative, the finite changes, and the kink between them if they contradict each other."""
     derivative, middle = _differentiate_line(line), line.middle
     moved = [line.value_or_nan_at(line.value * (1.0 + share)) for share in FINITE_CHANGES]
@@ -256,7 +264,7 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
     return f"{kind} at {place}: slope {slopes[0]:.3g} below and {slopes[1]:.3g} beyond it"
 
 
-def _differentiate_line(line: _Line) -> Estimates:
+def _differentiate_line(line: _VariedQuantity) -> Estimates:
     """Return the derivative with the smallest error of all steps."""
     middle, value = line.middle, line.value
 
@@ -271,7 +279,7 @@ def _differentiate_line(line: _Line) -> Estimates:
         )
 
     slopes, errors = [], []
-    for step in (share * abs(value) for share in STEPS):
+    for step in (share * abs(value) for share in STEP_SHARES):
         (near, near_jump, near_error), (far, far_jump, far_error) = difference(step), difference(2.0 * step)
         # The jump of slope of a smooth quantity is proportional to the step
         kink = 2.0 * np.abs(2.0 * near_jump - far_jump)
@@ -308,7 +316,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     return place, float(np.nan_to_num(departure[-1, place])), bool(excess[place] > 0.0)
 
 
-class _Point(NamedTuple):
+class _QuantityAtValue(NamedTuple):
     """One element of the quantity at one value of the key."""
 
     at: float
@@ -319,8 +327,8 @@ class _Point(NamedTuple):
 class _Bracket(NamedTuple):
     """Two points on the two sides of a kink or jump, with the slopes outside them."""
 
-    low: _Point
-    high: _Point
+    low: _QuantityAtValue
+    high: _QuantityAtValue
     below: float
     beyond: float
 
@@ -340,12 +348,12 @@ class _Bracket(NamedTuple):
         return self.high.value - self.low.value - 0.5 * (self.below + self.beyond) * self.width
 
 
-def _locate_corner(line: _Line, place: int) -> tuple[_Bracket, float] | None:
+def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] | None:
     """Return the bracket of one element's kink within the finite changes, and its jump; None without a clear kink."""
 
-    def point(at: float) -> _Point:
+    def point(at: float) -> _QuantityAtValue:
         numbers = line.value_or_nan_at(at)
-        return _Point(at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place]))
+        return _QuantityAtValue(at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place]))
 
     points = [each for each in (point(at) for at in sorted(line.known)) if np.isfinite(each).all()]
     first = _bracket_kink(points, point) if len(points) >= 4 else None
@@ -357,7 +365,7 @@ def _locate_corner(line: _Line, place: int) -> tuple[_Bracket, float] | None:
     return (last, 0.0) if abs(last.slope_change) > MIN_REMAINING_SHARE * abs(first.slope_change) else None
 
 
-def _bracket_kink(points: Sequence[_Point], point: Callable[[float], _Point]) -> _Bracket | None:
+def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _QuantityAtValue]) -> _Bracket | None:
     """Return the neighbors of the point with the largest change of slope; None where errors explain the change."""
     x, f, e = np.array(points).T
     slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
@@ -377,7 +385,7 @@ def _bracket_kink(points: Sequence[_Point], point: Callable[[float], _Point]) ->
     return _Bracket(low, high, float(below), float(beyond))
 
 
-def _halve_bracket(bracket: _Bracket, point: Callable[[float], _Point], enough: float) -> _Bracket | None:
+def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue], enough: float) -> _Bracket | None:
     """Return a bracket halved to the width `enough`, or as far as errors permit; None where a value is missing."""
     low, high, below, beyond = bracket
     for _ in range(MAX_HALVINGS):
@@ -391,8 +399,8 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _Point], enough: 
         apart = max(abs(left - below), abs(right - beyond))
         if apart <= noise < 0.1 * abs(beyond - below):  # both halves are straight, so the kink is at the middle
             near = max(noise / abs(beyond - below) * (high.at - low.at), 0.5 * enough)
-            low = _Point(middle.at - near, middle.value - below * near, middle.error)
-            high = _Point(middle.at + near, middle.value + beyond * near, middle.error)
+            low = _QuantityAtValue(middle.at - near, middle.value - below * near, middle.error)
+            high = _QuantityAtValue(middle.at + near, middle.value + beyond * near, middle.error)
             break
         if noise > 0.2 * apart:
             break
@@ -403,7 +411,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _Point], enough: 
     return _Bracket(low, high, below, beyond)
 
 
-def _value_and_provenance(found: Any) -> _Numbers:
+def _value_and_provenance(found: Any) -> _ComputedQuantity:
     """Return value and error of the result of a quantity, with its reading of (5.1) and its law of friction."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
@@ -413,7 +421,7 @@ def _value_and_provenance(found: Any) -> _Numbers:
         raise _word_refusal(found) from None
     if value.shape != error.shape or not value.size:
         raise _word_refusal(found)
-    return _Numbers(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
+    return _ComputedQuantity(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
 
 
 def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
@@ -430,5 +438,6 @@ def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
 
 
 def _word_refusal(found: Any) -> TypeError:
+    """Return the error for a result of a quantity that has no value and error."""
     kinds = "an Amplification, an object with value and error, several of these, or a pair (value, error)"
     return TypeError(f"quantity: returns {quote(found)}: must return {kinds}")

@@ -184,6 +184,7 @@ def _default_instants(scene: Scene, record: StepRecord) -> Array:
 
 
 def _check_times(scene: Scene, times: ArrayLike) -> Array:
+    """Return rising instants (T,), s, within the duration. Raises ValueError, one line."""
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
     instants = check_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))

@@ -15,7 +15,7 @@ from reference.analytical.frictionless import frictionless_peaks
 from reference.defaults import DEFAULT_TOLERANCE
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, exponents, ground_peak, loading_period
 from reference.problem.phases import flat_phases
-from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
+from reference.problem.ranges import CUTOFF_RANGE, LEAST_ACCELERATION, REGULARIZATION_RANGE, TOLERANCE_RANGE
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.reductions import is_linear, is_planar, turn_loading_to_x
 from reference.problem.scene import require_scene
@@ -31,7 +31,7 @@ from reference.solver.system import (
     Array,
     RunSettings,
     System,
-    pack,
+    pack_scene,
 )
 from reference.support.arguments import check_choice, check_number
 
@@ -240,14 +240,14 @@ def prepare_run(
     """Return the compiled scene and the settings of its runs from arguments of `amplification`. Raises ValueError."""
     check_choice("equations", equations, ("exact", "small"))
     check_choice("rest_condition", rest_condition, ("consistent", "printed"))
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     if regularization is not None:
-        regularization = check_number("regularization", regularization, REGULARIZATION)
+        regularization = check_number("regularization", regularization, REGULARIZATION_RANGE)
     if cutoff is not None:
-        cutoff = check_number("cutoff", cutoff, CUTOFF)
+        cutoff = check_number("cutoff", cutoff, CUTOFF_RANGE)
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
-    system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
+    system = pack_scene(scene, equations == "small", regularization, rest_condition == "printed", axes)
     period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
     vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MAX_VIBRATION_STEPS)
     with np.errstate(over="ignore"):  # loads_are_finite refuses infinite loads

@@ -19,7 +19,7 @@ import pytest
 from hypothesis import settings
 from numba.core.dispatcher import Dispatcher
 
-from comparison.runner.processes import count_cores, one_thread_each
+from comparison.runner.processes import count_cores, limit_child_threads
 
 try:
     import fcntl
@@ -44,7 +44,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("new" if config.getoption("markexpr") == "long" else "same")
     config.option.loadscopereorder = False  # of xdist: pytest_collection_modifyitems orders the files
-    one_thread_each()  # more of them would wait for each other
+    limit_child_threads()  # more of them would wait for each other
     if hasattr(config, "workerinput"):  # one of several processes
         compile_in_turn()
 

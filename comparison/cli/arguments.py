@@ -17,21 +17,21 @@ from typing import Concatenate, ParamSpec, TypeVar
 from comparison.runner.attempts import attempt
 from comparison.runner.cache import Cache
 from comparison.runner.processes import count_cores
-from comparison.runner.task import BATCH, RESULT
+from comparison.runner.task import BATCH_KIND, RESULT_KIND
 from reference.problem import SceneError
 from reference.problem.families import BOUND_FACTOR
 from reference.support.command import OneLineParser, UsageError
 
-Rest = ParamSpec("Rest")
+Parameters = ParamSpec("Parameters")
 Value = TypeVar("Value", int, float)
 
 BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest
-# Help of --out where a command writes nothing else into the folder
-STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"
+# help text of --out for commands that write only stored results
+STORED_RESULTS_HELP = "report whose stored results, in DIR.tiles, are used and added to"
 
 
 class EndedEarlyError(RuntimeError):
-    """A command that ended with `code` before its work was done. `str(error)` is one line that says why."""
+    """Error that ends a command with `code` before its work is done; `str(error)` is one line that says why."""
 
     def __init__(self, code: int, line: str) -> None:
         super().__init__(line)
@@ -39,24 +39,24 @@ class EndedEarlyError(RuntimeError):
 
 
 class CommandParser(OneLineParser):
-    """The parser of a command, with the options that commands share."""
+    """Parser of a command with the options that commands share."""
 
     def __init__(self, command: str, description: str) -> None:
-        super().__init__(" ".join(invocation(command)), description)
+        super().__init__(" ".join(list_starting_words(command)), description)
 
     def add_scenes(self, default: str) -> None:
-        """Names of scenes; default: what is taken without any, in words."""
+        """Add the names of scenes; default: scenes used if none is given, in words."""
         help_text = f"TOML files or built-in names (default: {default})"
         self.add_argument("scenes", nargs="*", metavar="SCENE", help=help_text)
 
     def add_out(self, content: str, default: str = "report") -> None:
-        """The folder that the command writes into; content: what goes there, in words."""
+        """Add the folder that the command writes into; content: the files in it, in words."""
         self.add_argument(
             "--out", default=Path(default), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
         )
 
     def add_bounds(self) -> None:
-        """Add the option that makes both bounds of every scene."""
+        """Add the option that computes each scene at both bounds of friction."""
         self.add_argument(
             "--bounds",
             nargs=2,
@@ -66,7 +66,7 @@ class CommandParser(OneLineParser):
         )
 
     def add_computing(self) -> None:
-        """Add the options that say where to compute, and whether to compute anew what is stored."""
+        """Add the options for workers, cluster and recomputation."""
         self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {count_cores()})")
         self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
         self.add_argument(
@@ -76,8 +76,8 @@ class CommandParser(OneLineParser):
         )
 
 
-def number_of_jobs(options: argparse.Namespace) -> int:
-    """Number of worker processes that `--jobs` asks for. Raises SceneError."""
+def read_number_of_jobs(options: argparse.Namespace) -> int:
+    """Return the number of worker processes that `--jobs` asks for. Raises SceneError."""
     if options.scheduler is not None and options.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", options.jobs, rule)
@@ -85,7 +85,7 @@ def number_of_jobs(options: argparse.Namespace) -> int:
 
 
 def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
-    """Factors of friction that `--bounds` asks for, None without. Raises SceneError."""
+    """Return the factors of friction that `--bounds` asks for, None without. Raises SceneError."""
     if options.bounds is None:
         return None
     low, high = (read_number("--bounds", text, *BOUND_FACTORS, "factors of friction") for text in options.bounds)
@@ -95,12 +95,12 @@ def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
 
 
 def read_whole_number(option: str, text: str, least: int, most: int) -> int:
-    """The value of an option that takes a whole number. Raises SceneError."""
+    """Return the value of an option that takes a whole number. Raises SceneError."""
     return _refuse_beyond(option, text, int, least, most, f"must be a whole number from {least} to {most}")
 
 
 def read_number(option: str, text: str, least: float, most: float, unit: str) -> float:
-    """The value of an option that takes a number. Raises SceneError."""
+    """Return the value of an option that takes a number. Raises SceneError."""
     return _refuse_beyond(option, text, float, least, most, f"must be a number from {least:g} to {most:g}, {unit}")
 
 
@@ -109,7 +109,7 @@ def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most
         value = kind(text)
     except ValueError:
         raise SceneError("command line", option, text, rule) from None
-    if not least <= value <= most:  # also NaN
+    if not least <= value <= most:  # a comparison that NaN fails, too
         raise SceneError("command line", option, value, rule)
     return value
 
@@ -137,11 +137,11 @@ def write_and_show(folder: Path, write: Callable[[], list[Path]], show: Callable
         attempt("results", show)
 
 
-def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[..., int]:
-    """Give a command its exit codes 2, 3, 4 and 128 + signal, and its words where a program gives none."""
+def command(main: Callable[Concatenate[Sequence[str], Parameters], int]) -> Callable[..., int]:
+    """Wrap the main function of a command: it returns exit code 2, 3, 4 or 128 + signal, and reads the words itself."""
 
     @wraps(main)
-    def run_to_exit_code(argv: Sequence[str] | None = None, *args: Rest.args, **kwargs: Rest.kwargs) -> int:
+    def run_to_exit_code(argv: Sequence[str] | None = None, *args: Parameters.args, **kwargs: Parameters.kwargs) -> int:
         try:
             return main(sys.argv[1:] if argv is None else list(argv), *args, **kwargs)
         except (SceneError, UsageError) as error:
@@ -154,23 +154,23 @@ def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[.
     return run_to_exit_code
 
 
-def invocation(command: str) -> list[str]:
+def list_starting_words(command: str) -> list[str]:
     """Return the words that start a command; the study has `python -m` unless the console script started it."""
     script = ["phase-resonance", command]
     by_script = command != "run" or sys.argv[0] == " ".join(script)
     return script if by_script else ["python", "-m", f"comparison.{command}"]
 
 
-def command_line(words: Sequence[str], command: str = "run") -> str:
-    """A command as it is typed: its name, and the words after it."""
-    return shlex.join([*invocation(command), *words])
+def format_command_line(words: Sequence[str], command: str = "run") -> str:
+    """Return a command as a user types it: its name, and the words after it."""
+    return shlex.join([*list_starting_words(command), *words])
 
 
 def edit_command_line(
     words: Sequence[str], added: Sequence[str] = (), flags: Collection[str] = (), options: Collection[str] = ()
 ) -> list[str]:
     """
-    The words of a command line with other options. What stands behind "--" is no option and stays.
+    Return the words of a command line with other options; words after "--" are no options and stay.
 
     flags, options: names to leave out, of options without a value and with one.
 
@@ -190,12 +190,12 @@ def edit_command_line(
     return [*kept, *added, *words[end:]]
 
 
-def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return how much is kept where, and the command for the rest; batches: number of those of a study."""
+def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
+    """Return where the finished results are kept, and the command for the rest; batches: their number in a study."""
     rest = edit_command_line(words, flags=["--fresh"])
-    tasks = cache.kept[RESULT]
+    tasks = cache.kept[RESULT_KIND]
     if batches is None:
         kept = f"{tasks} results are"
     else:
-        kept = f"{cache.kept[BATCH]} of {batches} batches{f' and {tasks} analyses' if tasks else ''} are"
-    return f"{kept} kept in {str(cache.folder)!r}; go on with: {command_line(rest, command)}"
+        kept = f"{cache.kept[BATCH_KIND]} of {batches} batches{f' and {tasks} analyses' if tasks else ''} are"
+    return f"{kept} kept in {str(cache.folder)!r}; go on with: {format_command_line(rest, command)}"

@@ -1,4 +1,4 @@
-"""What the terminal says after a run: one table, what to beware of, the sentences of the page, what to do next."""
+"""Terminal output after a run: one table, warnings, the sentences of the page, and the next commands."""
 
 import math
 import shlex
@@ -8,9 +8,9 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import command_line, edit_command_line
+from comparison.cli.arguments import edit_command_line, format_command_line
 from comparison.cli.options import Options
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import make_table
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.study.levels import StudyLevel
@@ -20,9 +20,9 @@ from comparison.wording import percent, signed
 from reference.problem import Scene, builtin_scenes, example_scenes
 from reference.support.arguments import name_some
 
-FIRST_SENTENCES = 8  # sentences that the terminal shows after a level
-FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
-LABELS = {
+FIRST_SENTENCES = 8  # largest number of sentences that the terminal shows after a level
+FILMED_MODELS = ("translational", "spatial")  # keys of the models that multibody.animate can film
+ALERT_LABELS = {
     "refused": "No answer",
     "limit": "Limit broken",
     "lacking": "Values missing",
@@ -32,14 +32,14 @@ LABELS = {
 }
 
 
-def print_faults(results: Results) -> None:
-    """On standard error: what solvers reported."""
+def print_solver_messages(results: Results) -> None:
+    """Print on standard error what the solvers reported."""
     for line in results.faults:
-        print(f"{LABELS['fault']}: {line}", file=sys.stderr)
+        print(f"{ALERT_LABELS['fault']}: {line}", file=sys.stderr)
 
 
 def print_check(results: Results, scenes: Sequence[Scene]) -> None:
-    """On standard error, as the last lines of a run with --check: broken limits, and what has no limit."""
+    """Print on standard error, as the last lines of a run with --check, broken limits and comparisons without one."""
     lines = [f"--check: {line}" for line in word_demands_elsewhere(scenes)]
     lines += [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
     rest = word_unchecked(results.unchecked)
@@ -47,13 +47,13 @@ def print_check(results: Results, scenes: Sequence[Scene]) -> None:
         lines.append("--check: no scene states [acceptance] limits: nothing was checked")
     elif rest:
         lines.append(f"--check: {rest}")
-    sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
+    sys.stdout.flush()  # In a file that takes both outputs these lines come last, too.
     for line in lines:
         print(line, file=sys.stderr)
 
 
 def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
-    """Return a line that says where limits on demands are checked; none without such limits."""
+    """Return a line with the command that checks limits on demands; none without such limits."""
     stated = [scene.name for scene in scenes if scene.acceptance.demands is not None]
     if not stated:
         return []
@@ -61,26 +61,27 @@ def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
 
 
 def print_closing(console: Console, results: Results, options: Options, words: Sequence[str], report: Path) -> None:
-    """The last lines of a run."""
+    """Print the last lines of a run."""
     _print_differences(console, results)
-    console.print(f"The run took {results.run.took}.", soft_wrap=True)
+    console.print(f"The run took {results.run.word_run_times}.", soft_wrap=True)
     on_stderr = ("fault", "limit") if options.check else ("fault",)
     for alert in (alert for alert in results.alerts if alert.kind not in on_stderr):
         color = "red" if alert.level == "red" else "yellow"
-        console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
+        console.print(f"{ALERT_LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
     for headline in (headline for scene in results.scenes for headline in scene.headlines):
         console.print(headline.sentence, soft_wrap=True)
-    if results.clauses:
+    if results.measurement_clauses:
         console.print(f"{results.measurements}.", soft_wrap=True)
-    console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
+    # No line break inside the path, so that a user can copy it
+    console.print(f"Report: {report / 'index.html'}", soft_wrap=True)
     if results.run.level < results.run.levels:
         console.print(f"This is level {results.run.level} of {results.run.levels}: the same command goes on with it.")
-    for line in next_commands(results, words):
+    for line in word_next_commands(results, words):
         console.print(line, soft_wrap=True)
 
 
 def print_level(console: Console, results: Results, before: Results | None, level: StudyLevel, report: Path) -> None:
-    """Print what there is after a level that is not the last: the place of its report, and its first new sentences."""
+    """Print the place of the report of a level that is not the last, and its first new sentences."""
     console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
     known = set(_headline_sentences(before)) if before else set()
     sentences = [sentence for sentence in _headline_sentences(results) if sentence not in known]
@@ -94,34 +95,36 @@ def _headline_sentences(results: Results) -> list[str]:
     return [headline.sentence for scene in results.scenes for headline in scene.headlines]
 
 
-def next_commands(results: Results, words: Sequence[str]) -> list[str]:
-    """Return what to type next: a film of the largest difference, and what a finer grid would cost."""
+def word_next_commands(results: Results, words: Sequence[str]) -> list[str]:
+    """Return the next commands: a film of the largest difference, and a finer grid with its cost."""
     lines = []
     filmed = [
         (headline, source)
         for scene in results.phased
-        if (source := _source_of_scene(scene, words))
+        if (source := _find_source(scene, words))
         for headline in scene.headlines
-        if headline.maximum_model in FILMED and math.isfinite(headline.maximum)
+        if headline.maximum_model in FILMED_MODELS and math.isfinite(headline.maximum)
     ]
     if filmed:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film_command(largest, source)}")
     if results.phased and not any(word.startswith("--budget") for word in words):
-        finer = command_line(edit_command_line(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
+        finer = format_command_line(
+            edit_command_line(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"])
+        )
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
 
 
 def _film_command(headline: Headline, source: str) -> str:
     phases = " ".join(f"{phase:.4f}" for phase in headline.maximum_phases)
-    source = f"./{source}" if source.startswith("-") else source  # else it is read as an option
+    source = f"./{source}" if source.startswith("-") else source  # A leading hyphen would make it an option.
     return f"python -m multibody.animate {shlex.quote(source)} --phases {phases} --model {headline.maximum_model}"
 
 
-def _source_of_scene(scene: SceneResult, words: Sequence[str]) -> str:
+def _find_source(scene: SceneResult, words: Sequence[str]) -> str:
     """
-    Return how the scene is named on a command line, "" for one of a family and one whose loading the command changed.
+    Return the scene's name on a command line, "" for a member of a family or a loading changed by the command.
     """
     if any(word.startswith("--amplitude") for word in words):
         return ""
@@ -131,13 +134,13 @@ def _source_of_scene(scene: SceneResult, words: Sequence[str]) -> str:
 
 
 def _print_differences(console: Console, results: Results) -> None:
-    """Mean with its spread, maximum size, and the points not ok, for every scene, body and pair."""
+    """Print mean with spread, largest size, and the points not ok, for every scene, body and pair."""
     rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
     if not rows:
         return
     over = " over the phases: mean and standard deviation with sign, maximum of the size"
     console.print(f"Relative differences{over if results.phased else ''}, per body:", soft_wrap=True)
-    table = new_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
+    table = make_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
     for row in rows:
         cells = (signed(row.mean), *(percent(size) for size in (row.spread, row.maximum)))
         table.add_row(row.scene, str(row.body), row.pair.replace("-", " "), *cells, str(row.not_ok))

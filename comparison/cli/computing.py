@@ -1,5 +1,5 @@
 """
-How the commands that compute tasks do it: stored results first, the others on the workers that the options name.
+Computation of the tasks of commands: stored results first, the others on the workers that the options name.
 
 Every result is stored as it arrives, in DIR.tiles next to `--out DIR`, so that the same command goes on where it
 stopped.
@@ -16,29 +16,35 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.cli.arguments import EndedEarlyError, command_line, edit_command_line, number_of_jobs, resume_hint
+from comparison.cli.arguments import (
+    EndedEarlyError,
+    edit_command_line,
+    format_command_line,
+    read_number_of_jobs,
+    word_resume_hint,
+)
 from comparison.runner.cache import Cache, StoreError, locate_store, refuse_foreign_store
 from comparison.runner.dask import connect_cluster
 from comparison.runner.environment import describe_provenance
 from comparison.runner.output import resolve_destination
-from comparison.runner.processes import ExecutorLostError, Pool, process_pool
+from comparison.runner.processes import ExecutorLostError, Pool, make_process_pool
 from comparison.runner.progress import Display, show_progress
-from comparison.runner.runner import Runner, compiling_task
+from comparison.runner.runner import Runner, make_compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 
 
-def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
+def collect_run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
     """
-    Return what is known of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON
+    Return the facts of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON
     file.
     """
     seconds = time.monotonic() - begin
     return {
-        "command": command_line(words, command),
+        "command": format_command_line(words, command),
         "began": (datetime.now(UTC) - timedelta(seconds=seconds)).isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
-        "jobs": number_of_jobs(options),
+        "jobs": read_number_of_jobs(options),
         "provenance": describe_provenance(),
     }
 
@@ -51,32 +57,32 @@ def compute_tasks(
     models: set[str],
     console: Console,
     executor: Pool,
-    then: Callable[[TaskResults, Display], Sequence[Task]] = lambda results, display: (),
+    add_tasks: Callable[[TaskResults, Display], Sequence[Task]] = lambda results, display: (),
 ) -> TaskResults:
     """
-    The results of all tasks of a command: stored ones, and others computed. Raises SceneError, EndedEarlyError.
+    Return the results of all tasks of a command, stored or computed. Raises SceneError, EndedEarlyError.
 
     then: returns the tasks that follow from the results of the others.
     """
-    width = number_of_jobs(options)
+    width = read_number_of_jobs(options)
     out = resolve_destination(options.out)
     refuse_foreign_store(out)
     cache = Cache(locate_store(out))
     if options.fresh:
         cache.remove(task.key for task in tasks)
     results = TaskResults(cache)
-    missing = results.missing(tasks)
+    missing = results.find_missing(tasks)
     if stored := len(tasks) - len(missing):
         line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."
-        console.print(line, soft_wrap=True)  # a path is copied whole
-    hint = partial(resume_hint, cache, command=command)
+        console.print(line, soft_wrap=True)  # no line break inside the path, so that a user can copy it
+    hint = partial(word_resume_hint, cache, command=command)
     with (
         open_workers(width, options.scheduler, models, executor, words, hint) as (count, pool),
         show_progress(console, sum(task.seconds for task in missing), count) as display,
     ):
         runner = Runner(results, count, pool, display)
-        runner.run(missing, compiling_task)
-        runner.run(then(results, display), compiling_task)
+        runner.run(missing, make_compiling_task)
+        runner.run(add_tasks(results, display), make_compiling_task)
     return results
 
 
@@ -90,7 +96,7 @@ def open_workers(
     hint: Callable[[Sequence[str]], str],
 ) -> Iterator[tuple[int, Pool]]:
     """
-    The number of workers and what runs them, for all that a command computes in the block. Raises SceneError.
+    Open the workers that a command uses in the block; yield their number and pool. Raises SceneError.
 
     Whatever ends the block early is an EndedEarlyError that says what is kept and, by `hint`, how to go on.
     """
@@ -98,8 +104,8 @@ def open_workers(
         if scheduler is not None:
             with connect_cluster(scheduler, models) as remote:
                 yield remote.width, remote
-        elif executor is process_pool:
-            with process_pool(jobs) as pool:
+        elif executor is make_process_pool:
+            with make_process_pool(jobs) as pool:
                 yield jobs, pool
         else:
             yield jobs, executor

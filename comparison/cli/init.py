@@ -12,14 +12,14 @@ from importlib.resources import files
 from pathlib import Path
 
 from comparison.cli.arguments import command, report_write_errors
-from comparison.cli.requirement import requirement_line
+from comparison.cli.requirement import make_requirement_line
 from comparison.runner.output import make_parents, refuse_unwritable, resolve_destination
 from reference.problem import SceneError
 from reference.support.command import OneLineParser
-from reference.support.files import NEW, staging_directory
+from reference.support.files import NEW_FILES_FOLDER, staging_directory
 
-PLACE = "DIRECTORY"
-TEMPLATE = {  # file of the study: file of the template
+DIRECTORY_ARGUMENT = "DIRECTORY"
+FILES_OF_TEMPLATE = {  # file of the new study, and the file of the template that it is a copy of
     ".github/workflows/study.yml": "github.yml",
     ".gitignore": "gitignore",
     ".gitlab-ci.yml": "gitlab.yml",
@@ -33,37 +33,39 @@ TEMPLATE = {  # file of the study: file of the template
 
 @command
 def main(argv: Sequence[str]) -> int:
-    """Write the study; the exit code: 0, 2 for a directory that cannot be taken, 3 if it could not be written."""
+    """Write the study; return the exit code: 0, 2 for a directory that cannot be used, 3 if writing failed."""
     parser = OneLineParser("phase-resonance init", "A directory with a study to start from.")
-    parser.add_argument("directory", metavar=PLACE, type=Path, help="a new one, or one that holds nothing but .git")
+    parser.add_argument(
+        "directory", metavar=DIRECTORY_ARGUMENT, type=Path, help="a new one, or one that holds nothing but .git"
+    )
     place = _find_free_directory(parser.parse_args(argv).directory)
-    with report_write_errors(place, PLACE):
-        write_directory(place, study_files(place.resolve().name))
+    with report_write_errors(place, DIRECTORY_ARGUMENT):
+        write_directory(place, make_study_files(place.resolve().name))
     print(f"{place}: a study to start from; README.md in it says how: change building.toml, then python study.py")
-    if " @ file:" in requirement_line():
+    if " @ file:" in make_requirement_line():
         print(
             "requirements.txt names a folder of this machine: continuous integration elsewhere needs another line there"
         )
     return 0
 
 
-def study_files(name: str) -> dict[str, bytes]:
-    """The files of a new study, by their path in its directory."""
+def make_study_files(name: str) -> dict[str, bytes]:
+    """Return the files of a new study by their path in its directory."""
     folder = files("comparison.cli") / "study_template"
-    texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in TEMPLATE.items()}
-    source = requirement_line()
+    texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in FILES_OF_TEMPLATE.items()}
+    source = make_requirement_line()
     return {
         file: text.replace("@NAME@", name).replace("@REQUIREMENT@", source).encode() for file, text in texts.items()
     }
 
 
 def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files, by path, into a directory that is not there, or empty: all of them or none. Raises OSError."""
-    inside = place.is_dir()  # it stays the same directory: it may be the one in which the command was typed
+    """Write files, by path, into a new or empty directory: all of them or none. Raises OSError."""
+    inside = place.is_dir()  # An existing directory is kept: the user may have typed the command in it.
     made = make_parents(place.parent)
     try:
-        with staging_directory(place / NEW if inside else place) as staging_folder:
-            new = staging_folder / NEW
+        with staging_directory(place / NEW_FILES_FOLDER if inside else place) as staging_folder:
+            new = staging_folder / NEW_FILES_FOLDER
             for name, content in contents.items():
                 (new / name).parent.mkdir(parents=True, exist_ok=True)
                 (new / name).write_bytes(content)
@@ -79,7 +81,7 @@ def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
 
 
 def _move_entries(source: Path, target: Path) -> None:
-    """Move all that is in a directory into another one on the same disk, or nothing. Raises OSError."""
+    """Move all entries of a directory into another one on the same disk, or none of them. Raises OSError."""
     moved: list[Path] = []
     try:
         for entry in sorted(source.iterdir()):
@@ -94,16 +96,16 @@ def _move_entries(source: Path, target: Path) -> None:
 
 
 def _find_free_directory(path: Path) -> Path:
-    """The directory that is meant. Raises SceneError, one line, if it cannot be made or has something in it."""
-    refusal = partial(SceneError, "command line", PLACE, str(path))
+    """Return the directory of the new study. Raises SceneError, one line, if it cannot be made or is not empty."""
+    refusal = partial(SceneError, "command line", DIRECTORY_ARGUMENT, str(path))
     if not str(path).isprintable():
         raise refusal("must be a name of printable characters")
-    place = resolve_destination(path, PLACE)
+    place = resolve_destination(path, DIRECTORY_ARGUMENT)
     try:
         taken = sorted({*os.listdir(place)} - {".git"}) if place.exists() else []
     except OSError as error:
         raise refusal(f"cannot be read: {error.strerror}") from None
     if taken:
         raise refusal(f"holds {taken[0]!r}: give a new directory, or one that is empty")
-    refuse_unwritable(place, place, PLACE)
+    refuse_unwritable(place, place, DIRECTORY_ARGUMENT)
     return place

@@ -1,4 +1,4 @@
-"""The command line, checked before anything is computed."""
+"""Options of the study's command line, checked before anything is computed."""
 
 import argparse
 import signal
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.cli.arguments import CommandParser, number_of_jobs, read_bounds, read_number, read_whole_number
-from comparison.cli.user_models import add_models, user_models
+from comparison.cli.arguments import CommandParser, read_bounds, read_number, read_number_of_jobs, read_whole_number
+from comparison.cli.user_models import add_models, load_user_models
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import refuse_foreign_report, resolve_destination
@@ -18,13 +18,13 @@ from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 
-TIGHTEST_TOLERANCE = 1e-8  # relative error of mu
-DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have a `most` of their own
+MIN_TOLERANCE = 1e-8  # smallest relative error of mu that can be asked for
+DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have at most their own `most`
 
 
 @dataclass(frozen=True)
 class Options:
-    """Valid options of the command line."""
+    """Checked options of the command line."""
 
     families: tuple[Family, ...]
     grid: int
@@ -43,12 +43,12 @@ class Options:
 
     @property
     def scenes(self) -> tuple[Scene, ...]:
-        """Every scene of every family, in order."""
+        """Return every scene of every family, in order."""
         return tuple(scene for family in self.families for scene in family.scenes)
 
 
 def parse_options(argv: Sequence[str]) -> Options:
-    """Options of `python -m comparison.run`, all checked. Raises SceneError, UsageError."""
+    """Return the checked options of `python -m comparison.run`. Raises SceneError, UsageError."""
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = _read_optional_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
@@ -58,8 +58,8 @@ def parse_options(argv: Sequence[str]) -> Options:
         families=families,
         grid=DEFAULT_GRID if words.grid is None else read_whole_number("--grid", words.grid, 2, 512),
         out=resolve_destination(words.out),
-        jobs=number_of_jobs(words),
-        tolerance=_read_optional_number("--tolerance", words.tolerance, TIGHTEST_TOLERANCE, 0.1, "relative error of mu")
+        jobs=read_number_of_jobs(words),
+        tolerance=_read_optional_number("--tolerance", words.tolerance, MIN_TOLERANCE, 0.1, "relative error of mu")
         or STUDY_TOLERANCE,
         budget=_read_optional_number("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
         check=words.check,
@@ -69,14 +69,14 @@ def parse_options(argv: Sequence[str]) -> Options:
         max_work=_read_optional_number("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
         scheduler=words.scheduler,
         selection=selection,
-        models=user_models(words.model, words.model_limit, words.scheduler),
+        models=load_user_models(words.model, words.model_limit, words.scheduler),
     )
     _refuse_contradictions(options, names)
     return options
 
 
 def _refuse_contradictions(options: Options, sources: Sequence[str]) -> None:
-    """Refuse options that do not fit together, to the system or to the folder of the report. Raises SceneError."""
+    """Refuse options that contradict each other, the system or the folder of the report. Raises SceneError."""
     if options.check:
         _refuse_limits_of_no_engine(options.scenes, [model.key for model in options.models])
     loaded = list(zip(sources, options.families))
@@ -89,7 +89,7 @@ def _refuse_contradictions(options: Options, sources: Sequence[str]) -> None:
 
 
 def _refuse_unusable_folder(out: Path) -> None:
-    """Refuse a folder that keeps the report from being written or shown. Raises SceneError."""
+    """Refuse a folder in which the report cannot be written or shown. Raises SceneError."""
     try:
         for field in (field for feature in FEATURES for field in feature.stored):
             assert field.load is not None
@@ -158,7 +158,7 @@ def _parser() -> CommandParser:
 
 
 def _read_selection(words: argparse.Namespace, families: Sequence[Family]) -> Selection:
-    """The analyses that --only, --skip and --also leave of every scene. Raises SceneError."""
+    """Return the analyses that --only, --skip and --also select for every scene. Raises SceneError."""
     only, skip, also = (_read_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
@@ -166,7 +166,7 @@ def _read_selection(words: argparse.Namespace, families: Sequence[Family]) -> Se
 
 
 def _read_analyses(option: str, text: str | None) -> list[str] | None:
-    """The analyses that an option lists, separated by commas."""
+    """Return the analyses that an option lists, separated by commas."""
     if text is None:
         return None
     names = [name.strip() for name in text.split(",")]

@@ -1,4 +1,4 @@
-"""The reports of a run: one after each level, each in the place of the one before."""
+"""Reports of a run: one after each level, which replaces the one before."""
 
 import time
 from collections.abc import Sequence
@@ -10,54 +10,54 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.cli.arguments import command_line, report_write_errors
+from comparison.cli.arguments import format_command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
+from comparison.registry import FEATURES, list_first_tasks, make_report, select_analyses
 from comparison.report.feature import ResultField
 from comparison.report.results import Results
 from comparison.report.section import Report
 from comparison.runner.attempts import LostParts
 from comparison.runner.environment import describe_provenance
-from comparison.runner.output import on_stderr, replace_report
-from comparison.runner.runner import Runner, compiling_task
+from comparison.runner.output import print_on_stderr, replace_report
+from comparison.runner.runner import Runner, make_compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import StudyLevel
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
-from comparison.surfaces.missing_values import study_of_results
-from comparison.surfaces.surfaces import batch_results, label_surfaces, surface_tasks
+from comparison.surfaces.missing_values import leave_out_empty_models
+from comparison.surfaces.surfaces import collect_batch_results, label_surfaces, make_surface_tasks
 
-PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last
+MIN_REPORT_INTERVAL = 3.0  # s, shortest time between two reports; the last level always gets one
 
 
 @dataclass(frozen=True)
 class CompleteLevel:
-    """A level of which everything is computed: its study knows which models have no value, its surfaces are labeled."""
+    """A level that is completely computed, with its study, labeled surfaces, and models without values left out."""
 
     level: StudyLevel
     study: Study
-    tasks: Sequence[Task]  # those of the surfaces
+    tasks: Sequence[Task]  # tasks of the surfaces
     surfaces: xr.Dataset
 
 
 def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
-    """Compute what a level still lacks: its surfaces and the analyses that need none, then what the surfaces choose."""
+    """Compute what a level lacks: surfaces and analyses without need of them, then those that the surfaces choose."""
     analyses = select_analyses(level.study)
-    tasks = surface_tasks(level.study)
-    runner.run([*tasks, *first_tasks(level.study, analyses)], compiling_task)
+    tasks = make_surface_tasks(level.study)
+    runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
     batches = [task.argument for task in tasks]
-    surfaces = label_surfaces(level.study, batches, batch_results(tasks, runner.results))
-    study = study_of_results(level.study, surfaces)
+    surfaces = label_surfaces(level.study, batches, collect_batch_results(tasks, runner.results))
+    study = leave_out_empty_models(level.study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
-    runner.run([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
+    runner.run([task for each in later for task in each.tasks(study.restrict_to(each.key), surfaces)])
     return CompleteLevel(level, study, tasks, surfaces)
 
 
-class Reports:
+class ReportWriter:
     """
-    Writes the reports of a run.
+    Writer of the reports of a run.
 
     jobs: workers. began: when the run began. place: where the reports are: next to the folder of the options if that
     holds something else. results: what the last one says; None before the first. level: whose report it is. seconds:
@@ -74,14 +74,14 @@ class Reports:
 
     def is_due(self, complete: CompleteLevel, runner: Runner) -> bool:
         """
-        Return whether a level gets a report although others follow: not where an earlier run has computed all of it.
+        Return whether a level before the last gets a report: not if an earlier run has computed it completely.
         """
         new = any(task.key not in runner.results.stored for task in complete.tasks)
-        return new and time.monotonic() - self._last >= PATIENCE
+        return new and time.monotonic() - self._last >= MIN_REPORT_INTERVAL
 
     def write(self, complete: CompleteLevel, runner: Runner) -> Results:
         """Write the report of a level."""
-        from comparison.report.writing import write_report  # plotting: not needed to refuse or to plan
+        from comparison.report.writing import write_report  # Plotting libraries are not needed to refuse or to plan.
 
         begin = time.monotonic()
         report = self._report(complete, runner)
@@ -102,8 +102,8 @@ class Reports:
         unfinished = []
         for analysis in select_analyses(whole):
             if analysis.key in later:
-                tasks = analysis.tasks(whole.selecting(analysis.key), complete.surfaces)
-                if not tasks or runner.results.missing(tasks):
+                tasks = analysis.tasks(whole.restrict_to(analysis.key), complete.surfaces)
+                if not tasks or runner.results.find_missing(tasks):
                     unfinished.append(analysis.key)
         if self.level is not complete.level or set(unfinished) != set(later):
             study = replace(complete.study, selection=whole.selection.without(unfinished))
@@ -113,7 +113,7 @@ class Reports:
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {
-            "command": command_line(self._words),
+            "command": format_command_line(self._words),
             "began": (datetime.now(UTC) - timedelta(seconds=took.wall)).isoformat(timespec="seconds"),
             "wall_seconds": round(took.wall, 1),
             "processor_seconds": round(took.processor, 1),
@@ -132,30 +132,30 @@ class Reports:
         lost = LostParts()
         found: dict[str, Any] = {}
         for analysis in select_analyses(study):
-            collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
+            collect = partial(analysis.collect, study.restrict_to(analysis.key), surfaces, runner.results)
             found[analysis.key] = lost.attempt(f"section {analysis.key}", collect)
         fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
         found |= {field.name: _load_stored(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
-        faults = _list_faults(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, families=families, lost=lost.lines)
+        faults = _list_solver_messages(complete.tasks, runner.results)
+        return make_report(study, surfaces, found, faults, run, families=families, lost=lost.lines)
 
 
-def _list_faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
+def _list_solver_messages(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
     """Return what solvers reported, once for each scene, model and message."""
     texts = {
         (task.argument.scene.name, f"{task.stage}: {result.error_message}")
-        for task, result in zip(tasks, batch_results(tasks, results))
+        for task, result in zip(tasks, collect_batch_results(tasks, results))
         if result.error_message
     }
     return [Alert(level="amber", kind="fault", scene=scene, text=text, help="") for scene, text in sorted(texts)]
 
 
 def _load_stored(field: ResultField[Any], out: Path) -> Any:
-    """Return what another command left next to the report; None for a file that has come since and cannot be read."""
+    """Return what another command stored next to the report; None if the file has become unreadable since."""
     assert field.load is not None
     try:
         return field.load(out)
     except (OSError, ValueError) as error:
-        on_stderr(str(error))
+        print_on_stderr(str(error))
         return None

@@ -1,4 +1,4 @@
-"""Where pip finds the very version that runs here, for machines that have not installed it."""
+"""Requirement line by which pip on other machines finds the very version that runs here."""
 
 import json
 import re
@@ -12,39 +12,39 @@ from urllib.request import url2pathname
 from comparison.runner.environment import ask_git
 from reference.support.version import __version__
 
-NAME = "phase-resonance"
-CHECKOUT = Path(__file__).resolve().parents[2]
-BY_SSH = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # as git writes an address: user@host:path
-REMOTE = ("https", "http", "ssh", "git")
+PACKAGE_NAME = "phase-resonance"
+CHECKOUT_FOLDER = Path(__file__).resolve().parents[2]
+SSH_ADDRESS = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # address as git writes it: user@host:path
+REMOTE_SCHEMES = ("https", "http", "ssh", "git")
 
 
-def requirement_line() -> str:
-    """A line of requirements.txt: the address that pip recorded, a commit that others reach, a folder or a version."""
-    about = _pip_record()
+def make_requirement_line() -> str:
+    """Return a line of requirements.txt: recorded address, commit that others can fetch, folder or version."""
+    about = _read_pip_record()
     url = str(about.get("url", ""))
     if "vcs_info" in about:
-        address = f"{about['vcs_info']['vcs']}+{_without_password(url)}@{about['vcs_info']['commit_id']}"
+        address = f"{about['vcs_info']['vcs']}+{_remove_password(url)}@{about['vcs_info']['commit_id']}"
     elif url and "dir_info" not in about:
-        address = _without_password(url)
-    elif url or (CHECKOUT / "pyproject.toml").is_file():
-        folder = Path(url2pathname(urlsplit(url).path)) if url else CHECKOUT
-        address = _commit_elsewhere(folder) or folder.as_uri()
+        address = _remove_password(url)
+    elif url or (CHECKOUT_FOLDER / "pyproject.toml").is_file():
+        folder = Path(url2pathname(urlsplit(url).path)) if url else CHECKOUT_FOLDER
+        address = _find_published_commit(folder) or folder.as_uri()
     else:
-        return f"{NAME}=={__version__}"
-    return f"{NAME} @ {address}"
+        return f"{PACKAGE_NAME}=={__version__}"
+    return f"{PACKAGE_NAME} @ {address}"
 
 
-def _pip_record() -> dict[str, Any]:
-    """Return what pip has recorded of the place from which it installed the package (PEP 610); empty for an index."""
+def _read_pip_record() -> dict[str, Any]:
+    """Return pip's record of the address from which it installed the package (PEP 610); empty for an index."""
     try:
-        about: dict[str, Any] = json.loads(distribution(NAME).read_text("direct_url.json") or "{}")
+        about: dict[str, Any] = json.loads(distribution(PACKAGE_NAME).read_text("direct_url.json") or "{}")
     except PackageNotFoundError:
         return {}
     return about
 
 
-def _commit_elsewhere(folder: Path) -> str:
-    """Return where others find the commit of a checkout; empty if nobody does."""
+def _find_published_commit(folder: Path) -> str:
+    """Return the address where others can fetch the commit of a checkout; "" if nobody can."""
     try:
         commit = ask_git(folder, "rev-parse", "HEAD")
         if not ask_git(folder, "branch", "--remotes", "--contains", commit):
@@ -52,12 +52,12 @@ def _commit_elsewhere(folder: Path) -> str:
         url = ask_git(folder, "remote", "get-url", "origin")
     except (OSError, subprocess.CalledProcessError):
         return ""
-    if match := BY_SSH.fullmatch(url):
+    if match := SSH_ADDRESS.fullmatch(url):
         url = f"ssh://{match[1]}/{match[2]}"
-    return f"git+{_without_password(url)}@{commit}" if urlsplit(url).scheme in REMOTE else ""
+    return f"git+{_remove_password(url)}@{commit}" if urlsplit(url).scheme in REMOTE_SCHEMES else ""
 
 
-def _without_password(url: str) -> str:
+def _remove_password(url: str) -> str:
     parts = urlsplit(url)
     user, at, host = parts.netloc.rpartition("@")
     kept = f"{user.partition(':')[0]}@{host}" if at and parts.scheme == "ssh" else host

@@ -1,5 +1,5 @@
 """
-How every command starts: Ctrl-C ends it without a traceback, also while modules load.
+Start of every command: Ctrl-C ends it without a traceback, also while modules load.
 
 The console script `phase-resonance NAME` starts every command, and `python -m comparison.run` the study. The script
 does not look for modules in the working directory, where a file `reference.py` of the user would be taken for this
@@ -21,61 +21,61 @@ from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-SCRIPT = "phase-resonance"
-# thresholds of the garbage collector: imports stay, and looking through them again takes a tenth of a command that only
-# reads stored results
-COLLECTIONS = 50_000, 20, 100
+SCRIPT_NAME = "phase-resonance"
+# Thresholds of the garbage collector: imported objects stay, and checking them again takes a tenth of a command
+# that only reads stored results.
+COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
-PACKAGE = Path(__file__).parents[1]  # comparison
+PACKAGE_FOLDER = Path(__file__).parents[1]  # the folder comparison/
 
 
 class Command(NamedTuple):
-    """A command: the module whose `main` it is, and what it does."""
+    """A command: the module that has its `main`, and its purpose."""
 
     module: str
     purpose: str
 
 
-COMMANDS = {  # those that belong to no feature
+COMMANDS = {  # commands that belong to no feature
     "run": Command("comparison.run", "compare the equations with Exudyn and write the report"),
     "init": Command("comparison.cli.init", "a directory with a study to start from"),
     "animate": Command("multibody.animate", "a film of the motion"),
 }
 
 
-def commands() -> dict[str, Command]:
+def list_commands() -> dict[str, Command]:
     """Return all commands by name: those of no feature, then each `command.py` in the folder of a feature."""
     found = dict(COMMANDS)
-    for file in sorted(PACKAGE.glob("*/*/command.py"), key=lambda file: file.parent.name):
-        folder = ".".join(file.parent.relative_to(PACKAGE.parent).parts)
-        found[file.parent.name] = Command(f"{folder}.command", _purpose_of_package(folder))
+    for file in sorted(PACKAGE_FOLDER.glob("*/*/command.py"), key=lambda file: file.parent.name):
+        folder = ".".join(file.parent.relative_to(PACKAGE_FOLDER.parent).parts)
+        found[file.parent.name] = Command(f"{folder}.command", _read_purpose(folder))
     return found
 
 
-def _purpose_of_package(package: str) -> str:
-    """Return the first sentence of a package, as the help lists it."""
+def _read_purpose(package: str) -> str:
+    """Return the first sentence of a package's docstring in the form that the help lists."""
     text = import_module(package).__doc__ or ""
     return f"{text[:1].lower()}{text[1:].strip().rstrip('.')}"
 
 
 class Clock(NamedTuple):
-    """An instant: wall time, and processor time of this process and its children, s; on Linux also of running ones."""
+    """Wall time and processor time of this process and its children at an instant, s; on Linux also of running ones."""
 
     wall: float
     processor: float
 
     @classmethod
     def now(cls) -> Clock:
-        """This instant."""
-        return cls(time.monotonic(), sum(os.times()[:4]) + _processor_time_of_children())
+        """Return the times at this instant."""
+        return cls(time.monotonic(), sum(os.times()[:4]) + _read_processor_time_of_children())
 
     def since(self, earlier: Clock) -> Clock:
-        """The times that have passed since another instant."""
+        """Return the times that have passed since another instant."""
         return Clock(self.wall - earlier.wall, self.processor - earlier.processor)
 
 
-def _processor_time_of_children() -> float:
-    """Processor time of the worker processes that run, s; 0 where the system does not tell."""
+def _read_processor_time_of_children() -> float:
+    """Return the processor time of running worker processes, s; 0 if the system does not report it."""
     seconds = 0.0
     for child in sys.modules["multiprocessing"].active_children() if "multiprocessing" in sys.modules else ():
         with suppress(OSError):
@@ -87,33 +87,33 @@ def _processor_time_of_children() -> float:
 _started: list[Clock] = []
 
 
-def command_start() -> Clock:
-    """When the command of this process started, before its modules were loaded; now where a program calls it."""
+def find_command_start() -> Clock:
+    """Return when this process's command started, before its modules were loaded; now if a program calls it."""
     return _started.pop() if _started else Clock.now()
 
 
 def run_command(module: str) -> NoReturn:
     """Import a command by its full name, run its `main` and end the process with its exit code."""
     _started.append(Clock.now())
-    gc.set_threshold(*COLLECTIONS)
+    gc.set_threshold(*COLLECTOR_THRESHOLDS)
     _refuse_threads()
-    if not sys.warnoptions:  # warnings of libraries: a sentence says what a user must know
+    if not sys.warnoptions:  # Hide warnings of libraries: this program reports what a user must know itself.
         warnings.simplefilter("ignore")
-        os.environ.setdefault("PYTHONWARNINGS", "ignore")  # in worker processes
-    sys.modules["__main__"].__spec__ = __spec__  # worker processes import this module again, not the command
+        os.environ.setdefault("PYTHONWARNINGS", "ignore")  # hide them in worker processes as well
+    sys.modules["__main__"].__spec__ = __spec__  # Worker processes import this module again instead of the command.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         main = import_module(module).main
     except ImportError as error:
-        print(f"{SCRIPT} cannot start: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"{SCRIPT_NAME} cannot start: {' '.join(str(error).split())}", file=sys.stderr)
         raise SystemExit(3) from None
     import_module("reference.support.command").run_command(main)
     raise AssertionError("run_command ends the process")
 
 
 def _refuse_threads() -> None:
-    """End the process, one line, where Numba would fail while it loads."""
+    """End the process with one line where Numba would fail while it loads."""
     threads = os.environ.get("NUMBA_NUM_THREADS")
     if threads is not None and not (threads.isascii() and threads.isdigit() and int(threads) > 0):
         rule = "must be a whole number from 1: correct this environment variable, or remove it"
@@ -124,18 +124,21 @@ def _refuse_threads() -> None:
 def main() -> NoReturn:
     """Run the console script: its first word is the command, the others are for the command."""
     name = sys.argv[1] if len(sys.argv) > 1 else "help"
-    known = commands()
+    known = list_commands()
     if name in ("-h", "--help", "help"):
-        print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options; {SCRIPT} --version\n")
+        print(
+            f"usage: {SCRIPT_NAME} COMMAND [options]; {SCRIPT_NAME} COMMAND --help lists the options; "
+            f"{SCRIPT_NAME} --version\n"
+        )
         print("\n".join(f"  {name:12s} {command.purpose}" for name, command in known.items()))
         raise SystemExit(0)
     if name == "--version":
-        print(f"{SCRIPT} {import_module('reference').__version__}")
+        print(f"{SCRIPT_NAME} {import_module('reference').__version__}")
         raise SystemExit(0)
     if name not in known:
         nearest = get_close_matches(name, known, n=1)
         rule = f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(known)}"
         print(f"command line: COMMAND = {name!r}: {rule}", file=sys.stderr)
         raise SystemExit(2)
-    sys.argv = [f"{SCRIPT} {name}", *sys.argv[2:]]
+    sys.argv = [f"{SCRIPT_NAME} {name}", *sys.argv[2:]]
     run_command(known[name].module)

@@ -1,4 +1,4 @@
-"""What the terminal says before a run: what would be computed, and roughly how long it would take."""
+"""Terminal output before a run: what would be computed, and roughly how long it would take."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,29 +8,29 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import seconds_of_study, select_analyses, study_levels
+from comparison.registry import estimate_study_seconds, make_study_levels, select_analyses
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import refusal_of
-from comparison.study.costs import COMPILING, STARTING, WRITING
+from comparison.study.batches import find_refusal
+from comparison.study.costs import COMPILING_SECONDS, STARTING_SECONDS, WRITING_SECONDS
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.records import describe_records
-from comparison.study.reductions import list_omissions
+from comparison.study.reductions import list_skipped_computations
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.building import Building, describe_building, word_buildings
 from reference.plausibility import implausible_suite, implausible_values
 from reference.problem import Family, Scene
 from reference.support.arguments import name_some
 
-NAMES = 4  # names of a list that the terminal shows
+MAX_LISTED_NAMES = 4  # largest number of names of a list that the terminal shows
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
     """Print what would be computed, and roughly how long it would take."""
     for reason, of in _list_refusals(study).items():
-        console.print(f"{name_some(of, NAMES)}: {reason}.", soft_wrap=True)
+        console.print(f"{name_some(of, MAX_LISTED_NAMES)}: {reason}.", soft_wrap=True)
     _print_models(console, study, options.families)
     first = _print_analyses(console, study)
     _print_levels(console, study)
@@ -41,16 +41,16 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
     results = TaskResults(Cache(locate_store(options.out)), options.fresh)
-    print_stored(console, results, surface_tasks(study), first)
-    wall = STARTING + seconds_of_study(study) / options.jobs + WRITING
-    compiling = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
+    print_stored(console, results, make_surface_tasks(study), first)
+    wall = STARTING_SECONDS + estimate_study_seconds(study) / options.jobs + WRITING_SECONDS
+    compiling = f" and {COMPILING_SECONDS:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{compiling}; nothing was computed.")
     console.print(f"The report would go to {options.out}.", soft_wrap=True)
 
 
 def _print_models(console: Console, study: Study, families: Sequence[Family]) -> None:
     """Print a table of the models of every file, with their phase pairs."""
-    table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
+    table = make_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
     for family in families:
         for model in study.hierarchy:
             scenes = [scene for scene in family.scenes if model.applies(scene)]
@@ -66,7 +66,7 @@ def _print_analyses(console: Console, study: Study) -> list[Task]:
     """Print the number of tasks of every analysis, where it is known before the surfaces are; return those tasks."""
     first, counts = [], {}
     for each in select_analyses(study):
-        tasks = [] if each.needs_surfaces else each.tasks(study.selecting(each.key))
+        tasks = [] if each.needs_surfaces else each.tasks(study.restrict_to(each.key))
         counts[each.stage] = "chosen by the surfaces" if each.needs_surfaces else len(tasks)
         first += tasks
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counts.items()) or 'none'}.")
@@ -75,7 +75,7 @@ def _print_analyses(console: Console, study: Study) -> list[Task]:
 
 def _print_levels(console: Console, study: Study) -> None:
     """Print the grids of phases of every level; a study without phases has none."""
-    for level in study_levels(study) if study.phased else ():
+    for level in make_study_levels(study) if study.phased else ():
         models = level.study.hierarchy
         kinds = {"equations" if m.side == "reference" else m.title: len(level.study.phase_indices(m)) for m in models}
         grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
@@ -83,16 +83,16 @@ def _print_levels(console: Console, study: Study) -> None:
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
-    """Say how much an earlier run has left."""
+    """Print how many results of an earlier run are stored."""
     stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
     if results.cache is not None and stored + analyses:
         rest = f", {analyses} of {len(others)} analyses" if others else ""
         line = f"{stored} of {len(batches)} batches{rest} are in {results.cache.folder}: only the others are computed."
-        console.print(line, soft_wrap=True)  # a path is copied whole
+        console.print(line, soft_wrap=True)  # no line break inside the path, so that a user can copy it
 
 
 def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> None:
-    """Print what was read of the buildings; then a line for every kind of value that is hardly meant, once for each."""
+    """Print the properties read of the buildings; then one line for each kind of implausible value."""
     buildings = [replace(describe_building(scene), name=name) for name, scene in named]
     for line in word_buildings(buildings):
         console.print(line, soft_wrap=True, markup=False, highlight=False)
@@ -109,7 +109,7 @@ def print_records(
     console: Console, named: Sequence[tuple[str, Scene]], short: bool = False, is_suite: bool = False
 ) -> None:
     """
-    Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files.
+    Print once what was read of every recorded motion, one line if short; named: by motion, "" for its files.
 
     is_suite: the motions are of one suite, and a line says which of them is hardly meant beside the others.
     """
@@ -121,7 +121,7 @@ def print_records(
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """Print what was read and what is hardly meant; say which scenes state only a part of what a model needs."""
+    """Print the properties read and implausible values, and the scenes that state only part of what a model needs."""
     print_records(console, [("", scene) for scene in study.scenes])
     print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
@@ -130,29 +130,31 @@ def print_models_left_out(console: Console, study: Study) -> None:
 
 
 def _list_refusals(study: Study) -> dict[str, list[str]]:
-    """Why surfaces would have no value, with the scenes and models."""
+    """Return the reasons why surfaces would have no value, with the scenes and models."""
     refused: dict[str, list[str]] = {}
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
-            if reason := refusal_of(scene, model, model.tolerance(study.tolerance), study.full):
+            if reason := find_refusal(scene, model, model.tolerance(study.tolerance), study.full):
                 refused.setdefault(reason, []).append(f"{scene.name}, {model.title}")
     return refused
 
 
 def _print_reductions(console: Console, study: Study) -> None:
-    """Print what the scenes do not require."""
+    """Print the computations that the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
-    elif rows := list_omissions(study):
+    elif rows := list_skipped_computations(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
-            console.print(f"  {row.what} ({row.models}; {name_some(row.scenes, NAMES)}): {row.why}", soft_wrap=True)
+            console.print(
+                f"  {row.what} ({row.models}; {name_some(row.scenes, MAX_LISTED_NAMES)}): {row.why}", soft_wrap=True
+            )
     else:
         console.print("Nothing is left out: the scenes require all of it.")
 
 
-def new_table(*headings: str) -> Table:
-    """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
+def make_table(*headings: str) -> Table:
+    """Return an empty table: words to the left, numbers to the right; if it is too wide, words are folded."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")

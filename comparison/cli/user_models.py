@@ -15,43 +15,44 @@ from pathlib import Path
 from typing import Any
 
 from comparison.cli.arguments import CommandParser, read_number
-from comparison.runner.environment import engine_fingerprint
+from comparison.runner.environment import fingerprint_engine
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.user_models import (
-    LAWS,
-    LIKE,
+    DEFAULT_LIKE,
+    REFERENCE_MODEL_KEYS,
     TIME_LIMIT,
-    names_of,
+    list_argument_names,
+    load_user_function,
+    make_user_model,
     note_line,
     silence_output,
-    user_function,
-    user_model,
 )
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
 
-OPTION, LIMIT_OPTION = "--model", "--model-limit"
-FORM = "NAME=module:function[@KEY]"
-DOTTED = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
-SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED}:{DOTTED})(?:@(?P<like>.*))?")
-TAKEN = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
-IMPORTING = 60.0  # s of processor time that importing an engine may take
+MODEL_OPTION, LIMIT_OPTION = "--model", "--model-limit"
+MODEL_FORM = "NAME=module:function[@KEY]"
+DOTTED_NAME = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
+MODEL_SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED_NAME}:{DOTTED_NAME})(?:@(?P<like>.*))?")
+TAKEN_NAMES = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
+MAX_IMPORT_SECONDS = 60.0  # s of processor time that importing an engine may take
 
 Engines = Mapping[str, str | Callable[..., Any]]
-_refusal = partial(SceneError, "command line", OPTION)
+_make_refusal = partial(SceneError, "command line", MODEL_OPTION)
 
 
 def add_models(parser: CommandParser) -> None:
-    """The options that enter engines."""
+    """Add the options that enter engines of the user."""
     parser.add_argument(
-        OPTION,
+        MODEL_OPTION,
         action="append",
         default=[],
-        metavar=FORM,
+        metavar=MODEL_FORM,
         help="add an engine of your own, a function like multibody.amplification; it is compared with the "
-        f"model KEY of the equations: {', '.join(LAWS)} (default {LIKE}); repeatable; see docs/other-engines.md",
+        f"model KEY of the equations: {', '.join(REFERENCE_MODEL_KEYS)} (default {DEFAULT_LIKE}); repeatable; see "
+        "docs/other-engines.md",
     )
     parser.add_argument(
         LIMIT_OPTION,
@@ -60,28 +61,30 @@ def add_models(parser: CommandParser) -> None:
     )
 
 
-def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
-    """The models that `--model` enters, none with a cluster, whose workers cannot import them. Raises SceneError."""
+def load_user_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
+    """Return the models that `--model` enters, none on a cluster, which cannot import them. Raises SceneError."""
     seconds = TIME_LIMIT if limit is None else read_number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
-        raise _refusal(specs[0], "is a function of this machine, --scheduler computes on others: give one of the two")
+        raise _make_refusal(
+            specs[0], "is a function of this machine, --scheduler computes on others: give one of the two"
+        )
     parts = [_split_spec(spec) for spec in specs]
     names = [name for name, _, _ in parts]
     for spec, name in zip(specs, names):
-        if name in TAKEN:
-            raise _refusal(spec, f"{name} names a model, a difference or a limit: choose another name")
+        if name in TAKEN_NAMES:
+            raise _make_refusal(spec, f"{name} names a model, a difference or a limit: choose another name")
         if names.count(name) > 1:
-            raise _refusal(spec, f"{name} is there twice: every engine needs a name")
+            raise _make_refusal(spec, f"{name} is there twice: every engine needs a name")
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
-        sys.path.append(folder)  # behind all else: a file of the user hides no module of the project
+        sys.path.append(folder)  # last in the path, so that a user's file hides no module of the project
     return tuple(
-        user_model(name, _inspect_function(spec, function), like, seconds)
+        make_user_model(name, _inspect_function(spec, function), like, seconds)
         for spec, (name, function, like) in zip(specs, parts)
     )
 
 
-def as_words(engines: Engines) -> list[str]:
-    """Engines given in Python as words of the command line. Raises SceneError where a worker could not import one."""
+def word_engine_options(engines: Engines) -> list[str]:
+    """Return engines given in Python as words of the command line. Raises SceneError if no worker could import one."""
     words = []
     for name, function in engines.items():
         path = function
@@ -91,28 +94,28 @@ def as_words(engines: Engines) -> list[str]:
                 rule = "worker processes import an engine by its name: define it at the top level of a module file"
                 raise SceneError("models", name, str(place), rule)
             path = f"{module}:{place}"
-        words += [OPTION, f"{name}={path}"]
+        words += [MODEL_OPTION, f"{name}={path}"]
     return words
 
 
 def _split_spec(spec: str) -> tuple[str, str, str]:
-    """Name, place of the function and key of the model with the same law."""
-    match = SPEC.fullmatch(spec)
+    """Return name, place of the function, and key of the model with the same friction law."""
+    match = MODEL_SPEC.fullmatch(spec)
     if match is None:
-        raise _refusal(spec, f"must be {FORM}, as mine=my_engine:amplification")
-    name, function, like = match["name"], match["function"], match["like"] or LIKE
+        raise _make_refusal(spec, f"must be {MODEL_FORM}, as mine=my_engine:amplification")
+    name, function, like = match["name"], match["function"], match["like"] or DEFAULT_LIKE
     if not ENGINE_NAME.fullmatch(name):
-        raise _refusal(spec, "NAME must begin with a letter and have at most 30 letters, digits and -")
-    if like not in LAWS:
-        raise _refusal(spec, f"KEY must be one of {', '.join(LAWS)}")
+        raise _make_refusal(spec, "NAME must begin with a letter and have at most 30 letters, digits and -")
+    if like not in REFERENCE_MODEL_KEYS:
+        raise _make_refusal(spec, f"KEY must be one of {', '.join(REFERENCE_MODEL_KEYS)}")
     return name, function, like
 
 
 def _inspect_function(spec: str, path: str) -> dict[str, Any]:
-    """Return what is known of a function. Raises SceneError where it cannot be called."""
+    """Return the properties of a function. Raises SceneError if it cannot be called."""
     workers = Workers(1)
     try:
-        fault, about = workers.start(partial(look_at, path), IMPORTING).result()
+        fault, about = workers.start(partial(inspect_in_worker, path), MAX_IMPORT_SECONDS).result()
     except TimeLimitError as error:
         fault = f"importing it does not end: {error}"
     except WorkerDiedError as error:
@@ -120,17 +123,17 @@ def _inspect_function(spec: str, path: str) -> dict[str, Any]:
     finally:
         workers.abandon()
     if fault:
-        raise _refusal(spec, fault)
+        raise _make_refusal(spec, fault)
     return {"function": path, **about}
 
 
-def look_at(path: str) -> tuple[str, dict[str, str]]:
-    """Import a function inside a worker process: why it cannot be used, or "", and what its numbers depend on."""
+def inspect_in_worker(path: str) -> tuple[str, dict[str, str]]:
+    """Return why a function cannot be used, or "", and what its numbers depend on. Runs inside a worker process."""
     module, name = path.split(":")
     with silence_output():
         try:
-            function = user_function(path)
-            return "", {"names": names_of(function), **engine_fingerprint(module)}
+            function = load_user_function(path)
+            return "", {"names": list_argument_names(function), **fingerprint_engine(module)}
         except ModuleNotFoundError as error:
             missing = error.name or module
             where = ": run the command in the folder of its file, or install it" if module.startswith(missing) else ""
@@ -142,5 +145,5 @@ def look_at(path: str) -> tuple[str, dict[str, str]]:
         except BaseException as error:
             spec = find_spec(module.split(".")[0])
             note_line(error, Path(spec.origin) if spec is not None and spec.origin else None)
-            fault = f"importing {module} raises {exception_line(error)}"
+            fault = f"importing {module} raises {word_exception(error)}"
     return " ".join(fault.split()), {}

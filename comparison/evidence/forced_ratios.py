@@ -1,4 +1,4 @@
-"""How intensively the loading forces the bodies above the platform, by (4.4) alone."""
+"""Amplitude ratios of the bodies above the platform under harmonic loading, by (4.4) alone."""
 
 from typing import Annotated
 
@@ -22,8 +22,8 @@ class ForcedRatio:
     steady: Annotated[Radius, 'without it; "inf" at resonance']
 
 
-def forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """The ratios by axis, harmonic and body above the platform; none under a recorded motion."""
+def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
+    """Return the ratios by axis, harmonic and body above the platform; none under a recorded motion."""
     if scene.recorded or len(scene.bodies) == 1:
         return []
     return [
@@ -38,7 +38,7 @@ def forced_ratios(scene: Scene) -> list[ForcedRatio]:
 
 
 def _amplitude_ratios(scene: Scene, axis: int, s: complex) -> Array:
-    """|A_i / A_1| for the bodies above the platform: (m_i s^2 + links) A = link to the platform times A_1."""
+    """Return |A_i / A_1| of the bodies above the platform: (m_i s^2 + links) A = link to the platform times A_1."""
     links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
     matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))
     matrix -= np.diag(links[1:], 1) + np.diag(links[1:], -1)

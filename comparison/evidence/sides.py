@@ -4,9 +4,10 @@ from scipy.interpolate import CubicHermiteSpline
 
 from reference.problem import Trajectory
 
-EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"  # smoothed: with the engine's friction law
+# Keys of the sides; smoothed: equations with the engine's regularized friction law
+EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"
 
 
-def spline_along(motion: Trajectory, axis: int = 0) -> CubicHermiteSpline:
-    """Position of the platform along x (0) or y (1), m: the cubics with its positions and velocities."""
+def interpolate_platform(motion: Trajectory, axis: int = 0) -> CubicHermiteSpline:
+    """Return the position of the platform along x (0) or y (1), m, as cubics through its positions and velocities."""
     return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])

@@ -1,4 +1,4 @@
-"""Features that are lists of trends, over what a difference falls with: convergence and scaling."""
+"""Report features made of trends: how a difference falls with a parameter (convergence and scaling)."""
 
 import math
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import Any
 
 from comparison.evidence.trends import Trend, word_trends
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import MAX_CURVES, Panel, json_numbers, make_panel
+from comparison.report.panels import MAX_CURVES, Panel, make_panel, replace_nan
 from comparison.report.section import Section
 from comparison.runner.mapped_analysis import MappedAnalysis
 
@@ -28,19 +28,19 @@ def make_trend_feature(
         f"phase-resonance run makes it, of {scenes}",
         lambda report: {
             "key": analysis.key,
-            "trends": (trends := found.of(report.results)),
-            "panels": trend_panels(trends, parameter),
+            "trends": (trends := found.read_from(report.results)),
+            "panels": make_trend_panels(trends, parameter),
             "column": column,
             **texts,
         },
-        verdict=lambda results: word_trends(found.of(results)),
+        verdict=lambda results: word_trends(found.read_from(results)),
         verifies=True,
     )
     return Feature(analysis.key, (found,), analysis=analysis, section=section)
 
 
-def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
-    """One log-log panel for each scene and parameter: median difference over it, the fitted slopes in the legend."""
+def make_trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
+    """Return a log-log panel for each scene and parameter: median difference over it, fitted slopes in the legend."""
     panels = []
     ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
     for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):
@@ -48,7 +48,7 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
         series: list[dict[str, Any]] = []
         for number, trend in enumerate(rows[:MAX_CURVES]):
             slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
-            points = {"x": list(values), "y": json_numbers(trend.medians), "color": number, "marks": True}
+            points = {"x": list(values), "y": replace_nan(trend.medians), "color": number, "marks": True}
             series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
         axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
         label = f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series)

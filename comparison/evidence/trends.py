@@ -1,5 +1,5 @@
 """
-Fall of a difference with its cause: an exponent fitted through values that have error bars.
+Trend of a difference with a parameter: an exponent fitted through values that have error bars.
 
 A value enters the fit only where it is known to a fifth of itself: a slope through noise is not a slope. All phase
 pairs of a surface share one exponent and have a size of their own. Its uncertainty is two standard errors, of the
@@ -13,18 +13,19 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from comparison.result_types import Array, Number, Text, result
-from comparison.surfaces.model_difference import RESOLVED
+from comparison.surfaces.model_difference import RESOLVED_RATIO
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, count_verdicts, word_counts
 
-NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
-KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction
-SETTLED = 0.25  # largest uncertainty of an exponent that says something
-SLOW = 0.3  # exponent below which a difference is no smaller at any value in use
-AGREES = 0.15  # allowed distance of an exponent from theory: the largest parameter is not yet in the asymptotic range
+NO_VALUES: Array = np.empty((0, 1))  # sizes and errors if no phase pair has a value
+MAX_FITTED_ERROR = 1.0 / RESOLVED_RATIO  # largest error of a fitted value, as a fraction of it
+MAX_EXPONENT_UNCERTAINTY = 0.25  # largest uncertainty of an exponent that is judged
+MIN_EXPONENT = 0.3  # A difference with a smaller exponent hardly falls over the parameters in use.
+# Largest deviation of an exponent from theory: the largest parameters are not yet in the asymptotic range
+MAX_EXPONENT_DEVIATION = 0.15
 
 
-class Slope(NamedTuple):
-    """size ~ parameter^exponent, +- uncertainty, NaN where too few values are known; points used, of phase pairs."""
+class FittedSlope(NamedTuple):
+    """Fit size ~ parameter^exponent with uncertainty, NaN for too few values; points used, of how many phase pairs."""
 
     exponent: float
     uncertainty: float
@@ -34,7 +35,7 @@ class Slope(NamedTuple):
 
 @result
 class Trend:
-    """Fall of a difference with its cause."""
+    """How a difference falls with a parameter."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -50,14 +51,14 @@ class Trend:
     verdict: Annotated[Text, "what the fit allows to say"]
 
 
-def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
-    """One exponent for all rows of sizes (P, S) with absolute errors (P, S), over the parameter (S,)."""
-    known = np.isfinite(sizes) & (errors <= KNOWN * np.abs(sizes)) & (sizes != 0.0)
+def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> FittedSlope:
+    """Return one exponent for all rows of sizes (P, S) with absolute errors (P, S), over the parameter (S,)."""
+    known = np.isfinite(sizes) & (errors <= MAX_FITTED_ERROR * np.abs(sizes)) & (sizes != 0.0)
     rows = np.flatnonzero(known.sum(axis=1) > 1)
     points = int(known[rows].sum())
     freedom = points - len(rows) - 1
     if freedom < 1:
-        return Slope(np.nan, np.nan, points, len(rows))
+        return FittedSlope(np.nan, np.nan, points, len(rows))
     parts = []
     for row in rows:
         size = np.abs(sizes[row, known[row]])
@@ -68,7 +69,7 @@ def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
     exponent = float(along @ up) / spread
     scatter = float(((up - exponent * along) ** 2).sum()) / freedom / spread
     carried = float(((along * noise) ** 2).sum()) / spread**2
-    return Slope(exponent, 2.0 * float(np.sqrt(scatter + carried)), points, len(rows))
+    return FittedSlope(exponent, 2.0 * float(np.sqrt(scatter + carried)), points, len(rows))
 
 
 def fit_trend(
@@ -81,7 +82,7 @@ def fit_trend(
     expected: float | None,
     error_message: str = "",
 ) -> Trend:
-    """A trend from signed sizes and their errors, (P, S), NaN without an answer; error_message: what went wrong."""
+    """Return a trend of signed sizes and errors, (P, S), NaN without an answer; error_message: what went wrong."""
     slope = fit_slope(parameter, sizes, errors)
     columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
     medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)
@@ -93,12 +94,12 @@ def fit_trend(
         medians,
         *slope,
         expected,
-        error_message or _verdict_on_slope(slope, expected),
+        error_message or _word_slope_verdict(slope, expected),
     )
 
 
 def word_trends(trends: Sequence[Trend]) -> str:
-    """Return how many exponents that theory gives are met, and the first that is not."""
+    """Return how many exponents agree with theory, and the first that does not."""
     expected = [each for each in trends if each.expected is not None]
     verdicts = {id(each): _judge_trend(each) for each in expected}
     missed = [each for each in expected if verdicts[id(each)] == NOT_MET]
@@ -117,12 +118,12 @@ def _judge_trend(each: Trend) -> Verdict:
     return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
 
 
-def _verdict_on_slope(slope: Slope, expected: float | None) -> str:
+def _word_slope_verdict(slope: FittedSlope, expected: float | None) -> str:
     if not np.isfinite(slope.exponent):
         return "within the error bars: no slope can be told"
-    if slope.uncertainty > SETTLED:
+    if slope.uncertainty > MAX_EXPONENT_UNCERTAINTY:
         return "no single slope: phase pairs or values do not agree"
     if expected is None:
-        return "hardly falls: not converged at any value in use" if slope.exponent < SLOW else "falls"
-    agrees = abs(slope.exponent - expected) <= max(AGREES, slope.uncertainty)
+        return "hardly falls: not converged at any value in use" if slope.exponent < MIN_EXPONENT else "falls"
+    agrees = abs(slope.exponent - expected) <= max(MAX_EXPONENT_DEVIATION, slope.uncertainty)
     return f"like the power {expected:g}" if agrees else f"not like the power {expected:g}"

@@ -1,4 +1,4 @@
-"""What a run found, built into the one `Report` that page, files and terminal are made from."""
+"""Building of the one `Report` from which page, files and terminal are made."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -14,20 +14,25 @@ from comparison.report.section import Report
 from comparison.runner.attempts import LostParts
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.acceptance import check_limits, pairs_without_limit
+from comparison.surfaces.acceptance import check_limits, list_pairs_without_limit
 from comparison.surfaces.alerts import Alert, list_alerts
 from comparison.surfaces.body_comparison import compare_bodies
-from comparison.surfaces.budget import budget_entries
-from comparison.surfaces.completion import CompletedSurfaces, complete_surfaces, with_completed
-from comparison.surfaces.distribution import compute_distributions, grid_maxima
+from comparison.surfaces.budget import list_budget_entries
+from comparison.surfaces.completion import CompletedSurfaces, add_completed, complete_surfaces
+from comparison.surfaces.distribution import compute_distributions, find_grid_maxima
 from comparison.surfaces.headline import make_headline
 from comparison.surfaces.missing_values import MissingValues, advise_on_outcome, list_missing_values
-from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts, values_of
+from comparison.surfaces.surfaces import (
+    count_outcomes,
+    find_largest_cap_share,
+    find_largest_travel_share,
+    select_values,
+)
 from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Family, Outcome, Scene
 
 
-def build_report(
+def assemble_report(
     study: Study,
     surfaces: xr.Dataset,
     found: Mapping[str, Any],
@@ -52,12 +57,12 @@ def build_report(
     held_out = found.get(CompletedSurfaces.key)
     completed = {scene.name: complete_surfaces(study, surfaces, scene, held_out) for scene in study.scenes}
     completions = list(chain.from_iterable(completed.values()))
-    findings = Findings(study, with_completed(surfaces, completions), found, families)
+    findings = Findings(study, add_completed(surfaces, completions), found, families)
     scene_fields = [field for feature in features for field in feature.scene_fields]
     (scene_kind,) = get_args(kind.model_fields["scenes"].annotation)
     scenes = []
     for scene in study.scenes:
-        about = _scene_fields(findings, scene, gaps) | {"completions": completed[scene.name]}
+        about = _make_scene_fields(findings, scene, gaps) | {"completions": completed[scene.name]}
         more = {field.name: compute(field.name, field.compute, findings, scene) or [] for field in scene_fields}
         scenes.append(scene_kind(**about, **more))
     summaries: dict[str, Any] = {}
@@ -81,8 +86,8 @@ def build_report(
     return Report(study, findings.surfaces, completions, results, found, features, parts_lost.lines)
 
 
-def _scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues]) -> dict[str, Any]:
-    """Return what the surfaces of a scene say; gaps: those of the study."""
+def _make_scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues]) -> dict[str, Any]:
+    """Return the results of the surfaces of a scene; gaps: missing values of the study."""
     study, surfaces = findings.study, findings.surfaces
     models = models_of(scene, study.hierarchy)
     comparisons = compare_bodies(study, surfaces, scene)
@@ -99,19 +104,19 @@ def _scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues
         "models": {model.key: _model_outcome(study, surfaces, scene, model) for model in models},
         "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
         "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
-        "budget": budget_entries(comparisons),
+        "budget": list_budget_entries(comparisons),
         "limits": check_limits(comparisons, [gap for gap in gaps if gap.scene == scene.name]),
         "headlines": [make_headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
-        "unchecked": pairs_without_limit(study, scene),
+        "unchecked": list_pairs_without_limit(study, scene),
         "distributions": [] if scene.recorded else compute_distributions(surfaces, scene, models),
-        "grid_maxima": grid_maxima(surfaces, scene, models),
+        "grid_maxima": find_grid_maxima(surfaces, scene, models),
         "values": _record_values(surfaces, scene, models) if scene.recorded else [],
     }
 
 
 def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> ModelOutcome:
-    counts = outcome_counts(surfaces, scene.name, model)
+    counts = count_outcomes(surfaces, scene.name, model)
     return ModelOutcome(
         phases_per_axis=len(study.phase_indices(model, scene)),
         points=study.points(model, scene),
@@ -120,18 +125,18 @@ def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Mode
         advice={
             outcome: advise_on_outcome(study, scene, model, outcome) for outcome in counts if outcome != Outcome.OK
         },
-        cap_share=largest_cap_share(surfaces, scene.name, model.key),
-        travel_share=largest_travel_share(surfaces, scene, model.key),
+        cap_share=find_largest_cap_share(surfaces, scene.name, model.key),
+        travel_share=find_largest_travel_share(surfaces, scene, model.key),
         cost=float(surfaces["cost"].sel(scene=scene.name, model=model.key)),
     )
 
 
 def _record_values(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[RecordValue]:
-    """mu under the record, by model and body."""
+    """Return mu under the record, by model and body."""
     listed = []
     for model in models:
         mu, error, status = (
-            values_of(surfaces, name, scene.name, model)[..., 0, 0] for name in ("mu", "error", "status")
+            select_values(surfaces, name, scene.name, model)[..., 0, 0] for name in ("mu", "error", "status")
         )
         for body in range(1, len(scene.bodies) + 1):
             listed.append(RecordValue(model.key, body, float(mu[body - 1]), float(error[body - 1]), str(status)))

@@ -26,18 +26,18 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Findings:
-    """Findings of a run: by its study, in its surfaces, and by its features. families: of the study's scenes."""
+    """Everything that a run has found: its study, surfaces, results of its features, and the study's families."""
 
     study: Study
     surfaces: xr.Dataset
-    found: Mapping[str, Any]  # by key of the feature
+    found: Mapping[str, Any]  # results of the analyses by key of the feature
     families: Sequence[Family] = ()
 
 
 @dataclass(frozen=True)
 class ResultField(Generic[Value]):
     """
-    A field of the results, null where nothing was found.
+    A field of the results that may be null.
 
     name: its key in summary.json. kind: its type. meaning: its description in the schema. load: reads it from the
     folder of the report, where a command left it. compute: makes it of what was found and of the results of the scenes,
@@ -51,32 +51,32 @@ class ResultField(Generic[Value]):
     compute: Callable[[Findings, Sequence[SceneResult]], Value | None] | None = None
 
     def get(self, results: Results) -> Value | None:
-        """Return the value in these results, None where nothing was found."""
+        """Return the value of the field in these results, None if it is null."""
         value: Value | None = getattr(results, self.name)
         return value
 
-    def of(self, results: Results) -> Value:
-        """Return the value in results that have one, as where the section of the field is shown."""
+    def read_from(self, results: Results) -> Value:
+        """Return the value of the field in results where it is not null, as in the section that shows it."""
         value = self.get(results)
         assert value is not None, f"{self.name} is shown only where it was found"
         return value
 
 
-def stored_field(stored: StoredFile[Value], name: str, meaning: str) -> ResultField[Value]:
+def make_stored_field(stored: StoredFile[Value], name: str, meaning: str) -> ResultField[Value]:
     """Return the field that shows what a command left next to the report."""
     return ResultField(name, stored.kind, stored.word_field(meaning), load=stored.load)
 
 
 @dataclass(frozen=True)
 class SceneField(Generic[Value]):
-    """A field of the results of every scene. name, kind, meaning: as of a `ResultField`. compute: makes it."""
+    """A field of the results of every scene. name, kind, meaning: as in `ResultField`. compute: returns the value."""
 
     name: str
     kind: type[Value]
     meaning: str
     compute: Callable[[Findings, Scene], Value]
 
-    def of(self, scene: SceneResult) -> Value:
+    def read_from(self, scene: SceneResult) -> Value:
         """Return the value in the results of a scene."""
         value: Value = getattr(scene, self.name)
         return value
@@ -85,7 +85,7 @@ class SceneField(Generic[Value]):
 @dataclass(frozen=True)
 class Feature:
     """
-    Everything that the study, the report and the command line know of a question.
+    One question of a report with everything that study, report and command line need of it.
 
     key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
     scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and
@@ -119,10 +119,10 @@ class Feature:
 
     @property
     def stored(self) -> list[ResultField[Any]]:
-        """The fields that a command leaves next to a report."""
+        """Return the fields whose values a command stores next to a report."""
         return [field for field in self.fields if field.load]
 
     @property
-    def choice(self) -> Selectable:
-        """Return what a selection must know of it."""
+    def selectable_entry(self) -> Selectable:
+        """Return the entry under which a selection knows the feature."""
         return Selectable(self.key, self.on_request, self.of_the_paper, self.needs)

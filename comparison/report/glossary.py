@@ -1,4 +1,4 @@
-"""Words of the field that a reader of the first screen may not know, explained at the pointer and the keyboard."""
+"""Glossary of terms that a reader of the first screen may not know, shown at the pointer and the keyboard."""
 
 import re
 
@@ -36,11 +36,11 @@ GLOSSARY = {
     "well-conditioned": "Less than 0.1 % of it depends on speeds below 1e-6 m/s.",
     "limits": "Largest values that a scene file states as acceptable.",
 }  # fmt: skip
-WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
+GLOSSARY_PATTERN = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
 
 
 def mark_term(word: str, text: str = "") -> Markup:
-    """`text`, or the word itself, with the explanation of the word at the pointer and the keyboard."""
+    """Return `text`, or the word itself, with the explanation of the word at the pointer and the keyboard."""
     explanation = GLOSSARY.get(word)
     shown = symbols(text or word)
     if explanation is None:
@@ -50,10 +50,10 @@ def mark_term(word: str, text: str = "") -> Markup:
 
 
 def explain_words(sentence: str) -> Markup:
-    """The sentence with every word of the glossary explained where it stands first."""
+    """Return the sentence with every glossary word explained at its first occurrence."""
     parts: list[Markup] = []
     seen, end = set(), 0
-    for match in WORDS.finditer(sentence):
+    for match in GLOSSARY_PATTERN.finditer(sentence):
         word = match.group()
         parts += [symbols(sentence[end : match.start()]), symbols(word) if word in seen else mark_term(word)]
         seen.add(word)

@@ -11,20 +11,20 @@ import jinja2
 from markupsafe import Markup
 
 from comparison.report.glossary import explain_words, mark_term
-from comparison.report.page_data import compress_to_text, page_data
+from comparison.report.page_data import collect_page_data, compress_to_text
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report, Section
-from comparison.report.surface_sections import models_in_use
+from comparison.report.surface_sections import list_models_in_use
 from comparison.runner.attempts import LostParts
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
-from comparison.surfaces.statements import CELLS, word_verdict
-from comparison.surfaces.waterfall import PHASES, Waterfall
-from comparison.surfaces.waterfall_chart import bars_of, scale_of
+from comparison.surfaces.statements import CELL_WORDINGS, word_verdict
+from comparison.surfaces.waterfall import UNEQUAL_PHASES, Waterfall
+from comparison.surfaces.waterfall_chart import make_common_scale, place_bars
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 
-DRAWN = 0.01  # share of mu: shorter bars are left out
-SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
+MIN_DRAWN_BAR = 0.01  # share of mu: bars that are all shorter are not drawn
+SCRIPT_FILES = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
 def render_pages(report: Report) -> dict[str, str]:
@@ -41,10 +41,11 @@ def render_pages(report: Report) -> dict[str, str]:
     }
     answers = {
         "verdict": lost.attempt("verdict", partial(word_answer, report.results)) or "",
-        "lead_lines": lost.attempt("sentences of sections", partial(lead_lines, report)) or [],
+        "lead_lines": lost.attempt("sentences of sections", partial(list_lead_sentences, report)) or [],
         "alerts": lost.attempt("alerts", partial(render_alerts, report)) or "",
         "summary": lost.attempt("summary", partial(render_summary, report)) or "",
-        "data": lost.attempt("surfaces", lambda: compress_to_text(page_data(report, lost.note).encode())) or nothing,
+        "data": lost.attempt("surfaces", lambda: compress_to_text(collect_page_data(report, lost.note).encode()))
+        or nothing,
         "packed": packed,
     }
     verification = {"data": nothing, "packed": {}}
@@ -64,8 +65,8 @@ def word_answer(results: Results) -> str:
 
 
 def render_alerts(report: Report) -> Markup:
-    """Return what to know before trusting a number."""
-    context = {"alerts": _alert_groups(report.results), "has_engine": has_engine(report.study)}
+    """Return the alerts of the run as HTML."""
+    context = {"alerts": _group_alerts(report.results), "has_engine": has_engine(report.study)}
     return render_template("sections/alerts.html.j2", context)
 
 
@@ -76,44 +77,47 @@ def render_summary(report: Report) -> Markup:
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
     context = {
         "results": results,
-        "second_title": name_second(study),
-        "cells": CELLS,
+        "second_title": name_second_model(study),
+        "cells": CELL_WORDINGS,
         "drawn": drawn,
         "hidden_bodies": len(waterfalls) - len(drawn),
-        "bars_of": bars_of,
+        "bars_of": place_bars,
         "scales": {
-            "mean": scale_of((each.bars, each.total) for each, _ in drawn),
-            "largest": scale_of((each.largest.bars, each.largest.total) for each, _ in drawn),
+            "mean": make_common_scale((each.bars, each.total) for each, _ in drawn),
+            "largest": make_common_scale((each.largest.bars, each.largest.total) for each, _ in drawn),
         },
-        "effects": {PHASES: "other phases", **{model.key: model.effect or model.title for model in study.hierarchy}},
+        "effects": {
+            UNEQUAL_PHASES: "other phases",
+            **{model.key: model.effect or model.title for model in study.hierarchy},
+        },
     }
     return render_template("sections/summary.html.j2", context)
 
 
-def name_second(study: Study) -> str:
-    """Return what the answers compare with the paper's equations."""
+def name_second_model(study: Study) -> str:
+    """Return the name of what the answers compare with the paper's equations."""
     return "Exudyn" if has_engine(study) else "the last model"
 
 
 def has_engine(study: Study) -> bool:
     """Return whether a model of Exudyn takes part."""
-    return any(model.side == "engine" for model in models_in_use(study))
+    return any(model.side == "engine" for model in list_models_in_use(study))
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Return whether a bar, of the means or at the largest difference, is as long as a reader can see."""
+    """Return whether a bar, of the means or at the largest difference, is long enough to see."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
-    return any(abs(bar.size) >= DRAWN for bar in every)
+    return any(abs(bar.size) >= MIN_DRAWN_BAR for bar in every)
 
 
 def word_measurements(results: Results) -> str:
-    """Return what measurements say, without the full stop."""
-    return "; ".join([VALIDATED_BRIEFLY, *results.clauses])
+    """Return the statement on measurements, without the full stop."""
+    return "; ".join([VALIDATED_BRIEFLY, *results.measurement_clauses])
 
 
-def lead_lines(report: Report) -> list[tuple[str, str]]:
+def list_lead_sentences(report: Report) -> list[tuple[str, str]]:
     """Return the sentences of sections that belong on the first screen, each with the link that shows more."""
-    sections = [section for section in report.sections if section.lead and section.present(report.results)]
+    sections = [section for section in report.sections if section.lead and section.is_present(report.results)]
     lines = [(section.lead(report.results), section) for section in sections if section.lead]
     page = "verification.html"
     return [(line, f"{page if section.verifies else ''}#{section.name}") for line, section in lines if line]
@@ -126,10 +130,10 @@ def _render_page(
     context: Mapping[str, Any],
     lost: LostParts,
 ) -> str:
-    """Return one page with its sections; what raises is left out, with a line in `lost`."""
+    """Return one page with its sections; a part that raises is left out, with a line in `lost`."""
     study, results = report.study, report.results
     sections = [section for section in report.sections if section.verifies == verifies]
-    shown = [section for section in sections if section.present(results)]
+    shown = [section for section in sections if section.is_present(results)]
     absent = [
         (section.title, results.absent.get(section.name, section.absent))
         for section in sections
@@ -145,7 +149,7 @@ def _render_page(
     for section in shown:
         verdict = lost.attempt(f"verdict of section {section.name}", partial(word_section, section, results))
         body = lost.attempt(f"section {section.name}", partial(_render_section, section, common, report))
-        parts.append((section, lost_line(lost.last) if body is None else body, verdict or ""))
+        parts.append((section, render_lost_line(lost.last) if body is None else body, verdict or ""))
     return render_page(template, {**common, **context, "absent": absent}, parts, lost.lines)
 
 
@@ -153,31 +157,31 @@ def render_page(
     template: str, context: Mapping[str, Any], sections: Sequence[tuple[Section, Markup, str]], lost: Sequence[str]
 ) -> str:
     """
-    Return a page that is whole by itself: style, script and data inside it.
+    Return a page that needs no other file: style, script and data are inside it.
 
     sections: each with what stands below its heading, and its verdict. lost: a line for every part that could
     not be made.
     """
     templates = resources.files("comparison.report") / "templates"
-    style = (templates / "report.css").read_text(encoding="utf-8") + head_of_paper(context.get("running", ""))
-    script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    style = (templates / "report.css").read_text(encoding="utf-8") + make_page_header_style(context.get("running", ""))
+    script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPT_FILES)
     return str(
         render_template(
             template,
             {
                 "absent": (),
                 **context,
-                "policy": content_policy(script, style),
+                "policy": make_content_policy(script, style),
                 "style": style,
                 "script": script,
                 "sections": sections,
-                "lost": [lost_line(line) for line in lost],
+                "lost": [render_lost_line(line) for line in lost],
             },
         )
     )
 
 
-def head_of_paper(text: str) -> str:
+def make_page_header_style(text: str) -> str:
     """Return the style that puts a text at the top of every printed page; nothing without a text."""
     letters = (each if each.isalnum() or each in " .,:-" else f"\\{ord(each):x} " for each in text)
     return f'@page {{ @top-left {{ content: "{"".join(letters)}"; font: 7pt sans-serif; }} }}\n' if text else ""
@@ -185,11 +189,11 @@ def head_of_paper(text: str) -> str:
 
 def render_template(template: str, context: Mapping[str, Any]) -> Markup:
     """Return a template of the report, or of the folder of a feature, with its context."""
-    return Markup(_template_environment().get_template(template).render(context))
+    return Markup(_make_template_environment().get_template(template).render(context))
 
 
 def word_section(section: Section, results: Results) -> str:
-    """Return the verdict of a section, in its title; "" for none."""
+    """Return the verdict that a section shows in its title; "" for none."""
     return section.verdict(results) if section.verdict else ""
 
 
@@ -198,13 +202,13 @@ def _render_section(section: Section, common: Mapping[str, Any], report: Report)
     return render_template(section.template, {**common, **section.context(report)})
 
 
-def lost_line(line: str) -> Markup:
-    """Return the line in the place of what could not be shown."""
+def render_lost_line(line: str) -> Markup:
+    """Return the line that replaces a part that could not be shown."""
     return Markup('<p class="alert amber lost"><strong>Amber:</strong> {}.</p>').format(line)
 
 
-def content_policy(script: str, style: str) -> str:
-    """The page's content security policy: its own script and style by their hash, pictures inside it, nothing else."""
+def make_content_policy(script: str, style: str) -> str:
+    """Return the page's content security policy: its own script and style by hash, embedded pictures, nothing else."""
 
     def digest(text: str) -> str:
         return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
@@ -215,7 +219,7 @@ def content_policy(script: str, style: str) -> str:
 
 
 @cache
-def _template_environment() -> jinja2.Environment:
+def _make_template_environment() -> jinja2.Environment:
     loader = jinja2.ChoiceLoader(
         [
             jinja2.PackageLoader("comparison.report", "templates"),
@@ -226,29 +230,30 @@ def _template_environment() -> jinja2.Environment:
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     filters = (percent, signed, scientific, degrees, significant, symbols, explain_words)
     environment.filters.update({function.__name__: function for function in filters})
-    environment.globals["term"] = mark_term  # in macros, too
+    environment.globals["term"] = mark_term  # Macros need it as a global, because they see no context.
     return environment
 
 
-ALERTS = {
+# Titles of one alert and of several alerts of a kind
+ALERT_TITLES = {
     "refused": ("model without any usable value", "models without any usable value"),
     "limit": ("acceptance limit broken", "acceptance limits broken"),
     "lacking": ("model without some of its values", "models without some of their values"),
     "fault": ("error of a solver", "errors of solvers"),
     "swing": ("wide swing of the platform", "wide swings of the platform"),
     "travel": ("travel of the isolator nearly used up", "travels of isolators nearly used up"),
-}  # title of one and of several alerts of a kind
+}
 
 
-def _alert_groups(results: Results) -> list[dict[str, Any]]:
-    """The alerts of one level, kind and remedy together, in their order."""
+def _group_alerts(results: Results) -> list[dict[str, Any]]:
+    """Return the alerts grouped by level, kind and remedy, in their order."""
     groups: dict[tuple[str, str, str], list[Alert]] = {}
     for alert in results.alerts:
         groups.setdefault((alert.level, alert.kind, alert.help), []).append(alert)
     return [
         {
             "level": level,
-            "title": f"{len(alerts)} {ALERTS[kind][len(alerts) > 1]}",
+            "title": f"{len(alerts)} {ALERT_TITLES[kind][len(alerts) > 1]}",
             "lines": [f"{alert.scene}: {alert.text}" if alert.scene else alert.text for alert in alerts],
             "help": help_text,
         }

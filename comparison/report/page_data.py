@@ -1,4 +1,4 @@
-"""What the page's script draws: surfaces, where their difference is as large as its uncertainty, motions."""
+"""Data that the page's script draws: surfaces, curves where a difference equals its uncertainty, and motions."""
 
 import base64
 import gzip
@@ -13,22 +13,22 @@ import numpy as np
 from comparison.report.section import Report
 from comparison.result_types import Array
 from comparison.runner.attempts import attempt
-from comparison.runner.output import on_stderr
+from comparison.runner.output import print_on_stderr
 from comparison.study.models import Model, Pair, label_of, models_of
 from comparison.surfaces.completion import Completion
-from comparison.surfaces.model_difference import difference_of
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.model_difference import compute_difference
+from comparison.surfaces.surfaces import select_values
 from reference.problem import Scene
 
 Rows = list[list[float | None]]
 
-DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
-LEVEL = 6  # level of compression: the next one takes half as long again for 2 % less
+MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of mu and of an error
+COMPRESSION_LEVEL = 6  # compression level: the next one takes half as long again for 2 % less
 
 
-def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
+def collect_page_data(report: Report, say: Callable[[str], object] = print_on_stderr) -> str:
     """
-    JSON of all that is drawn; NaN is null. What a feature adds and cannot be made is left out, which `say` is told.
+    Return the drawn data as JSON, with null for NaN; a feature that raises is left out, with a line to `say`.
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
     of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
@@ -52,16 +52,16 @@ def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
                 "flat": scene.flat,
                 "pairs": [_pair_data(report, scene, pair) for pair in study.pairs(scene)],
                 "models": {model.key: _model_data(report, scene, model) for model in models_of(scene, study.hierarchy)},
-                **_data_of_features(report, scene, say),
+                **_collect_feature_data(report, scene, say),
             }
             for scene in study.scenes
         ],
     }
-    return _json_text(data)
+    return _format_json(data)
 
 
-def _data_of_features(report: Report, scene: Scene, say: Callable[[str], object]) -> dict[str, Any]:
-    """Return what the features add to a scene."""
+def _collect_feature_data(report: Report, scene: Scene, say: Callable[[str], object]) -> dict[str, Any]:
+    """Return the data that the features add to a scene."""
     added: dict[str, Any] = {}
     for feature in report.features:
         if feature.page_data:
@@ -73,19 +73,19 @@ def _data_of_features(report: Report, scene: Scene, say: Callable[[str], object]
 def _read_encodable(
     read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene
 ) -> Mapping[str, Any]:
-    """Return what a feature adds; what no text can hold raises here, and costs the feature alone."""
+    """Return a feature's data; data that JSON cannot hold raises here, so that only this feature is lost."""
     data = read(report, scene)
-    _json_text(dict(data))
+    _format_json(dict(data))
     return data
 
 
-def _json_text(data: Any) -> str:
+def _format_json(data: Any) -> str:
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
 def compress_to_text(content: bytes) -> str:
-    """Compress and write in letters; the browser undoes both."""
-    return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
+    """Return the content compressed and written in letters; the browser undoes both."""
+    return base64.b64encode(gzip.compress(content, COMPRESSION_LEVEL, mtime=0)).decode()
 
 
 def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
@@ -102,7 +102,7 @@ def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
         and _is_drawn_as_surface(report, scene, pair.first)
         and _is_drawn_as_surface(report, scene, pair.second)
     )
-    steps = [difference_of(report.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
+    steps = [compute_difference(report.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
         "key": pair.key,
         "title": pair.title,
@@ -116,14 +116,14 @@ def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _is_drawn_as_surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Return whether the values of a model are drawn as a surface as they are: what may need completing is not."""
+    """Return whether the values of a model are drawn as a surface without completion."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 
 
 def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     """
-    One model of a scene.
+    Return the data of one model of a scene.
 
     phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
     mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), certificate
@@ -136,14 +136,14 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
     def list_rows(name: str, digits: int) -> list[Rows]:
-        values = values_of(report.surfaces, name, scene.name, model)
+        values = select_values(report.surfaces, name, scene.name, model)
         return [_round_rows(values[body - 1], digits) for body in bodies]
 
     return {
         "phases": len(report.study.phase_indices(model, scene)),
         "computed": len(report.study.solved(scene, model)),
         "surface": surface,
-        "mu": list_rows("mu", DIGITS),
+        "mu": list_rows("mu", MU_DIGITS),
         "error": None if surface else list_rows("error", ERROR_DIGITS),
         "completed": [_completion_data(completed.get(body)) for body in bodies],
     }
@@ -157,7 +157,7 @@ def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
         "certificate": completion.certificate if completion.accepted else "",
         "reason": completion.reason,
         "difference": completion.difference_accepted,
-        "mu": _round_rows(completion.mu, DIGITS) if completion.accepted else None,
+        "mu": _round_rows(completion.mu, MU_DIGITS) if completion.accepted else None,
     }
 
 

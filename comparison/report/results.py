@@ -1,5 +1,5 @@
 """
-Results of a study as typed data: what summary.json holds of every study. The registry adds a field for each feature.
+Results of a study as typed data, the content of summary.json. The registry adds a field for each feature.
 
 The page, summary.md, JUnit and summary.json are made from one `Results` object. The models state the format of
 summary.json: its JSON schema is generated from them and written beside it. Relative sizes are fractions, not percent.
@@ -11,20 +11,20 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from comparison.json_file import json_text
+from comparison.json_file import format_json
 from comparison.report.scene_result import SceneResult
 from comparison.result_types import Part, Text
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.missing_values import MissingValues
-from comparison.surfaces.statements import word_gate
+from comparison.surfaces.statements import word_limit_check
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
-VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
+VERSION: Literal[6] = 6  # grows when a key changes its meaning or is removed
 
 
-# What measured motions say of the models, for every report: `word_what_is_validated` of docs/measured_statements.py
-# words it from the record, which the gate repeats; the report itself knows no analysis.
+# Statement on measurements for every report. docs/measured_statements.py writes it from the record, and the test gate
+# checks it, because the report itself knows no analysis.
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
     " fitted at 250 g and 450 g, at 350 g met (E = +1.4 %, within 2.2 %), at 550 g met (E = +0.68 %, within 3.3 "
@@ -32,7 +32,7 @@ VALIDATED = (
     "+7.7 %), at 550 g not met (by +12 %). No building has been compared"
 )
 
-# the same by `word_what_is_validated_briefly`, for the first screen
+# short form by `word_what_is_validated_briefly`, for the first screen
 VALIDATED_BRIEFLY = (
     "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
     "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "
@@ -41,7 +41,7 @@ VALIDATED_BRIEFLY = (
 
 
 class WorkPart(Part):
-    """One kind of work beside the surfaces."""
+    """One kind of task in addition to the surfaces, with its cost."""
 
     tasks: int = Field(description="number of tasks")
     stored_before: int = Field(description="of these, taken from an earlier run")
@@ -65,8 +65,8 @@ class Run(Part):
     levels: int = Field(description="levels of the study: a report of an earlier one is replaced as the run goes on")
 
     @property
-    def took(self) -> str:
-        """The times of the run in words."""
+    def word_run_times(self) -> str:
+        """Return the times of the run in words."""
         workers = f"{self.jobs} worker{'' if self.jobs == 1 else 's'}"
         return (
             f"{self.wall_seconds:.1f} s of wall time with {workers}, {self.processor_seconds:.1f} s of processor time"
@@ -101,67 +101,67 @@ class Results(Part):
     unanswered: list[MissingValues] = Field(description="models without a value at some or all phase pairs of a scene")
     alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
     faults: list[Text] = Field(description="error messages of the solvers")
-    features: ClassVar[Sequence[Any]] = ()  # the registry enters them
+    features: ClassVar[Sequence[Any]] = ()  # The registry sets the features.
 
     @property
     def broken(self) -> list[Alert]:
-        """The broken acceptance limits, one alert for each body."""
+        """Return the broken acceptance limits, one alert for each body."""
         return [alert for alert in self.alerts if alert.kind == "limit"]
 
     @property
     def titles(self) -> dict[str, str]:
-        """The titles of the models, by key."""
+        """Return the titles of the models by key."""
         return {model.key: model.title for model in self.models}
 
     @property
     def gate(self) -> str:
-        """Return whether the acceptance limits hold, and what has none."""
-        return word_gate(len(self.limits), len(self.broken), self.unchecked)
+        """Return whether the acceptance limits are kept, and which comparisons have no limit."""
+        return word_limit_check(len(self.limits), len(self.broken), self.unchecked)
 
     @property
     def unchecked(self) -> dict[str, list[str]]:
-        """By scene, the pairs of models that no limit is on."""
+        """Return by scene the pairs of models without a limit."""
         return {scene.name: scene.unchecked for scene in self.scenes}
 
     @property
-    def clauses(self) -> list[str]:
-        """Return what the features add to the statement on measurements."""
+    def measurement_clauses(self) -> list[str]:
+        """Return the clauses that the features add to the statement on measurements."""
         said = [feature.clause(self) for feature in self.features if feature.clause]
         return [clause for clause in said if clause]
 
     @property
     def measurements(self) -> str:
-        """Return what measurements say of the models, in a clause."""
-        return "; ".join(self.clauses) or "this study has no measured peaks"
+        """Return the results of measurements of the models, in a clause."""
+        return "; ".join(self.measurement_clauses) or "this study has no measured peaks"
 
     @property
     def engine_lines(self) -> list[str]:
-        """A sentence for each engine of the user and body."""
+        """Return a sentence for each engine of the user and body."""
         lines = [line for scene in self.scenes for line in scene.headlines]
         return [f"{line.scene}, {line.name}: {sentence}" for line in lines for sentence in line.engines]
 
     @property
     def phased(self) -> list[SceneResult]:
-        """The scenes that have phases."""
+        """Return the scenes that have phases."""
         return [scene for scene in self.scenes if not scene.recorded]
 
     def scenes_with(self, analysis: str) -> list[SceneResult]:
-        """The scenes of which the report has the analysis."""
+        """Return the scenes whose results the analysis has."""
         return [scene for scene in self.scenes if analysis in scene.analyses]
 
     @property
     def limits(self) -> list[Limit]:
-        """The acceptance limits of all scenes."""
+        """Return the acceptance limits of all scenes."""
         return [limit for scene in self.scenes for limit in scene.limits]
 
     def as_json(self) -> str:
-        """Content of summary.json."""
-        return json_text(self.model_dump(mode="json", by_alias=True))
+        """Return the content of summary.json."""
+        return format_json(self.model_dump(mode="json", by_alias=True))
 
 
 @cache
-def schema_json(results: type[Results]) -> str:
-    """JSON schema (draft 2020-12) of summary.json."""
+def format_schema(results: type[Results]) -> str:
+    """Return the JSON schema (draft 2020-12) of summary.json."""
     schema = results.model_json_schema(by_alias=True, mode="serialization")
     title = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "summary.json of a study"}
-    return json_text({**schema, **title})
+    return format_json({**schema, **title})

@@ -1,4 +1,4 @@
-"""The results of one scene; the registry adds the fields of its features."""
+"""Results of one scene; the registry adds the fields of its features."""
 
 from typing import Annotated
 
@@ -42,7 +42,7 @@ class RecordValue:
 
 
 class SceneResult(Part):
-    """One scene."""
+    """Results of one scene."""
 
     name: Text = Field(description="file stem or built-in name")
     title: Text = Field(description="as the scene states it")

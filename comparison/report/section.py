@@ -1,4 +1,4 @@
-"""What a report is made from, and the sections of its pages."""
+"""Report as the data that its pages are made from, and the sections of these pages."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ class Report:
 
     @property
     def sections(self) -> list[Section]:
-        """The sections of both pages, in order."""
+        """Return the sections of both pages, in order."""
         return [feature.section for feature in self.features if feature.section]
 
 
 @dataclass(frozen=True)
 class Section:
     """
-    One section of a page, below its heading.
+    One section of a page with its title, template and context.
 
     absent: where the results hold nothing of it, which command makes it. context: what the template reads.
     folded: whether the reader opens it. verifies: whether it judges the tool or the paper rather than answers the
@@ -63,7 +63,7 @@ class Section:
     name: str = ""
     shows: tuple[str, ...] = ()
 
-    def present(self, results: Results) -> bool:
-        """Return whether the section was asked for and the results hold any of what it shows."""
+    def is_present(self, results: Results) -> bool:
+        """Return whether the section was asked for and the results hold any of its fields."""
         held = [getattr(results, name) is not None for name in self.shows]
         return self.name not in results.absent and (not held or any(held))

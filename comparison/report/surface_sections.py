@@ -1,4 +1,4 @@
-"""The features of the surfaces themselves, which are part of every study."""
+"""Features of the surfaces themselves, which are part of every study."""
 
 import math
 from collections.abc import Mapping
@@ -10,17 +10,17 @@ from comparison.report.verification import CHECKS
 from comparison.study.study import Study
 from comparison.surfaces.completion import CompletedSurfaces
 from comparison.surfaces.figures.pictures import Pictures
-from comparison.surfaces.waterfall_chart import log_scale
+from comparison.surfaces.waterfall_chart import make_log_scale
 
 
-def models_in_use(study: Study) -> list[Any]:
-    """The models that some scene of the study has."""
+def list_models_in_use(study: Study) -> list[Any]:
+    """Return the models that some scene of the study has."""
     return [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
 
 
 def _differences_context(report: Report) -> Mapping[str, Any]:
     rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
-    return {"rows": rows, "dots": log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
+    return {"rows": rows, "dots": make_log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
 
 def _grids_context(report: Report) -> Mapping[str, Any]:
@@ -37,7 +37,7 @@ def _costs_context(report: Report) -> Mapping[str, Any]:
 
 
 def _models_context(report: Report) -> Mapping[str, Any]:
-    models = models_in_use(report.study)
+    models = list_models_in_use(report.study)
     own = [model for model in models if model.side != "user"]
     names = dict.fromkeys(name for model in own for name in model.assumptions)
     return {"hierarchy": own, "supplied": [model for model in models if model.side == "user"], "names": names}
@@ -47,9 +47,8 @@ def _surface_feature(key: str, title: str, selectable: bool = False, **about: An
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 
-SURFACES = _surface_feature(
-    "surfaces", "Amplification and motions", selectable=True, folded=False
-)  # one value under a record
+# A record has one value instead of a surface.
+SURFACES = _surface_feature("surfaces", "Amplification and motions", selectable=True, folded=False)
 DIFFERENCES = _surface_feature("differences", "Differences", selectable=True, context=_differences_context)
 BUDGET = _surface_feature("budget", "Causes of the difference", selectable=True, context=_grids_context)
 OUTCOMES = _surface_feature("outcomes", "Outcomes and cost", context=_costs_context)

@@ -1,5 +1,5 @@
 """
-Tests of each code alone, before the two are compared. The report prints it; the tests named here do it.
+Tests of each code alone, which precede the comparison of both; the report lists them with their test files.
 
 Agreement of two codes proves little if either could be wrong by itself in the same way.
 """
@@ -8,8 +8,8 @@ import re
 from typing import NamedTuple
 
 
-class Check(NamedTuple):
-    """One check of one side: against what, how closely and why not closer, and the test, in a file below tests/."""
+class CodeCheck(NamedTuple):
+    """A check of one side: reference, closeness and what limits it, and the test, in a file below tests/."""
 
     side: str
     file: str
@@ -18,7 +18,7 @@ class Check(NamedTuple):
     test: str
 
 
-TABLE = """
+CHECKS_TABLE = """
 reference: reference/test_closed_form_motions.py
   free decay under dry friction: turning points, stops, rest | 1e-7, ten times the tolerance asked |
     test_free_coulomb_decay_of_the_small_equations
@@ -74,7 +74,7 @@ engine: comparison/evidence/test_benchmarks.py
     test_the_engine_meets_all_published_numbers
 """
 CHECKS = tuple(
-    Check(*block[:2], *map(str.strip, row.split("|")))
-    for block in re.findall(r"^(\w+): (\S+)\n((?:  .*\n)+)", TABLE, re.MULTILINE)
+    CodeCheck(*block[:2], *map(str.strip, row.split("|")))
+    for block in re.findall(r"^(\w+): (\S+)\n((?:  .*\n)+)", CHECKS_TABLE, re.MULTILINE)
     for row in re.split(r"\n(?=  \S)", block[2].rstrip())
 )

@@ -8,24 +8,24 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from comparison.report.junit import junit_xml
+from comparison.report.junit import format_limits_as_junit
 from comparison.report.page import render_pages
-from comparison.report.results import schema_json
+from comparison.report.results import format_schema
 from comparison.report.section import Report
-from comparison.report.summary_text import summary_text
+from comparison.report.summary_text import render_summary_text
 from comparison.runner.attempts import LostParts
-from comparison.runner.output import netcdf_content
+from comparison.runner.output import encode_netcdf
 
 
 def write_report(folder: Path, report: Report) -> None:
     """Write every file of the report that can be made into a folder that exists and is empty."""
     results, lost = report.results, LostParts(report.lost)
     contents: dict[str, Callable[[], str | bytes]] = {
-        "surfaces.nc": partial(surfaces_file, report),
+        "surfaces.nc": partial(encode_surfaces, report),
         "summary.json": results.as_json,
-        "summary.schema.json": lambda: schema_json(type(results)),
-        "summary.md": lambda: summary_text(results),
-        "junit.xml": lambda: junit_xml(results),
+        "summary.schema.json": lambda: format_schema(type(results)),
+        "summary.md": lambda: render_summary_text(results),
+        "junit.xml": lambda: format_limits_as_junit(results),
     }
     for name, make in contents.items():
         content = lost.attempt(name, make)
@@ -41,11 +41,11 @@ def write_report(folder: Path, report: Report) -> None:
         (folder / name).write_text(text, encoding="utf-8")
 
 
-def surfaces_file(report: Report) -> bytes:
+def encode_surfaces(report: Report) -> bytes:
     """Return the content of surfaces.nc."""
     surfaces = report.surfaces
     for feature in report.features:
         if feature.dataset:
             surfaces = feature.dataset(surfaces, report.found.get(feature.key))
     run = report.results.run
-    return netcdf_content(surfaces.assign_attrs({"command": run.command, **run.provenance}))
+    return encode_netcdf(surfaces.assign_attrs({"command": run.command, **run.provenance}))

@@ -1,5 +1,5 @@
 """
-The one place where an error of a part costs that part alone: a section, a picture, a table, one file of several.
+Attempts: an error in a part of the output (section, picture, table, file) loses that part alone.
 
 A command computes, then writes tables and JSON, then draws. What raises outside the results becomes one line, and the
 exit code is as without it.
@@ -10,39 +10,39 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypeVar
 
-from comparison.runner.output import on_stderr, publish_files
-from comparison.wording import exception_line
+from comparison.runner.output import print_on_stderr, publish_files
+from comparison.wording import word_exception
 from reference.support.command import OutputError
 
-# errors of a place that takes nothing more: they concern every file that follows, and end the command with code 3
-PLACE_IS_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
-LONGEST = 300  # letters of a line
+# error numbers of a disk that takes nothing more: all later files would fail, so the command ends with code 3
+FULL_DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
+MAX_LINE_LETTERS = 300  # largest number of letters in the line of a lost part
 
 T = TypeVar("T")
 
 
-def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = on_stderr) -> T | None:
-    """Return what `act` returns; where it raises return None, and `say` that `what` could not be shown, and why."""
+def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = print_on_stderr) -> T | None:
+    """Return what `act` returns; if it raises return None and pass `say` a line with `what` and the reason."""
     try:
         return act()
     except OutputError:
         raise
     except Exception as error:
-        if isinstance(error, OSError) and error.errno in PLACE_IS_FULL:
+        if isinstance(error, OSError) and error.errno in FULL_DISK_ERRORS:
             raise
-        say(f"{what} could not be shown: {exception_line(error)[:LONGEST]}")
+        say(f"{what} could not be shown: {word_exception(error)[:MAX_LINE_LETTERS]}")
         return None
 
 
-def publish_made(folder: Path, name: str, make: Callable[[], bytes], command: str) -> list[Path]:
-    """Publish the file of a command that `make` returns; where that raises say so, and leave it out."""
+def publish_attempted(folder: Path, name: str, make: Callable[[], bytes], command: str) -> list[Path]:
+    """Publish the file that `make` returns; if that raises print a line and leave the file out."""
     content = attempt(name, make)
     return [] if content is None else publish_files(folder, {name: content}, command)
 
 
 class LostParts:
     """
-    Parts of a whole that could not be made.
+    Record of the parts of an output that could not be made.
 
     lines: one for each, said on standard error, once. last: the line of the part that failed last.
     """
@@ -51,12 +51,12 @@ class LostParts:
         self.lines, self.last = [*lines], ""
 
     def attempt(self, what: str, act: Callable[[], T]) -> T | None:
-        """Return what `act` returns; where it raises note the part and return None."""
+        """Return what `act` returns; if it raises note the part and return None."""
         return attempt(what, act, self.note)
 
     def note(self, line: str) -> None:
-        """Add the line of a part."""
+        """Record and print the line of a lost part."""
         self.last = line
         if line not in self.lines:
             self.lines.append(line)
-            on_stderr(line)
+            print_on_stderr(line)

@@ -1,5 +1,5 @@
 """
-Every finished result of a study on disk, so that a run that was ended goes on where it stopped.
+Cache of every finished result of a study on disk, from which an interrupted run continues.
 
 One directory per group of results, named by a hash of all that they depend on in common; in it one file per result. A
 file begins with MAGIC and a checksum of its name and of all that follows: what the result depends on in words and the
@@ -31,22 +31,23 @@ from pydantic import ConfigDict, TypeAdapter
 from reference.problem import SceneError
 from reference.support.files import TEMPORARY_PREFIX, read_file, write_atomically
 
-MAGIC = b"phase-resonance result 1\n"
-DIGEST = 32  # bytes of a checksum
-LIMIT = 2**30  # bytes: above this, groups that the present study does not need are dropped, least recently used first
-STALE = 3600.0  # s: a temporary file older than this was left by a killed run; a writing takes milliseconds
-GROUP = re.compile("[0-9a-f]{24}")
-ARRAY, BYTES = "\0array", "\0bytes"  # keys of what stands behind the JSON, by its number
+FILE_SIGNATURE = b"phase-resonance result 1\n"
+CHECKSUM_BYTES = 32  # bytes of a checksum
+# Size in bytes above which groups that the study does not need are dropped, least recently used first
+MAX_CACHE_BYTES = 2**30
+STALE_FILE_AGE = 3600.0  # s, age from which a temporary file was left by a killed run: writing one takes milliseconds
+GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")
+ARRAY_KEY, BYTES_KEY = "\0array", "\0bytes"  # JSON keys that refer by number to an array or bytes stored after the JSON
 
 
 class StoreError(OSError):
-    """A result that could not be stored. `str(error)` is one line."""
+    """Error of a result that could not be stored; `str(error)` is one line."""
 
 
 @dataclass(frozen=True)
 class CacheKey:
     """
-    Key of a stored result. about: all that the results of its group depend on in common, as text; item: what
+    Key of a stored result. about: text of all that the results of its group depend on in common; item: what
     distinguishes this one, as a hash; kind: the suffix of its file, which the counts go by.
     """
 
@@ -56,56 +57,59 @@ class CacheKey:
 
     @cached_property
     def group(self) -> str:
-        """Name of the directory."""
+        """Return the name of the group's directory."""
         return hashlib.sha256(self.about.encode()).hexdigest()[:24]
 
     @property
     def name(self) -> str:
-        """Name of the file below the folder of the cache."""
+        """Return the file name relative to the folder of the cache."""
         return f"{self.group}/{self.item[:24]}.{self.kind}"
 
 
 class Cache:
-    """The results below `folder`, made with the first of them; `kept`: how many were read or written, by kind."""
+    """Results stored below `folder`, which is made with the first of them; `kept`: number read or written, by kind."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.kept: Counter[str] = Counter()
 
     def get(self, key: CacheKey, declared: Any) -> Any | None:
-        """The stored result to the last bit, of type `declared`; None if there is none that is whole and fits."""
+        """Return the stored result bit for bit, of type `declared`; None if there is none that is whole and fits."""
         try:
-            file = read_file(self.folder / key.name, LIMIT)
-            digest, content = file[len(MAGIC) : len(MAGIC) + DIGEST], file[len(MAGIC) + DIGEST :]
-            if not file.startswith(MAGIC) or _checksum(key, content) != digest:
-                return None  # damaged, or of another question
+            file = read_file(self.folder / key.name, MAX_CACHE_BYTES)
+            digest, content = (
+                file[len(FILE_SIGNATURE) : len(FILE_SIGNATURE) + CHECKSUM_BYTES],
+                file[len(FILE_SIGNATURE) + CHECKSUM_BYTES :],
+            )
+            if not file.startswith(FILE_SIGNATURE) or _checksum(key, content) != digest:
+                return None  # The file is damaged, or answers another question.
             value = _unpack_value(content, declared)
-        except Exception:  # whatever is wrong with a file, the result is computed again
+        except Exception:  # Whatever the fault of a file, its result is computed again.
             return None
         self.kept[key.kind] += 1
         with suppress(OSError):
-            os.utime(self.folder / key.group)  # lately used
+            os.utime(self.folder / key.group)  # marks the group as recently used
         return value
 
     def holds(self, key: CacheKey) -> bool:
-        """Return whether there is a file for it, whatever its state."""
+        """Return whether the cache has a file for the key, whatever its state."""
         return (self.folder / key.name).exists()
 
     def put(self, key: CacheKey, value: Any) -> None:
-        """Store a result, unless it names a fault. Raises StoreError, and leaves what is stored as it was."""
-        if names_fault(value):
+        """Store a result unless it names a fault. Raises StoreError, which leaves earlier results as they were."""
+        if has_error_message(value):
             return
         place = self.folder / key.name
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
             content = _pack_value(json.loads(key.about), value)
-            write_atomically(place, MAGIC + _checksum(key, content) + content)
+            write_atomically(place, FILE_SIGNATURE + _checksum(key, content) + content)
         except OSError as error:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
 
     def remove(self, keys: Iterable[CacheKey]) -> None:
-        """Drop these results and no others."""
+        """Delete the results of these keys and no others."""
         wanted = {key.name for key in keys}
         for group in {Path(name).parent.name for name in wanted}:
             with suppress(OSError):
@@ -114,25 +118,25 @@ class Cache:
                         os.unlink(entry.path)
 
     def trim(self, keys: Iterable[CacheKey]) -> None:
-        """Drop groups other than those of `keys`, least recently used first, while all take more than LIMIT."""
+        """Delete groups without any of `keys`, least recently used first, while the cache exceeds its size limit."""
         needed = {key.group for key in keys}
-        with suppress(OSError):  # a store that cannot be looked through is not worth ending a run for
+        with suppress(OSError):  # A cache that cannot be listed is no reason to end a run.
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]
             groups.sort(key=lambda group: (group.stat().st_mtime, group.name))
-            sizes = {group: _size_of_group(group) for group in groups}
+            sizes = {group: _measure_group(group) for group in groups}
             for group in groups:
-                if sum(sizes.values()) > LIMIT and group.name not in needed:
-                    _drop_group(group)
+                if sum(sizes.values()) > MAX_CACHE_BYTES and group.name not in needed:
+                    _remove_group(group)
                     del sizes[group]
 
 
 def locate_store(out: Path) -> Path:
-    """Return where the results of a report are kept."""
+    """Return the folder with the stored results of a report."""
     return out.with_name(f"{out.name}.tiles")
 
 
 def refuse_foreign_store(out: Path) -> None:
-    """Raise SceneError, one line, if something that is no folder of results is where that of the report belongs."""
+    """Raise SceneError, one line, if something else is in the place of the folder of stored results."""
 
     def refusal(rule: str) -> SceneError:
         return SceneError("command line", "--out", str(out), f"{folder.name!r} next to it {rule}")
@@ -150,10 +154,10 @@ def refuse_foreign_store(out: Path) -> None:
         raise refusal(f"cannot be used: {error.strerror}") from None
 
 
-def names_fault(result: Any) -> bool:
-    """Return whether a result, or a part of it, names a fault."""
+def has_error_message(result: Any) -> bool:
+    """Return whether a result, or a part of it, has an error message."""
     if isinstance(result, tuple | list):
-        return any(map(names_fault, result))
+        return any(map(has_error_message, result))
     return bool(getattr(result, "error_message", ""))
 
 
@@ -161,8 +165,8 @@ def _checksum(key: CacheKey, content: bytes) -> bytes:
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
 
-def _drop_group(group: Path) -> None:
-    """Remove the results in a directory, and it if nothing else is in it."""
+def _remove_group(group: Path) -> None:
+    """Remove the results in a directory, and the directory if it is empty then."""
     if group.is_symlink():
         return
     with suppress(OSError):
@@ -173,26 +177,30 @@ def _drop_group(group: Path) -> None:
 
 
 def _is_group(entry: os.DirEntry[str]) -> bool:
-    """Return whether an entry of a store looks like a directory of results. What is removed is proved file by file."""
-    return entry.is_dir(follow_symlinks=False) and GROUP.fullmatch(entry.name) is not None
+    """Return whether a directory has the name of a group; each file in it is checked before it is removed."""
+    return entry.is_dir(follow_symlinks=False) and GROUP_NAME_PATTERN.fullmatch(entry.name) is not None
 
 
 def _is_result(entry: os.DirEntry[str]) -> bool:
-    """Return whether a file is a result, or what a killed run left of one: by its first bytes."""
+    """Return whether a file is a result or a killed run's part of one, by its first bytes."""
     if not entry.is_file(follow_symlinks=False):
         return False
     with suppress(OSError), open(entry.path, "rb") as stream:
-        begin = stream.read(len(MAGIC))
-        return begin == MAGIC or (entry.name.startswith(TEMPORARY_PREFIX) and begin == b"")
+        begin = stream.read(len(FILE_SIGNATURE))
+        return begin == FILE_SIGNATURE or (entry.name.startswith(TEMPORARY_PREFIX) and begin == b"")
     return False
 
 
-def _size_of_group(group: Path) -> int:
-    """Bytes on disk; what killed runs left is removed on the way."""
+def _measure_group(group: Path) -> int:
+    """Return the bytes that a group takes on disk, after removing files left by killed runs."""
     total = 0
     for entry in os.scandir(group):
         state = entry.stat(follow_symlinks=False)
-        if entry.name.startswith(TEMPORARY_PREFIX) and time.time() - state.st_mtime > STALE and _is_result(entry):
+        if (
+            entry.name.startswith(TEMPORARY_PREFIX)
+            and time.time() - state.st_mtime > STALE_FILE_AGE
+            and _is_result(entry)
+        ):
             with suppress(OSError):
                 os.unlink(entry.path)
         else:
@@ -201,7 +209,7 @@ def _size_of_group(group: Path) -> int:
 
 
 def _pack_value(about: Any, value: Any) -> bytes:
-    """A line of JSON, and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
+    """Return a line of JSON and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
     arrays = BytesIO()
     count = 0
 
@@ -211,7 +219,7 @@ def _pack_value(about: Any, value: Any) -> bytes:
             array = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
             npy.write_array(arrays, array, allow_pickle=False)
             count += 1
-            return {BYTES if isinstance(part, bytes) else ARRAY: count - 1}
+            return {BYTES_KEY if isinstance(part, bytes) else ARRAY_KEY: count - 1}
         if isinstance(part, np.generic):
             return part.item()
         if isinstance(part, Enum):
@@ -227,20 +235,21 @@ def _pack_value(about: Any, value: Any) -> bytes:
 
 
 def _unpack_value(content: bytes, declared: Any) -> Any:
-    """The value of type `declared` that `_pack_value` has written. Raises an exception for anything else."""
+    """Return the value of type `declared` that `_pack_value` has packed. Raises for anything else."""
     text, _, rest = content.partition(b"\n")
     arrays, stream = [], BytesIO(rest)
     while stream.tell() < len(rest):
         arrays.append(npy.read_array(stream, allow_pickle=False))
 
     def with_arrays(part: dict[str, Any]) -> Any:
-        if ARRAY in part:
-            return arrays[part[ARRAY]]
-        return arrays[part[BYTES]].tobytes() if BYTES in part else part
+        if ARRAY_KEY in part:
+            return arrays[part[ARRAY_KEY]]
+        return arrays[part[BYTES_KEY]].tobytes() if BYTES_KEY in part else part
 
-    return _type_adapter(declared).validate_python([json.loads(text, object_hook=with_arrays)["value"]])[0]
+    return _make_type_adapter(declared).validate_python([json.loads(text, object_hook=with_arrays)["value"]])[0]
 
 
 @cache
-def _type_adapter(declared: Any) -> TypeAdapter[tuple[Any]]:
-    return TypeAdapter(tuple[declared], config=ConfigDict(arbitrary_types_allowed=True))  # a dataclass takes no config
+def _make_type_adapter(declared: Any) -> TypeAdapter[tuple[Any]]:
+    # A TypeAdapter of a dataclass takes no configuration, one of a tuple does.
+    return TypeAdapter(tuple[declared], config=ConfigDict(arbitrary_types_allowed=True))

@@ -1,4 +1,4 @@
-"""What a computed number depends on in addition to the question: code and versions; and what a report says of them."""
+"""Environment on which a computed number depends besides its question (code, versions), and its words for a report."""
 
 import ast
 import hashlib
@@ -15,24 +15,29 @@ from pathlib import Path
 
 from reference.support.version import __version__
 
-PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
-OURS = ("reference", "multibody", "comparison")
-USER_MODELS = "comparison.study.user_models"  # calls them; their source is in the settings
-SHARED = ("reference.problem", "comparison.study.batches")  # what every model is asked through
-SHOWN = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")  # versions in a report
-DRAWING = ("matplotlib", "pillow", "xarray")
-ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
+COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
+OWN_PACKAGES = ("reference", "multibody", "comparison")
+USER_MODELS = "comparison.study.user_models"  # module that calls a user's engine, whose source is in its settings
+SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules through which every model is called
+# Packages whose versions a report states
+REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
+DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")
+ANSWERING_MODULES = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
 
 
-def environment_fingerprint(model: str) -> dict[str, str]:
-    """Versions of the packages that compute, and hashes of the source behind the function `model` ("package:name")."""
+def fingerprint_environment(model: str) -> dict[str, str]:
+    """Return versions of the computing packages, and source hashes behind the function `model` ("package:name")."""
     module = model.split(":")[0]
-    return _describe_environment(PACKAGES, (*SHARED, module if module == USER_MODELS else module.split(".")[0]))
+    return _describe_environment(
+        COMPUTING_PACKAGES, (*SHARED_MODULES, module if module == USER_MODELS else module.split(".")[0])
+    )
 
 
-def task_environment_fingerprint(module: str) -> dict[str, str]:
-    """Return the fingerprint of what is computed in addition to the surfaces: it asks both sides and may draw."""
-    return _describe_environment((*PACKAGES, *DRAWING), (*ANSWERING, module.rpartition(".")[0] or module))
+def fingerprint_task_environment(module: str) -> dict[str, str]:
+    """Return package versions and source hashes for a task that calls both sides and may draw figures."""
+    return _describe_environment(
+        (*COMPUTING_PACKAGES, *DRAWING_PACKAGES), (*ANSWERING_MODULES, module.rpartition(".")[0] or module)
+    )
 
 
 def _describe_environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, str]:
@@ -40,39 +45,39 @@ def _describe_environment(packages: Iterable[str], sources: Iterable[str]) -> di
         "python": platform.python_version(),
         "machine": platform.machine(),
         "exudyn module": os.environ.get("EXUDYN_MODULE", ""),
-        **{name: _version_of(name) for name in packages},
-        **{f"source of {name}": source_digest(name) for name in sources},
+        **{name: _read_version(name) for name in packages},
+        **{f"source of {name}": hash_source(name) for name in sources},
     }
 
 
-def engine_fingerprint(module: str) -> dict[str, str]:
+def fingerprint_engine(module: str) -> dict[str, str]:
     """
     Return what the numbers of a user's engine depend on: hashes of source behind its module, versions of packages.
     """
     package = module.split(".")[0]
     spec = find_spec(package)
-    # a namespace package has no source file
+    # A namespace package has no source file.
     names = {package if spec is not None and spec.origin is not None else module}
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
-        names |= _packages_in_use(Path(file.origin).read_text(encoding="utf-8"))
-    installed = _installed_packages()
+        names |= _list_imported_packages(Path(file.origin).read_text(encoding="utf-8"))
+    installed = _list_installed_packages()
     versions = {part: version(part) for name in names for part in installed.get(name.split(".")[0], ())}
-    local = {name for name in names if name in OURS or name.split(".")[0] not in installed}
+    local = {name for name in names if name in OWN_PACKAGES or name.split(".")[0] not in installed}
     return {
         **{name: versions[name] for name in sorted(versions)},
-        **{f"source of {name}": source_digest(name) for name in sorted(local)},
+        **{f"source of {name}": hash_source(name) for name in sorted(local)},
     }
 
 
 @cache
-def _installed_packages() -> Mapping[str, list[str]]:
+def _list_installed_packages() -> Mapping[str, list[str]]:
     """Return the distributions of every package that is installed: half a second of looking at their files."""
     return packages_distributions()
 
 
-def _packages_in_use(source: str) -> set[str]:
-    """The packages that a module imports anywhere in its text, without those of Python."""
+def _list_imported_packages(source: str) -> set[str]:
+    """Return the packages that a module imports anywhere in its text, without Python's own."""
     names = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -83,8 +88,8 @@ def _packages_in_use(source: str) -> set[str]:
 
 
 @cache
-def source_digest(name: str) -> str:
-    """Hash of the Python files of a module or package, with their places in it; "absent" if there is none."""
+def hash_source(name: str) -> str:
+    """Return a hash of the Python files of a module or package and their paths in it; "absent" if there is none."""
     spec = find_spec(name)
     if spec is None or spec.origin is None:
         return "absent"
@@ -99,7 +104,7 @@ def source_digest(name: str) -> str:
 
 
 @cache
-def _version_of(name: str) -> str:
+def _read_version(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError:
@@ -107,21 +112,21 @@ def _version_of(name: str) -> str:
 
 
 def describe_provenance() -> dict[str, str]:
-    """Versions, machine and commit, in the order a report shows them."""
+    """Return versions, machine and commit in the order of the report."""
     return {
         "phase-resonance": __version__,
-        "commit": _commit_of_checkout(),
+        "commit": _read_commit(),
         "python": platform.python_version(),
-        **{name: version(name) for name in SHOWN},
+        **{name: version(name) for name in REPORTED_PACKAGES},
         "exudyn module": import_module("multibody.models.engine").MODULE,
         "system": f"{platform.system()} {platform.release()} {platform.machine()}",
-        "processor": _processor_name(),
+        "processor": _read_processor_name(),
         "processors": str(os.cpu_count()),
     }
 
 
-def _commit_of_checkout() -> str:
-    """Commit of the checkout this package runs from; says so if it has changes, or if there is no checkout."""
+def _read_commit() -> str:
+    """Return the commit of the checkout that this package runs from, or that there are changes or no checkout."""
     folder = Path(__file__).resolve().parents[2]
     try:
         if Path(ask_git(folder, "rev-parse", "--show-toplevel")).resolve() != folder:
@@ -133,12 +138,12 @@ def _commit_of_checkout() -> str:
 
 
 def ask_git(folder: Path, *arguments: str) -> str:
-    """Return what git says about a folder. Raises OSError or CalledProcessError."""
+    """Return git's answer about a folder. Raises OSError or CalledProcessError."""
     done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 
 
-def _processor_name() -> str:
+def _read_processor_name() -> str:
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

@@ -1,4 +1,4 @@
-"""The manifest of a folder: the files in it that are the study's own, with a hash of each."""
+"""Manifest of a folder: the files in it that the study wrote, with a hash of each."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from pathlib import Path
 from reference.support.files import read_file
 
 MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"
-LARGEST = 2**30  # bytes of a file that may be the study's own
+MAX_FILE_BYTES = 2**30  # size in bytes above which a file is not checked and counts as foreign
 
 
 @dataclass(frozen=True)
-class Own:
-    """A file of the study: the command that wrote it, and the hashes it may have, two while it is being replaced."""
+class OwnedFile:
+    """File that the study wrote: its command, and the hashes it may have, two while it is being replaced."""
 
     command: str
     hashes: tuple[str, ...]
 
 
 def list_foreign_files(folder: Path) -> list[str]:
-    """Return what is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
+    """Return the paths in a folder of files that the study did not write, sorted. Raises OSError."""
     manifest = read_manifest(folder)
     if not manifest:
         return sorted(os.listdir(folder))
@@ -32,26 +32,26 @@ def list_foreign_files(folder: Path) -> list[str]:
     foreign_files = []
     for path, is_folder in walk_folder(folder):
         name = path.relative_to(folder).as_posix()
-        if name != MANIFEST and not (name in folders if is_folder else is_own(path, manifest.get(name))):
+        if name != MANIFEST and not (name in folders if is_folder else is_own_file(path, manifest.get(name))):
             foreign_files.append(name)
-    # the files in a folder that is not ours say more than its name
+    # Foreign files in a folder say more than its name.
     return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
 
 
-def read_manifest(folder: Path) -> dict[str, Own]:
-    """The files that the study wrote into a folder, by their paths below it; empty without a manifest of ours."""
+def read_manifest(folder: Path) -> dict[str, OwnedFile]:
+    """Return the files that the study wrote into a folder by path; empty without a manifest of the study."""
     try:
-        data = json.loads(read_file(folder / MANIFEST, LARGEST))
+        data = json.loads(read_file(folder / MANIFEST, MAX_FILE_BYTES))
         if data["schema"] != SCHEMA:
             return {}
-        files = {name: Own(entry["command"], tuple(entry["sha256"])) for name, entry in data["files"].items()}
+        files = {name: OwnedFile(entry["command"], tuple(entry["sha256"])) for name, entry in data["files"].items()}
         return {name: own for name, own in files.items() if ".." not in Path(name).parts and name[:1] != "/"}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
 
 
-def manifest_json(manifest: Mapping[str, Own]) -> bytes:
-    """The list of a report's files as it is stored."""
+def format_manifest(manifest: Mapping[str, OwnedFile]) -> bytes:
+    """Return the manifest as the JSON that is stored."""
     files = {
         name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
     }
@@ -60,7 +60,7 @@ def manifest_json(manifest: Mapping[str, Own]) -> bytes:
 
 def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
     """
-    Return all that is below a folder, and whether it is a folder itself, these before what they hold.
+    Yield everything below a folder, and whether it is a folder itself, folders before what they contain.
 
     Raises OSError.
     """
@@ -71,14 +71,14 @@ def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
             yield from walk_folder(Path(entry.path))
 
 
-def is_own(file: Path, entry: Own | None) -> bool:
+def is_own_file(file: Path, entry: OwnedFile | None) -> bool:
     if entry is None or file.is_symlink() or not file.is_file():
         return False
     try:
-        return hash_of(read_file(file, LARGEST)) in entry.hashes
+        return hash_content(read_file(file, MAX_FILE_BYTES)) in entry.hashes
     except OSError:
         return False
 
 
-def hash_of(content: bytes) -> str:
+def hash_content(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()

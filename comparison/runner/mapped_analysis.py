@@ -1,4 +1,4 @@
-"""Analyses that map one function over arguments, each in a task of its own."""
+"""Mapped analyses: one function over arguments, with a task for each of them."""
 
 from collections.abc import Iterable
 from typing import Any, ClassVar
@@ -12,25 +12,25 @@ from comparison.study.study import Study
 
 
 class MappedAnalysis(Analysis[Result]):
-    """One task for each argument, a tuple that begins with its scene."""
+    """Analysis with one task for each argument, a tuple that begins with its scene."""
 
-    function: ClassVar[Any]  # runs inside a worker process
-    without_value: ClassVar[Any]  # makes the value of a task that returned none, from its argument and result
+    function: ClassVar[Any]  # function of one argument, which runs inside a worker process
+    without_value: ClassVar[Any]  # function of argument and result that makes the value of a task without one
     needs_compiled_reference: ClassVar[bool] = True
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:
-        """Return what the function is called with."""
+        """Return the arguments of the tasks."""
         raise NotImplementedError
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One for each argument."""
+        """Return one task for each argument."""
         compiled, arguments = self.needs_compiled_reference, self.task_arguments(study, surfaces)
         return [Task(self.function, each, self.stage, 1.0, each[0], compiled) for each in arguments]
 
     def values(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Any]:
-        """Return what the tasks returned, in the order of the arguments."""
+        """Return the values of the tasks, in the order of the arguments."""
         return [results.value(task, self.without_value) for task in self.tasks(study, surfaces)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
-        """Return all that the tasks listed; None if they listed nothing."""
+        """Return all values that the tasks listed; None if they listed none."""
         return [each for listed in self.values(study, surfaces, results) for each in listed] or None

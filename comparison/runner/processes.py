@@ -1,5 +1,5 @@
 """
-Worker processes of this machine, each with a pipe of its own: one that dies or takes too long costs its own task.
+Worker processes of this machine, each with a pipe of its own: one that dies or takes too long loses only its task.
 
 The system ends a process that computes for longer than its task may, also in the middle of compiled code, where no
 handler of Python would run. It counts the process's own processor time: what else the machine does makes no task fail.
@@ -33,26 +33,28 @@ import numba
 
 try:
     import resource
-except ImportError:  # Windows limits no process: the wall time has to do
+except ImportError:  # Windows cannot limit a process's processor time; its wall time is limited instead.
     resource = None  # type: ignore[assignment]
 
-CONTEXT = multiprocessing.get_context("spawn")
-STALLED = 20.0  # times the limit: wall time after which a silent process waits for something that never comes
-# A limit of more than a few seconds leaves less wall time: SLOWEST times the limit, for a shared processor, and SPARE s
-SLOWEST, SPARE = 5.0, 60.0
-LONGEST_WAIT = 1e6  # s, the longest timeout that the system takes
-EXIT = 5.0  # s from the end of a pipe to the end of its process
-# Variable of the environment: where it is set, Python does not search the working directory first
+SPAWN_CONTEXT = multiprocessing.get_context("spawn")
+# Wall time over the time limit after which a silent process is stuck, waiting for something that never comes
+STALLED_WALL_RATIO = 20.0
+# A time limit of more than a few seconds allows this multiple of it as wall time, for a shared processor, plus s.
+WALL_TIME_RATIO, SPARE_WALL_SECONDS = 5.0, 60.0
+MAX_TIMEOUT = 1e6  # s, longest timeout that the system takes
+EXIT_SECONDS = 5.0  # s that a process has to end after its pipe has ended
+# environment variable with which Python does not search the working directory first
 SAFE_PATH = "PYTHONSAFEPATH"
 
 Call = Callable[[], Any]
-Pool = Executor | Callable[[int], Executor]  # an executor that somebody else ends, or what makes one for N jobs
+Pool = Executor | Callable[[int], Executor]  # an executor that the caller ends, or a function that makes one for N jobs
 
-_processes = threading.Lock()  # starting a process collects others that have ended: one thread at a time does either
+# Starting a process also collects ended ones: only one thread may do either at a time.
+_process_start_lock = threading.Lock()
 
 
 class WorkerDiedError(Exception):
-    """The process that ran this task died, `times` in a row. The executor goes on, and no other task was harmed."""
+    """Error of a task whose process died, `times` in a row; other tasks and the executor go on."""
 
     def __init__(self, message: str, times: int = 1, exit_code: int | None = None) -> None:
         super().__init__(message)
@@ -60,21 +62,21 @@ class WorkerDiedError(Exception):
 
 
 class TimeLimitError(Exception):
-    """The process that ran this task was ended, because the task took longer than it may. `str(error)`: how long."""
+    """Error of a task that exceeded its time limit, whose process was ended; `str(error)` states how long it took."""
 
 
 class ExecutorLostError(RuntimeError):
-    """No task can be computed any more. `str(error)` is one line that says why."""
+    """Error of an executor that can compute no further task; `str(error)` is one line that says why."""
 
 
 def count_cores() -> int:
-    """Processors that this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager
 def open_executor(pool: Pool, jobs: int) -> Iterator[Executor]:
-    """The executor; one that is made for the block ends with it, and without waiting if the block raises."""
+    """Yield the executor; one made for the block ends with it, without waiting if the block raises."""
     if isinstance(pool, Executor):
         yield pool
         return
@@ -87,39 +89,40 @@ def open_executor(pool: Pool, jobs: int) -> Iterator[Executor]:
     made.shutdown()
 
 
-def process_pool(jobs: int) -> Workers:
-    """Up to `jobs` fresh processes, each with one thread: the tasks are the parallelism."""
-    one_thread_each()
+def make_process_pool(jobs: int) -> Workers:
+    """Return an executor of up to `jobs` fresh processes with one thread each, as the tasks run in parallel."""
+    limit_child_threads()
     return Workers(jobs)
 
 
-def one_thread_each() -> None:
-    """Let the libraries of processes that start from here use one thread, unless the user has said otherwise."""
+def limit_child_threads() -> None:
+    """Set the environment so that libraries in child processes use one thread, unless the user has set it."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
 
 
 class Workers(Executor):
-    """Up to `jobs` processes. One that has ended is replaced with the next task, and the others do not notice."""
+    """Executor of up to `jobs` processes; one that has ended is replaced with the next task."""
 
     def __init__(self, jobs: int) -> None:
         self.width = jobs
-        self._threads = ThreadPoolExecutor(jobs)  # each of them waits for one process
+        self._threads = ThreadPoolExecutor(jobs)  # one thread for each process, which waits for its answers
         self._lock = threading.Lock()
-        self._idle: dict[str, list[_Process]] = defaultdict(list)  # by the group of the tasks that they have run
+        # Idle processes by the group of the tasks that they have run
+        self._idle: dict[str, list[_Process]] = defaultdict(list)
         self._all: set[_Process] = set()
         self._abandoned = False
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Make a call in a worker process, without a limit of time."""
+        """Start a call in a worker process, without a time limit."""
         return self.start(partial(function, *args, **kwargs))
 
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """Make a call in a process that runs no other group's; after `seconds` of processor time: TimeLimitError."""
+        """Start a call in a process of its group; TimeLimitError after `seconds` of processor time."""
         return self._threads.submit(self._run, call, seconds, group)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Finish what has begun if `wait`, and end the processes; else they end with this one."""
+        """Finish the calls that have begun if `wait`, and end the processes; else they end with this one."""
         self._threads.shutdown(wait=wait, cancel_futures=cancel_futures)
         if wait:
             for process in self._all:
@@ -127,7 +130,7 @@ class Workers(Executor):
             self._all.clear()
 
     def abandon(self) -> None:
-        """End the processes in the middle of their tasks."""
+        """End the processes, even in the middle of their tasks."""
         with self._lock:
             self._abandoned = True
             for process in self._all:
@@ -143,7 +146,7 @@ class Workers(Executor):
             with self._lock:
                 self._all.discard(process)
             raise
-        except BaseException:  # what cannot be sent to or from the process, which has not noticed
+        except BaseException:  # Arguments or results that cannot be pickled do not harm the process.
             self._idle[group].append(process)
             raise
         self._idle[group].append(process)
@@ -163,36 +166,40 @@ class Workers(Executor):
 
 
 class _Process:
-    """A process that makes one call after the other."""
+    """A worker process that makes one call after the other."""
 
     def __init__(self) -> None:
-        self._pipe, theirs = CONTEXT.Pipe()
-        with _processes, _safe_import_path() as before, _deaf_to_ctrl_c():
+        self._pipe, theirs = SPAWN_CONTEXT.Pipe()
+        with _process_start_lock, _safe_import_path() as before, _ignore_ctrl_c():
             about = theirs, gc.get_threshold(), before
-            self._process = CONTEXT.Process(target=_serve_calls, args=about, daemon=True)
+            self._process = SPAWN_CONTEXT.Process(target=_serve_calls, args=about, daemon=True)
             self._process.start()
         theirs.close()
 
     def run(self, call: Call, seconds: float | None) -> tuple[Any, BaseException | None]:
         """
-        Return what the call returned and what it raised.
+        Return the result of the call, and the error that it raised or None.
 
         Raises WorkerDiedError or TimeLimitError; then the process has ended.
         """
-        wait = None if seconds is None else min(STALLED * seconds, SLOWEST * seconds + SPARE, LONGEST_WAIT)
+        wait = (
+            None
+            if seconds is None
+            else min(STALLED_WALL_RATIO * seconds, WALL_TIME_RATIO * seconds + SPARE_WALL_SECONDS, MAX_TIMEOUT)
+        )
         try:
             self._pipe.send((call, seconds))
             if not self._pipe.poll(wait):
                 raise TimeLimitError(f"no answer within {wait:g} s")
             message = self._pipe.recv_bytes()
         except (EOFError, OSError):
-            raise self._why_it_ended(seconds) from None
+            raise self._explain_end(seconds) from None
         value, error = pickle.loads(message)
         return value, error
 
-    def _why_it_ended(self, seconds: float | None) -> WorkerDiedError | TimeLimitError:
-        with _processes:
-            self._process.join(EXIT)
+    def _explain_end(self, seconds: float | None) -> WorkerDiedError | TimeLimitError:
+        with _process_start_lock:
+            self._process.join(EXIT_SECONDS)
             code = self._process.exitcode
         if seconds is not None and resource is not None and code == -signal.SIGXCPU:
             return TimeLimitError(f"no answer within {seconds:g} s of processor time")
@@ -202,8 +209,8 @@ class _Process:
         self._process.kill()
 
     def end(self) -> None:
-        """Kill the process, which keeps nothing, and collect it."""
-        with _processes:
+        """Kill the process, which holds no data, and wait until it has ended."""
+        with _process_start_lock:
             self._process.kill()
             self._process.join()
         self._pipe.close()
@@ -211,13 +218,14 @@ class _Process:
 
 def _serve_calls(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
     """
-    Call what messages name until the parent of this process closes the pipe or ends.
+    Make the calls that messages name until the parent closes the pipe or ends.
 
     safe_path: for the processes that a task starts.
     """
     _set_safe_path(safe_path)
     gc.set_threshold(*collections)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
+    # Ctrl-C reaches the whole process group; the parent alone decides what ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     numba.set_num_threads(1)
     with suppress(EOFError):
@@ -226,7 +234,7 @@ def _serve_calls(pipe: Connection, collections: tuple[int, int, int], safe_path:
 
 
 def _call_function(message: bytes) -> bytes:
-    """Return what the call in a message returned and what it raised."""
+    """Return the packed result of the call in a message, and the error that it raised or None."""
     value: Any = None
     error: BaseException | None = None
     try:
@@ -241,7 +249,7 @@ def _call_function(message: bytes) -> bytes:
     try:
         answer = pickle.dumps((value, error))
         if error is not None:
-            pickle.loads(answer)  # not every error can be made again from its text
+            pickle.loads(answer)  # Some errors cannot be made again from their text.
     except Exception as unsent:
         told = unsent if error is None else error
         return pickle.dumps((None, RuntimeError(f"{type(told).__name__}: {told}")))
@@ -249,7 +257,7 @@ def _call_function(message: bytes) -> bytes:
 
 
 def _limit_processor_time(seconds: float | None) -> None:
-    """Let the system end this process after so much more processor time, s, rounded up; never for None."""
+    """Let the system end this process after `seconds` more of processor time, rounded up; never for None."""
     if resource is None:
         return
     resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
@@ -262,7 +270,7 @@ def _limit_processor_time(seconds: float | None) -> None:
 
 
 def _end_with_parent() -> None:
-    """A worker whose parent was killed waits for tasks for ever, unless it looks."""
+    """End this worker as soon as its parent has ended; otherwise it would wait for tasks forever."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
@@ -271,7 +279,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _safe_import_path() -> Iterator[str | None]:
-    """A process started meanwhile does not search the working directory first. Yields what SAFE_PATH was."""
+    """Make processes started in the block not search the working directory first. Yields SAFE_PATH's old value."""
     before = os.environ.get(SAFE_PATH)
     _set_safe_path("1")
     try:
@@ -288,12 +296,12 @@ def _set_safe_path(value: str | None) -> None:
 
 
 @contextmanager
-def _deaf_to_ctrl_c() -> Iterator[None]:
-    """A process started meanwhile does not hear Ctrl-C even while it imports; here it is heard afterwards."""
+def _ignore_ctrl_c() -> Iterator[None]:
+    """Make processes started in the block ignore Ctrl-C while they import; a Ctrl-C meanwhile is raised afterwards."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    resource_tracker.ensure_running()  # its own start would end the deafness
+    resource_tracker.ensure_running()  # started before Ctrl-C is ignored, because its start restores the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -1,4 +1,4 @@
-"""One bar for a whole command, or plain lines where there is no terminal, with the time left; and its deadline."""
+"""Progress of a command: one bar, or plain lines without a terminal, with the time left; and its deadline."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from typing import NoReturn
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-EVERY = 15.0  # s between plain lines
-TRUSTED = 0.1  # share of the work, that the rough costs count against the work done
-PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
-EARLY = 0.3  # s: the process takes so long to end
-SOON = 1e-3  # s
+LINE_INTERVAL = 15.0  # s between two plain lines
+ROUGH_COST_SHARE = 0.1  # share of the work by which the rough costs weigh against the measured time of work done
+PLAIN_WIDTH = 120  # columns of a table that is written to a file or a pipe
+EXIT_SECONDS = 0.3  # s that the process takes to end after the deadline
+MIN_TIMER = 1e-3  # s, shortest timer: setitimer(0) would switch it off
 
 
-def wide_console() -> Console:
-    """Standard output, as wide as the terminal or PLAIN_WIDTH columns; texts are no markup."""
+def make_wide_console() -> Console:
+    """Return a console on standard output, as wide as the terminal or PLAIN_WIDTH columns, without markup."""
     width = None if sys.stdout.isatty() else PLAIN_WIDTH
     return Console(highlight=False, markup=False, emoji=False, width=width)
 
@@ -40,10 +40,11 @@ class Display:
         self.total, self._jobs, self._show, self.done = total, jobs, show, 0.0
         self._what = ""
         self.begin = time.monotonic()
-        self._first: tuple[float, float] | None = None  # when the first piece was done, and how much was done then
+        # Time at which the first piece of work was done, and the work done by then
+        self._first: tuple[float, float] | None = None
 
     def advance(self, what: str, count: str, seconds: float) -> None:
-        """Work of rough `seconds` is done: what, and how many of how many, in words."""
+        """Record that work of rough `seconds` is done: what, and how many of how many, in words."""
         self.done += seconds
         if self._first is None:
             self._first = time.monotonic(), self.done
@@ -51,30 +52,30 @@ class Display:
         self._show(self)
 
     def skip(self, seconds: float) -> None:
-        """Work of rough `seconds` need not be done."""
+        """Subtract work of rough `seconds` that need not be done."""
         self.total -= seconds
 
     def extend(self, seconds: float) -> None:
-        """Work of rough `seconds` is added."""
+        """Add work of rough `seconds`."""
         self.total += seconds
 
     @property
     def text(self) -> str:
-        """Return what is done last, and the time left."""
+        """Return the work done last, and the time left."""
         return f"{self._what}, about {self.seconds_left:.0f} s left"
 
     @property
     def seconds_left(self) -> float:
-        """Time left, s."""
+        """Return the time left, s."""
         work, now = max(self.total - self.done, 0.0), time.monotonic()
         before, earlier = self._first or (now, self.done)
-        rough = max(TRUSTED * self.total, 1.0)
+        rough = max(ROUGH_COST_SHARE * self.total, 1.0)
         return work * (now - before + rough / self._jobs) / (self.done - earlier + rough)
 
 
 @contextmanager
 def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
-    """A display for as long as the block lasts; total: all work, rough s of processor time; jobs: workers."""
+    """Yield a display for the duration of the block; total: all work, rough s of processor time; jobs: workers."""
     if console.is_terminal:
         with Progress(BarColumn(), TextColumn("{task.fields[text]}", markup=False), console=console) as bars:
             bar = bars.add_task("", total=total, text="starting")
@@ -84,7 +85,7 @@ def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display
 
     def line(display: Display) -> None:
         nonlocal last
-        if (now := time.monotonic()) - last >= EVERY:
+        if (now := time.monotonic()) - last >= LINE_INTERVAL:
             last = now
             console.print(f"{now - display.begin:6.0f} s  {display.text}", style=None)
 
@@ -92,14 +93,14 @@ def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display
 
 
 class TimeUpError(BaseException):
-    """The deadline has come. No Exception: what a task raises must not be taken for it."""
+    """Signal that the deadline has come; no Exception, so that it is not taken for an error of a task."""
 
 
 class Deadline:
-    """Raises TimeUpError in the block `seconds`, if any, after `begin`, by `time.monotonic()`."""
+    """Context that raises TimeUpError in its block `seconds`, if not None, after `begin`, by `time.monotonic()`."""
 
     def __init__(self, begin: float, seconds: float | None) -> None:
-        self._end = None if seconds is None else begin + seconds - EARLY
+        self._end = None if seconds is None else begin + seconds - EXIT_SECONDS
 
     def __enter__(self) -> Deadline:
         if self._end is not None:
@@ -113,9 +114,9 @@ class Deadline:
             signal.signal(signal.SIGALRM, self._before)
 
     def keep_free(self, seconds: float) -> None:
-        """From now on the time is up so much before the end, for what has to follow."""
+        """Move the deadline forward by `seconds`, for work that has to follow."""
         if self._end is not None:
-            signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), SOON))
+            signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), MIN_TIMER))
 
 
 def _raise_time_up(number: int, frame: FrameType | None) -> NoReturn:

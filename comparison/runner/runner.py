@@ -1,5 +1,5 @@
 """
-The one way in which anything is computed: a task whose result is stored is looked up, any other is executed.
+Runner of tasks, the one way in which anything is computed: a stored result is read, any other task is executed.
 
 No task is lost: one that raises, hangs or ends its worker is answered for.
 """
@@ -17,31 +17,38 @@ import numpy as np
 import reference
 from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, open_executor
 from comparison.runner.progress import Display
-from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, result_without_value
+from comparison.runner.task import (
+    GIVEN_UP_MESSAGE,
+    MAX_FAILED_BATCHES,
+    Task,
+    TaskResult,
+    execute_task,
+    make_failed_result,
+)
 from comparison.runner.task_results import TaskResults
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import Outcome, Scene, load_scene
 
-LOOK = 1.0  # s: how often an executor is asked for its width while no result arrives
-LOST = BrokenExecutor, ExecutorLostError, CancelledError
-DURATION = 0.5  # s of the motion that compiles the reference: enough to reach every function
+WIDTH_CHECK_INTERVAL = 1.0  # s between two looks at the executor's number of workers while no result arrives
+LOST_ERRORS = BrokenExecutor, ExecutorLostError, CancelledError
+COMPILING_DURATION = 0.5  # s of the motion that compiles the reference: long enough to reach every function
 
 
-@dataclass(eq=False)  # found in the queue by what it is, not by comparing scenes and arrays
-class _Work:
+@dataclass(eq=False)  # Compared by identity, because comparing scenes and arrays would be slow.
+class _WorkItem:
     """A task, or a half of the task of `parent`."""
 
     task: Task
-    parent: _Work | None = None
+    parent: _WorkItem | None = None
     deaths: int = 0
-    halves: Sequence[_Work] = ()
+    halves: Sequence[_WorkItem] = ()
     result: TaskResult | None = None
 
 
 @dataclass
 class Runner:
     """
-    Runs tasks on `executor`, or on what it makes for `jobs` workers, and stores every result as it arrives.
+    Runner of tasks on `executor`, or on one made for `jobs` workers; it stores every result as it arrives.
 
     A task that raises has the outcome SOLVER_FAILED, and one that takes longer than its `timeout` TIME_LIMIT. One whose
     worker dies is tried once more, then cut in halves, until a part that cannot be cut has killed two workers: that one
@@ -56,12 +63,13 @@ class Runner:
     executor: Pool
     display: Display = field(default_factory=lambda: Display(0.0, 1))
     stages: Mapping[str, float] = field(default_factory=dict)
-    hung: Counter[str] = field(default_factory=Counter)  # batches that hung or ended their process, by worker group
+    # Number of batches that hung or ended their process, by group of workers
+    hung: Counter[str] = field(default_factory=Counter)
     compiled: bool = False  # whether a worker has compiled the reference
 
     def run(self, tasks: Sequence[Task], compiling: Callable[[], Task] | None = None) -> None:
         """
-        Every task in one sweep: batches in their order, then the others, the longest first.
+        Run every task in one sweep: batches in their order, then the others, the longest first.
 
         compiling: makes a short task that compiles the reference; the tasks that need it wait for that one.
         Raises StoreError or ExecutorLostError if the cache cannot be written, or the executor cannot go on.
@@ -69,11 +77,11 @@ class Runner:
         sums: Counter[str] = Counter()
         for task in tasks:
             sums[task.stage] += task.seconds  # type: ignore[assignment]
-        self._weights = {  # rough s of processor time
+        self._weights = {  # s, rough processor time
             id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
         }
         new = [task for task in tasks if task not in self.results]
-        missing = self.results.missing(new)
+        missing = self.results.find_missing(new)
         self.display.skip(
             sum(self._weights[id(task)] for task in new) - sum(self._weights[id(task)] for task in missing)
         )
@@ -81,27 +89,27 @@ class Runner:
             return
         missing.sort(key=lambda task: (task.batch is None, 0.0 if task.batch else -task.seconds))
         needed = not self.compiled and any(task.needs_compiled_reference for task in missing)
-        self._first = compiling() if compiling and needed else None  # None again when it is done
-        self._queue = deque(map(_Work, [self._first, *missing] if self._first else missing))
-        self._at_work: dict[Future[TaskResult], _Work] = {}
+        self._first = compiling() if compiling and needed else None  # None again when the compiling task is done
+        self._queue = deque(map(_WorkItem, [self._first, *missing] if self._first else missing))
+        self._at_work: dict[Future[TaskResult], _WorkItem] = {}
         self._so_far: Counter[str] = Counter()
         self._total: Counter[str] = Counter()
         for work in self._queue:
             self._total[work.task.stage] += work.task.points
         with open_executor(self.executor, min(self.jobs, len(self._queue))) as executor:
-            self._sweep(executor)
+            self._run_sweep(executor)
 
-    def _sweep(self, executor: Executor) -> None:
+    def _run_sweep(self, executor: Executor) -> None:
         try:
             while self._queue or self._at_work:
-                self._fill(executor)
-                finished = wait(self._at_work, LOOK, return_when=FIRST_COMPLETED).done
+                self._fill_workers(executor)
+                finished = wait(self._at_work, WIDTH_CHECK_INTERVAL, return_when=FIRST_COMPLETED).done
                 arrived = [(self._at_work.pop(future), future) for future in finished]
                 try:
-                    self._fill(executor, arriving=True)  # workers go on while results are stored
+                    self._fill_workers(executor, arriving=True)  # The workers go on while results are stored.
                 finally:
-                    for work, future in sorted(arrived, key=lambda pair: isinstance(_error_of_future(pair[1]), LOST)):
-                        self._take(work, future)
+                    for work, future in sorted(arrived, key=lambda pair: isinstance(_get_error(pair[1]), LOST_ERRORS)):
+                        self._take_result(work, future)
         except BaseException:
             for future in self._at_work:
                 future.cancel()
@@ -109,55 +117,55 @@ class Runner:
                 executor.abandon()
             raise
 
-    def _fill(self, executor: Executor, arriving: bool = False) -> None:
-        """As many tasks at work as there are workers; arriving: results that may make tasks ready are not told yet."""
+    def _fill_workers(self, executor: Executor, arriving: bool = False) -> None:
+        """Start as many tasks as there are workers; arriving: results that may make others ready are still unread."""
         while len(self._at_work) < getattr(executor, "width", self.jobs):
             candidates = list(self._queue)[:1] if arriving else self._queue
             ready = (work for work in candidates if not (self._first and work.task.needs_compiled_reference))
             if (work := next(ready, None)) is None:
                 return
             self._queue.remove(work)
-            if work.task.batch and self.hung[work.task.group] >= GIVEN_UP_AFTER:
-                self._keep(work, result_without_value(Outcome.NOT_ASKED, GIVEN_UP))
+            if work.task.batch and self.hung[work.task.group] >= MAX_FAILED_BATCHES:
+                self._keep_result(work, make_failed_result(Outcome.NOT_ASKED, GIVEN_UP_MESSAGE))
             else:
                 self._at_work[_start_task(work.task, executor)] = work
 
-    def _take(self, work: _Work, future: Future[TaskResult]) -> None:
-        error = _error_of_future(future)
+    def _take_result(self, work: _WorkItem, future: Future[TaskResult]) -> None:
+        error = _get_error(future)
         if error is None:
-            self._keep(work, future.result())
+            self._keep_result(work, future.result())
         elif isinstance(error, WorkerDiedError):
-            self._answer_for_death(work, error)
+            self._handle_worker_death(work, error)
         elif isinstance(error, TimeLimitError):
-            self._keep(work, result_without_value(Outcome.TIME_LIMIT, str(error)))
+            self._keep_result(work, make_failed_result(Outcome.TIME_LIMIT, str(error)))
         elif isinstance(error, ExecutorLostError):
             raise error
-        elif isinstance(error, LOST):
+        elif isinstance(error, LOST_ERRORS):
             raise ExecutorLostError(f"the executor is broken: {error}")
         else:
-            self._keep(work, result_without_value(Outcome.SOLVER_FAILED, exception_line(error)))
+            self._keep_result(work, make_failed_result(Outcome.SOLVER_FAILED, word_exception(error)))
 
-    def _answer_for_death(self, work: _Work, error: WorkerDiedError) -> None:
+    def _handle_worker_death(self, work: _WorkItem, error: WorkerDiedError) -> None:
         work.deaths += error.times
         halves = work.task.halves()
         if work.deaths < 2 and (work.parent is None or not halves):
             self._queue.appendleft(work)
         elif halves:
-            work.halves = [_Work(half, work) for half in halves]
+            work.halves = [_WorkItem(half, work) for half in halves]
             self._queue.extendleft(reversed(work.halves))
         else:
             ending = "" if error.exit_code is None else f" (exit code {error.exit_code})"
-            self._keep(
-                work, result_without_value(Outcome.WORKER_DIED, f"the worker process died {work.deaths} times{ending}")
+            self._keep_result(
+                work, make_failed_result(Outcome.WORKER_DIED, f"the worker process died {work.deaths} times{ending}")
             )
 
-    def _keep(self, work: _Work, result: TaskResult) -> None:
-        """Store a result; that of a half when the other is there, too."""
+    def _keep_result(self, work: _WorkItem, result: TaskResult) -> None:
+        """Store a result; that of a half as soon as the other half has one, too."""
         work.result, parent, task = result, work.parent, work.task
         if parent is not None:
             results = [half.result for half in parent.halves if half.result is not None]
             if len(results) == len(parent.halves):
-                self._keep(parent, parent.task.join(results))
+                self._keep_result(parent, parent.task.join(results))
             return
         if task is self._first:
             self._first, self.compiled = None, True
@@ -173,30 +181,30 @@ class Runner:
 def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
     start: Callable[..., Future[TaskResult]] | None = getattr(executor, "start", None)
     try:
-        if start is None:  # such as threads: they keep no limit of time
-            return executor.submit(execute, task)
-        return start(partial(execute, task), task.timeout, task.group)
+        if start is None:  # Executors of threads, for example, cannot limit the time of a call.
+            return executor.submit(execute_task, task)
+        return start(partial(execute_task, task), task.timeout, task.group)
     except BrokenExecutor as error:
         raise ExecutorLostError(f"the executor is broken: {error}") from None
 
 
-def _error_of_future(future: Future[TaskResult]) -> BaseException | None:
-    """Return what the task raised, None if nothing."""
+def _get_error(future: Future[TaskResult]) -> BaseException | None:
+    """Return the error that the task raised, None if it raised none."""
     try:
         return future.exception()
     except CancelledError as cancelled:
         return cancelled
 
 
-def compiling_task() -> Task:
+def make_compiling_task() -> Task:
     """
-    One phase pair of a built-in scene, which compiles the reference and keeps it on disk, once on a machine.
+    Return a task of one phase pair that compiles the reference and keeps it on disk, once on a machine.
 
     One worker does that while the others are busy with the engine, so that no two of them compile the same code.
     """
-    scene = load_scene("fig3-I").with_values({"duration": DURATION})
-    return Task(_first_call, scene, "compiling the reference, once", 0.0, needs_compiled_reference=False)
+    scene = load_scene("fig3-I").with_values({"duration": COMPILING_DURATION})
+    return Task(_compile_reference, scene, "compiling the reference, once", 0.0, needs_compiled_reference=False)
 
 
-def _first_call(scene: Scene) -> None:
+def _compile_reference(scene: Scene) -> None:
     reference.amplification(scene, np.zeros((1, 2)), equations="exact")

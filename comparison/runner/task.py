@@ -1,4 +1,4 @@
-"""The unit of work: a function of a module with its argument, run in a worker process and found again by its key."""
+"""Task, the unit of work: a function of a module with its argument, run in a worker process and cached by its key."""
 
 from __future__ import annotations
 
@@ -15,63 +15,66 @@ import numpy as np
 import xarray as xr
 
 from comparison.runner.cache import CacheKey
-from comparison.runner.environment import environment_fingerprint, task_environment_fingerprint
+from comparison.runner.environment import fingerprint_environment, fingerprint_task_environment
 from comparison.study.batches import Batch
 from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
-BATCH, RESULT = "batch", "result"  # kinds of stored results: of phase pairs, and all others
-GIVEN_UP_AFTER = 2  # batches of one group that hang or end their process: the engine is not asked again
-GIVEN_UP = f"{GIVEN_UP_AFTER} calls hung or ended their process: not asked for the other phase pairs"
+BATCH_KIND, RESULT_KIND = "batch", "result"  # kinds of stored results: those of phase pairs, and all others
+# Number of batches of one group that may hang or end their process before the engine is not asked again
+MAX_FAILED_BATCHES = 2
+GIVEN_UP_MESSAGE = f"{MAX_FAILED_BATCHES} calls hung or ended their process: not asked for the other phase pairs"
 
 
 @dataclass(frozen=True)
 class Task:
-    """`function(argument)`, in a worker process, pure and picklable; cached by `key` as the type that it declares."""
+    """Call `function(argument)` in a worker process, pure and picklable; cached by `key` as its declared type."""
 
     function: Callable[[Any], Any]
     argument: Any
-    stage: str  # its name on the terminal and in the table of costs
-    seconds: float = 1.0  # its weight among the tasks of its stage
-    about: Any = None  # what its directory in the cache belongs to
-    needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
-    timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
-    group: str = ""  # workers are shared within a group only: an engine of the user may spoil the process it runs in
-    model: str = ""  # "package:name" of the only model that it asks: no other source changes its value
+    stage: str  # name of its stage on the terminal and in the table of costs
+    seconds: float = 1.0  # s, rough processor time: the weight among the tasks of its stage
+    about: Any = None  # question whose results share a directory in the cache
+    # Whether, on a new installation, it waits until a worker has compiled the reference
+    needs_compiled_reference: bool = True
+    # S, largest processor time, rounded up; a task that takes longer ends with Outcome.TIME_LIMIT
+    timeout: float | None = None
+    group: str = ""  # group of workers that it may use: a user's engine may spoil the process it runs in
+    model: str = ""  # "package:name" of the only model it calls: other sources do not change its value
 
     @cached_property
     def key(self) -> CacheKey:
         """
-        Return what it is found by: the function, all that its argument holds, versions and the source that computes it.
+        Return the key of its result: function, contents of the argument, versions and source that computes it.
         """
-        function = name_of_function(self.function)
+        function = name_function(self.function)
         about = {
             "function": function,
-            "about": fingerprint(self.about),
-            "environment": environment_fingerprint(self.model)
+            "about": describe_contents(self.about),
+            "environment": fingerprint_environment(self.model)
             if self.model
-            else task_environment_fingerprint(self.function.__module__),
+            else fingerprint_task_environment(self.function.__module__),
         }
-        item = json.dumps([function, fingerprint(self.argument)])
+        item = json.dumps([function, describe_contents(self.argument)])
         digest = hashlib.sha256(item.encode()).hexdigest()
-        return CacheKey(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
+        return CacheKey(json.dumps(about, indent=1, sort_keys=True), digest, BATCH_KIND if self.batch else RESULT_KIND)
 
     @cached_property
     def batch(self) -> Batch | None:
-        """Its argument, if that is some phase pairs, which are cut in two where a worker dies of them."""
+        """Return its argument if that is a batch, which is cut in two if a worker dies of it."""
         return self.argument if isinstance(self.argument, Batch) else None
 
     @property
     def points(self) -> int:
-        """Return what it counts for on the terminal."""
+        """Return the number that it counts for on the terminal."""
         return self.batch.points if self.batch else 1
 
     def halves(self) -> list[Task]:
-        """The two tasks into which it can be cut; none if it cannot."""
+        """Return the two tasks into which it can be cut; none if it cannot."""
         return [replace(self, argument=half) for half in self.batch.halves()] if self.batch else []
 
     def join(self, results: Sequence[TaskResult]) -> TaskResult:
-        """Its result from those of its halves."""
+        """Return its result made of those of its halves."""
         assert self.batch is not None, "only a batch has halves"
         values = [
             result.value if result.value is not None else half.without_result(result.outcome, result.error_message)
@@ -84,39 +87,39 @@ class Task:
 
 @dataclass(frozen=True)
 class TaskResult:
-    """Value that a task returned, or the reason why it returned nothing."""
+    """Value that a task returned, or the reason why it returned none."""
 
-    value: Any  # for a batch also where a part of its points is lost; otherwise None unless `outcome` is OK
+    value: Any  # a batch also has one if a part of its points is lost; otherwise None unless `outcome` is OK
     cost: float  # s of processor time
     outcome: Outcome = Outcome.OK
     error_message: str = ""
 
     @property
     def reason(self) -> str:
-        """Why there is no value, in one line."""
+        """Return why there is no value, in one line."""
         return f"{self.outcome}: {self.error_message}"
 
 
-def execute(task: Task) -> TaskResult:
-    """Call the function of a task, inside a worker process. What it raises is not caught: the sweep answers for it."""
+def execute_task(task: Task) -> TaskResult:
+    """Call the function of a task inside a worker process. Its errors are raised: the sweep handles them."""
     clock = time.process_time()
     value = task.function(task.argument)
     return TaskResult(value, time.process_time() - clock)
 
 
-def result_without_value(outcome: Outcome, error_message: str) -> TaskResult:
-    """The result of a task that raised, took too long or whose worker died; the message is one line."""
+def make_failed_result(outcome: Outcome, error_message: str) -> TaskResult:
+    """Return the result of a task that raised, took too long or whose worker died; the message is one line."""
     return TaskResult(None, 0.0, outcome, error_message)
 
 
-def name_of_function(function: Callable[..., Any]) -> str:
-    """ "module:name" of a function."""
+def name_function(function: Callable[..., Any]) -> str:
+    """Return "module:name" of a function."""
     return f"{function.__module__}:{function.__qualname__}"
 
 
-def fingerprint(value: Any) -> Any:
+def describe_contents(value: Any) -> Any:
     """
-    Return all that a value holds, as plain JSON: what distinguishes one task from another.
+    Return everything that a value contains as plain JSON, which distinguishes one task from another.
 
     Numbers, texts, scenes, arrays (by hash), models (also by their source), functions (by name), what states its
     `identity`, and lists, mappings and dataclasses of these. Raises TypeError for anything else.
@@ -134,28 +137,28 @@ def fingerprint(value: Any) -> Any:
         content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
         return ["array", str(value.dtype), value.shape, content]
     if isinstance(value, xr.Dataset):
-        return ["data", fingerprint(_arrays_of(value))]
+        return ["data", describe_contents(_describe_arrays(value))]
     if isinstance(value, tuple | list):
-        return [fingerprint(part) for part in value]
+        return [describe_contents(part) for part in value]
     if hasattr(value, "identity"):
-        return fingerprint(value.identity())
+        return describe_contents(value.identity())
     if isinstance(value, Mapping):
-        return [[key, fingerprint(part)] for key, part in sorted(value.items())]
+        return [[key, describe_contents(part)] for key, part in sorted(value.items())]
     if is_dataclass(value) and not isinstance(value, type):
-        return _fingerprint_of_dataclass(value)
+        return _describe_dataclass(value)
     if callable(value):
-        return name_of_function(value)
+        return name_function(value)
     raise TypeError(f"a task that holds {type(value).__name__} has no name in the store")
 
 
-def _arrays_of(data: xr.Dataset) -> dict[str, Any]:
+def _describe_arrays(data: xr.Dataset) -> dict[str, Any]:
     return {str(name): variable.values for name, variable in data.variables.items()}
 
 
-def _fingerprint_of_dataclass(value: Any) -> Any:
-    """Return the type of a dataclass and all that it holds; a model also depends on its source."""
+def _describe_dataclass(value: Any) -> Any:
+    """Return the type of a dataclass and its contents; a model also depends on its source."""
     held, source = {part.name: getattr(value, part.name) for part in fields(value)}, {}
     if isinstance(value, Model):
-        del held["most"]  # at which phases a model is asked does not change what it answers
-        source = environment_fingerprint(value.amplification)
-    return [type(value).__qualname__, fingerprint(source), fingerprint(held)]
+        del held["most"]  # The number of phases that a model is asked for does not change its answers.
+        source = fingerprint_environment(value.amplification)
+    return [type(value).__qualname__, describe_contents(source), describe_contents(held)]

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 from comparison.runner.cache import Cache, CacheKey
-from comparison.runner.task import Task, TaskResult, result_without_value
+from comparison.runner.task import Task, TaskResult, make_failed_result
 from reference.problem import Outcome
 
 
 @dataclass
 class StageCost:
-    """Cost of one stage: its tasks, how many of them an earlier run had stored, s of processor time of all."""
+    """Cost of one stage: number of tasks, of those that an earlier run had stored, and s of processor time of all."""
 
     tasks: int = 0
     stored: int = 0
@@ -21,15 +21,15 @@ class StageCost:
 
 @dataclass(frozen=True)
 class Overrun:
-    """Stored in place of a result: the task took longer than its timeout, s of processor time; how it ended."""
+    """Record stored for a task that took longer than its timeout, s of processor time; ending: its end in words."""
 
     timeout: float
-    ending: str  # in words
+    ending: str  # end of the task in words
 
 
 class TaskResults:
     """
-    Results by task, kept for later runs in `cache`, from which nothing is read if all is to be computed `fresh`.
+    Results by task, kept in `cache` for later runs; with `fresh` nothing stored earlier is read.
 
     parts: what each stage cost. stored: the tasks whose results were read from the cache.
     """
@@ -48,14 +48,14 @@ class TaskResults:
 
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
         """
-        Return what a task returned; of one without a value what `on_failure` makes of its argument and its result.
+        Return the value of a task; without one, the value that `on_failure` makes of argument and result.
         """
         result = self[task]
         failed = result.value is None and result.outcome != Outcome.OK
         return on_failure(task.argument, result) if failed else result.value
 
-    def missing(self, tasks: Iterable[Task]) -> list[Task]:
-        """The tasks that must be computed; the results of the others are read."""
+    def find_missing(self, tasks: Iterable[Task]) -> list[Task]:
+        """Return the tasks that must be computed, after reading the stored results of the others."""
         return [task for task in tasks if not (task.key in self._results or self._read(task))]
 
     def holds(self, task: Task) -> bool:
@@ -91,7 +91,7 @@ class TaskResults:
         if isinstance(stored, Overrun):
             if task.timeout is None or task.timeout > stored.timeout:
                 return False
-            self._remember(task, result_without_value(Outcome.TIME_LIMIT, stored.ending))
+            self._remember(task, make_failed_result(Outcome.TIME_LIMIT, stored.ending))
         elif stored is not None and (task.batch is None or task.batch.accepts(stored[0])):
             self._remember(task, TaskResult(*stored))
         else:

@@ -1,4 +1,4 @@
-"""Some phase pairs of one scene under one model: what a worker process is asked for the surfaces."""
+"""Batch: phase pairs of one scene under one model, the question that a worker process answers for the surfaces."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ import numpy as np
 
 from comparison.result_types import Array
 from comparison.study.models import Model
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import Outcome, Scene
 
-LARGEST_MU = 1e12  # far above mu of any building, and so small that no sum of squares of mu or of a ratio overflows
-USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # our own models: mu counts with the larger error that is stated
+MAX_MU = 1e12  # far above mu of any building, and small enough that no sum of squares of mu or of a ratio overflows
+# Outcome of our own models with which mu counts, with the larger error that is stated
+USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET
 
 
 @dataclass(frozen=True)
@@ -28,25 +29,25 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
-    timeout: float | None = None  # most processor time of the call, s
-    group: str = ""  # group of workers that it may use; of an engine of the user, whose error may be unknown
+    timeout: float | None = None  # s, largest processor time of the call
+    group: str = ""  # group of workers that it may use, for a user's engine, whose errors may be unknown
 
     @property
     def points(self) -> int:
-        """Number of phase pairs."""
+        """Return the number of phase pairs."""
         return len(self.phases)
 
     @property
     def question(self) -> dict[str, object]:
-        """Return what all batches of a surface have in common: not the name or title of the scene."""
+        """Return the contents that all batches of a surface share, without the scene's name and title."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
-        """Return all that its numbers depend on in addition to the code."""
+        """Return everything that its numbers depend on besides the code."""
         return {**self.question, "phases": self.phases}
 
     def halves(self) -> list[Batch]:
-        """The batches of the first and the other phase pairs; none of a single one."""
+        """Return the batches of the first and the second half of the phase pairs; none for a single pair."""
         middle = self.points // 2
         if not middle:
             return []
@@ -54,7 +55,7 @@ class Batch:
         return [replace(self, phases=self.phases[:middle]), late]
 
     def join(self, results: Sequence[BatchResult]) -> BatchResult:
-        """The result from those of the halves: costs added up, each error message once."""
+        """Return the result made of those of the halves: costs added up, each error message once."""
         mu, error, instant, displacement = (
             np.concatenate([getattr(result, name) for result in results])
             for name in ("mu", "error", "instant", "displacement")
@@ -66,7 +67,7 @@ class Batch:
         )
 
     def without_result(self, outcome: Outcome, error_message: str) -> BatchResult:
-        """NaN for every point, and why."""
+        """Return a result with NaN and the reason at every point."""
         nothing, none = np.full((self.points, len(self.scene.bodies)), np.nan), np.full(self.points, np.nan)
         status = [outcome.value] * self.points
         return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
@@ -82,7 +83,7 @@ class Batch:
         return shapes == (plane, plane, points, points) and len(result.status) == self.points
 
     def ok_without_numbers(self, mu: Array, error: Array, status: Sequence[str]) -> list[int]:
-        """The phase pairs that are ok without a number for every body: no number that is none is a result."""
+        """Return the phase pairs that are ok but lack a number for a body, which therefore are no results."""
         finite = (np.isfinite(mu) & (np.isfinite(error) | bool(self.group))).all(axis=1)
         return [index for index in np.flatnonzero(~finite).tolist() if status[index] == Outcome.OK]
 
@@ -101,21 +102,21 @@ class BatchResult:
 
 
 def import_function(path: str) -> Any:
-    """The object "package.module:name"."""
+    """Return the object at "package.module:name"."""
     module, name = path.split(":")
     return getattr(import_module(module), name)
 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Make NaN of every answer that is none, in place: mu and error (M, N), status (M).
+    Replace every answer that is none by NaN, in place: mu and error (M, N), status (M).
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
     infinite or above LARGEST_MU: its status becomes "value out of range".
     """
     with np.errstate(invalid="ignore"):
-        absurd = np.any((mu < 0.0) | (mu > LARGEST_MU) | (error > LARGEST_MU), axis=1).tolist()
+        absurd = np.any((mu < 0.0) | (mu > MAX_MU) | (error > MAX_MU), axis=1).tolist()
     for point, outcome in enumerate(status):
         stated = own and outcome == USABLE_WITH_ERROR and np.isfinite(error[point]).all()
         usable = outcome.startswith(Outcome.OK) or stated
@@ -125,8 +126,8 @@ def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None
             mu[point] = error[point] = np.nan
 
 
-def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
-    """Why a model would refuse every phase pair of a scene, told without computing one; empty if it would not."""
+def find_refusal(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
+    """Return why a model would refuse every phase pair of a scene, without computing any; "" if it would not."""
     if model.refusal is None or not model.applies(scene):
         return ""
     asked = {"full": True} if full else {}
@@ -134,7 +135,7 @@ def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False)
 
 
 def execute_batch(batch: Batch) -> BatchResult:
-    """Ask the batch's model, inside a worker process. What raises or has a wrong shape becomes points without result"""
+    """Ask the batch's model inside a worker process. A call that raises or has a wrong shape gives points without"""
     try:
         found = import_function(batch.amplification)(batch.scene, batch.phases, **batch.settings)
         parts = (found.mu, found.error, found.instant, found.displacement)
@@ -146,7 +147,7 @@ def execute_batch(batch: Batch) -> BatchResult:
             points, bodies = batch.points, len(batch.scene.bodies)
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as exception:
-        return batch.without_result(Outcome.SOLVER_FAILED, exception_line(exception))
+        return batch.without_result(Outcome.SOLVER_FAILED, word_exception(exception))
     drop_unusable(mu, error, status, own=not batch.group)
     wrong = batch.ok_without_numbers(mu, error, status)
     for index in wrong:

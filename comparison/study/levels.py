@@ -1,4 +1,4 @@
-"""The levels of a study: the same question on coarser grids first, so that a whole report is there early."""
+"""Levels of a study: the same question on coarser grids first, so that a whole report is there early."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,8 +7,8 @@ from math import gcd
 from comparison.study.models import Model
 from comparison.study.study import Study, nested_grids
 
-# phases per axis at the first two levels; the third is the whole study
-MOST: tuple[Mapping[str, float], ...] = (
+# largest number of phases per axis at the first two levels, by side; the third level is the whole study
+MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
     {"reference": 16, "engine": 8, "spatial": 4, "user": 8},
     {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "user": float("inf")},
 )
@@ -16,7 +16,7 @@ MOST: tuple[Mapping[str, float], ...] = (
 
 @dataclass(frozen=True)
 class StudyLevel:
-    """One level: its study, and its number of how many."""
+    """One level: its study, its number, and the number of levels."""
 
     study: Study
     number: int
@@ -29,39 +29,39 @@ class StudyLevel:
 
     @property
     def title(self) -> str:
-        """For the terminal and the page."""
+        """Return the name of the level for the terminal and the page."""
         return f"level {self.number} of {self.of}"
 
 
-def levels_of(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
-    """The levels of a study, from coarse to fine; first: the level that an analysis is first made at, by its key."""
-    made = [key for key in first if study.selecting(key).scenes]
+def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
+    """Return the levels of a study from coarse to fine; first: first level of each analysis, by its key."""
+    made = [key for key in first if study.restrict_to(key).scenes]
     studies: list[Study] = []
-    for number, most in enumerate(MOST, start=1):
+    for number, most in enumerate(MAX_PHASES_OF_LEVEL, start=1):
         later = [key for key in made if first[key] > number]
-        coarse = _coarser_study(study, most)
+        coarse = _coarsen_study(study, most)
         studies.append(replace(coarse, selection=coarse.selection.without(later)))
     studies.append(study)
     different = [
         each
         for each, finer in zip(studies, [*studies[1:], None])
-        if finer is None or _work_of_study(each) != _work_of_study(finer)
+        if finer is None or _describe_work(each) != _describe_work(finer)
     ]
     return [StudyLevel(each, number, len(different)) for number, each in enumerate(different, start=1)]
 
 
-def _work_of_study(study: Study) -> tuple[object, ...]:
-    """Return what is computed."""
+def _describe_work(study: Study) -> tuple[object, ...]:
+    """Return what is computed in a study, to compare levels."""
     return study.grid, tuple(study.strides.items()), study.selection
 
 
-def _coarser_study(study: Study, most: Mapping[str, float]) -> Study:
-    """The study on the finest of the nested grids of every model that has no more phases per axis than its `most`."""
+def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
+    """Return the study on the finest nested grid of every model with at most its `most` phases per axis."""
     strides = {
-        model.key: _stride_at_level(study, model, most["spatial" if model.is_spatial else model.side])
+        model.key: _find_stride(study, model, most["spatial" if model.is_spatial else model.side])
         for model in study.hierarchy
     }
-    shared = gcd(*strides.values())  # the equations have every phase of the coarser study
+    shared = gcd(*strides.values())  # The equations have every phase of the coarser study.
     if study.grid % shared:
         return study
     grid = study.grid // shared
@@ -72,10 +72,11 @@ def _coarser_study(study: Study, most: Mapping[str, float]) -> Study:
     return replace(study, grid=grid, hierarchy=hierarchy)
 
 
-def _stride_at_level(study: Study, model: Model, most: float) -> int:
-    """Return every which of the study's phases a model has at a level with at most `most` per axis."""
+def _find_stride(study: Study, model: Model, most: float) -> int:
+    """Return the stride of a model's phases at a level with at most `most` phases per axis."""
     stride, phases = study.strides[model.key], len(study.phase_indices(model))
-    if stride * phases != study.grid:  # the last phase and the first are closer than the others: no grid is nested
+    # The last and the first phase are closer than the others, so that no grid is nested.
+    if stride * phases != study.grid:
         return stride
     chain = nested_grids(phases)
     return stride * phases // max((grid for grid in chain if grid <= most), default=chain[0])

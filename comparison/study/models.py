@@ -15,8 +15,9 @@ from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG
 from reference.problem.reductions import is_mirror_symmetric
 
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
-REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
-SOFTENED = "softened-"  # begins the key of a model whose bars are softened
+# Relative error asked at least of the equations, which are cheap: their error blurs no difference
+REFERENCE_TOLERANCE = 1e-6
+SOFTENED = "softened-"  # prefix of the key of a model whose bars are softened
 
 
 def has_dry_friction(scene: Scene) -> bool:
@@ -29,8 +30,8 @@ def has_yielding_friction(scene: Scene) -> bool:
     return scene.dry_friction.elastic
 
 
-def any_scene(scene: Scene) -> bool:
-    """Return whether a model applies that applies to every scene."""
+def applies_to_every_scene(scene: Scene) -> bool:
+    """Return True: the model applies to every scene."""
     return True
 
 
@@ -39,8 +40,8 @@ def has_smooth_friction(scene: Scene) -> bool:
     return not has_dry_friction(scene)
 
 
-def no_scene(scene: Scene) -> bool:
-    """Return False: for a property of a model that no scene gives it."""
+def applies_to_no_scene(scene: Scene) -> bool:
+    """Return False: no scene has this property of the model."""
     return False
 
 
@@ -65,21 +66,21 @@ def has_spatial_data(scene: Scene) -> bool:
 
 
 def why_not_spatial(scene: Scene) -> str:
-    """Why a scene that states a part of what the spatial model needs goes without it; "" otherwise."""
+    """Return why a scene with a part of the spatial model's data goes without that model; "" otherwise."""
     data = _spatial_data(scene)
     missing = [key for key, value in data.items() if value is None]
-    # the radius of a sphere alone asks for no body that turns
+    # The radius of a sphere alone does not ask for bodies that rotate.
     if not missing or set(data) - set(missing) <= {"isolator.sphere_radius"}:
         return ""
     return f"no spatial model, as it lacks {', '.join(missing)}"
 
 
-def with_unloaded_bars(scene: Scene) -> bool:
+def has_only_planar_unloaded_bars(scene: Scene) -> bool:
     """Return whether bars are stated without load in a scene that the spatial model cannot take."""
     return scene.has_unloaded_bars and not has_spatial_data(scene)
 
 
-def with_unloaded_bars_in_space(scene: Scene) -> bool:
+def has_spatial_unloaded_bars(scene: Scene) -> bool:
     """Return whether bars are stated without load in a scene that the spatial model can take."""
     return scene.has_unloaded_bars and has_spatial_data(scene)
 
@@ -87,7 +88,7 @@ def with_unloaded_bars_in_space(scene: Scene) -> bool:
 @dataclass(frozen=True)
 class Model:
     """
-    One model. `adds`: the sentence the report prints. `settings`: keyword arguments of its functions.
+    One model of the hierarchy. `adds`: the sentence the report prints. `settings`: arguments of its functions.
     `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
     `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
     whether mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
@@ -111,25 +112,26 @@ class Model:
     assumptions: Mapping[str, str]
     batch: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
-    symmetric: Callable[[Scene], object] = field(default=no_scene)  # true or false
-    applies: Callable[[Scene], bool] = field(default=any_scene)
+    # Whether the scene has the symmetry that the model shares
+    symmetric: Callable[[Scene], object] = field(default=applies_to_no_scene)
+    applies: Callable[[Scene], bool] = field(default=applies_to_every_scene)
     refusal: str | None = None
     effect: str = ""
     like: str | None = None
     timeout: float | None = None
     reading: str = AS_INTEGRATED
-    in_chain: Callable[[Scene], bool] = field(default=any_scene)
+    in_chain: Callable[[Scene], bool] = field(default=applies_to_every_scene)
     seconds: float = 1.0
     rigid: bool = False
 
     @property
     def is_spatial(self) -> bool:
-        """Return whether bodies turn in it."""
+        """Return whether its bodies rotate."""
         return self.settings.get("model") == "spatial"
 
     @property
     def motion_settings(self) -> dict[str, object]:
-        """Keyword arguments of its trajectory; a cutoff is a way to read a motion, not to move."""
+        """Return the keyword arguments of its trajectory, without the cutoff, which only reads the motion."""
         return {key: value for key, value in self.settings.items() if key != "cutoff"}
 
     def scene_of(self, scene: Scene) -> Scene:
@@ -137,12 +139,12 @@ class Model:
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
-        """Keyword arguments of its amplification in a study of this tolerance."""
+        """Return the keyword arguments of its amplification in a study of this tolerance."""
         asked = {"full": True} if full else {}
         return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
 
     def tolerance(self, asked: float) -> float:
-        """Relative error this model asks of its own numbers when the study asks for `asked`."""
+        """Return the relative error that this model asks of its numbers when the study asks for `asked`."""
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
 
 
@@ -209,7 +211,8 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     complete = last is asked[-1] and engine is not None
     other = "the most complete model of Exudyn" if complete else f"the {last.title}"
     pairs = [Pair("total", "total", f"{printed} against {other}", first, last, first)]
-    if engine is not None and engine in models:  # else it does not meet the tolerance, fit the budget, or answer
+    # A model that is left out does not meet the tolerance, exceeds the budget, or has no answer.
+    if engine is not None and engine in models:
         if engine is not last and first is asked[0]:
             sentence = f"{printed} against Exudyn under the paper's own assumption that no body turns"
             pairs.append(Pair("translational", "translational", sentence, first, engine, first))
@@ -302,7 +305,7 @@ SMALL = Model(
         "mu_i": "literal supremum of (5.1) with one-sided limits at stops, in closed form",
     },
     batch=64,
-    symmetric=any_scene,
+    symmetric=applies_to_every_scene,
     reading=LITERAL_SUPREMUM,
     in_chain=has_smooth_friction,
     seconds=0.0005,
@@ -330,7 +333,7 @@ SMALL_RESOLVED = _model_after(
     settings={**SMALL.settings, "cutoff": DEFAULT_V_C},
     applies=has_dry_friction,
     reading=AS_INTEGRATED,
-    in_chain=any_scene,
+    in_chain=applies_to_every_scene,
 )
 RESOLVED = _model_after(
     EXACT,
@@ -341,7 +344,7 @@ RESOLVED = _model_after(
     settings={**EXACT.settings, "cutoff": DEFAULT_V_C},
     applies=has_dry_friction,
     reading=AS_INTEGRATED,
-    in_chain=any_scene,
+    in_chain=applies_to_every_scene,
 )
 _LINEAR = {"friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}", "mu_i": _PEAK}
 SMALL_REGULARIZED = _model_after(
@@ -353,7 +356,7 @@ SMALL_REGULARIZED = _model_after(
     adds=f"The printed equations with friction that is linear below v_reg = {V_REG_TEXT}, as most codes have it: what "
     "geometry adds under that law is seen from here.",
     settings={"equations": "small", "regularization": DEFAULT_V_REG},
-    in_chain=no_scene,
+    in_chain=applies_to_no_scene,
     seconds=0.001,
 )
 REGULARIZED = _model_after(
@@ -387,7 +390,7 @@ TRANSLATIONAL = _model_after(
     refusal="multibody:refusal",
     settings={"model": "translational", "regularization": DEFAULT_V_REG},
     batch=2,
-    applies=any_scene,
+    applies=applies_to_every_scene,
     most=16,
     seconds=0.06,
 )
@@ -423,7 +426,7 @@ BESIDE_THE_CHAIN = (
 
 
 def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
-    """The step after an engine model that softens its bars."""
+    """Return the model that softens the bars of an engine model, as the step after it."""
     return _model_after(
         model,
         {"links": "bars as soft as the weight that they carry makes them"},
@@ -436,8 +439,8 @@ def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, with_unloaded_bars)
-SOFTENED_SPATIAL = _soften_model(SPATIAL, with_unloaded_bars_in_space)
+SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_bars)
+SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
 
 
 RIGID = _model_after(

@@ -1,4 +1,4 @@
-"""The recorded motions of a study, each described once."""
+"""Ground motion records of a study, each described once."""
 
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from reference.records.description import RecordDescription
 
 def describe_records(scenes: Sequence[Scene], names: Sequence[str] = ()) -> list[RecordDescription]:
     """
-    Return what was read of every recorded motion; its scale is 1 where the scenes take several factors.
+    Return the description of every record; its scale is 1 where the scenes take several factors.
 
     names: of the motions of the scenes; "" and without them a motion is named by its files.
     """

@@ -1,4 +1,4 @@
-"""What a study leaves out because its scenes do not require it, as rows for `--plan`: each reason once."""
+"""Computations that a study skips because its scenes do not require them, as rows for `--plan`."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -17,8 +17,8 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-# what the models with one of these values of a setting leave out, where the scene allows it
-LEFT_OUT = (
+# computation, condition on the scene, and the setting and its values of models that skip it
+SKIPPED_COMPUTATIONS = (
     ("every run but one per harmonic", is_linear, "equations", ("small",)),
     ("motion across its plane", is_planar, "equations", ("small", "exact")),
     ("motion across its plane, of the bodies", has_planar_chain, "model", ("translational",)),
@@ -26,8 +26,8 @@ LEFT_OUT = (
 )
 
 
-class Omission(NamedTuple):
-    """One thing that is left out: what, of which models, why, and in which scenes."""
+class SkippedComputation(NamedTuple):
+    """One computation that is skipped: what, by which models, why, and in which scenes."""
 
     what: str
     models: str
@@ -35,13 +35,13 @@ class Omission(NamedTuple):
     scenes: tuple[str, ...]
 
 
-def list_omissions(study: Study) -> list[Omission]:
-    """Everything that the scenes of the study do not require and that is therefore not computed."""
+def list_skipped_computations(study: Study) -> list[SkippedComputation]:
+    """Return every computation that the scenes of the study do not require and that is skipped."""
     scenes: dict[tuple[str, str, str], list[str]] = {}
     for scene in () if study.full else study.scenes:
         for row in _omissions_of_scene(study, scene):
             scenes.setdefault(row, []).append(scene.name)
-    return [Omission(*row, tuple(names)) for row, names in scenes.items()]
+    return [SkippedComputation(*row, tuple(names)) for row, names in scenes.items()]
 
 
 def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
@@ -55,7 +55,7 @@ def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, 
         laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
         if laws:
             yield "laws of friction", _titles_of_models(laws, study.hierarchy), has_no_friction_law(scene).reason
-    for what, decided, setting, values in LEFT_OUT:
+    for what, decided, setting, values in SKIPPED_COMPUTATIONS:
         concerned = [model for model in models if model.settings.get(setting) in values]
         if concerned and (reduction := decided(scene)):
             yield what, _titles_of_models(concerned, models), reduction.reason

@@ -1,4 +1,4 @@
-"""The analyses that a study makes of a scene after its amplification factors, and which it makes of which scene."""
+"""Selection of the analyses that a study makes of its scenes after their amplification factors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from reference.problem import Scene, SceneError, builtin_scenes
 
 class Selectable(NamedTuple):
     """
-    An analysis that is selected by its name.
+    An analysis that can be selected by its name.
 
     on_request: whether it is made only where it is named, as it costs more than the surfaces. of_the_paper: whether it
     concerns the paper's own scenes. needs: name of the analysis below which it is shown, "" for none.
@@ -27,7 +27,7 @@ class Selectable(NamedTuple):
 @dataclass(frozen=True)
 class Selection:
     """
-    The analyses of every scene.
+    Analyses selected for every scene.
 
     analyses: all that can be selected. by_scene: those asked for, by name of the scene; a scene that is not in it has
     all but those on request. later: those that only a later level of the study has. of_the_paper: those that are made
@@ -43,11 +43,11 @@ class Selection:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of all analyses that can be selected."""
+        """Return the names of all analyses that can be selected."""
         return tuple(each.name for each in self.analyses)
 
-    def why_absent(self, analysis: str) -> str:
-        """Why an analysis that no scene has is not made."""
+    def explain_absence(self, analysis: str) -> str:
+        """Return why an analysis is made of no scene."""
         if analysis in self.later:
             return "follows at a later level of the study"
         if analysis in self.of_the_paper:
@@ -55,12 +55,12 @@ class Selection:
         return f"on request; --also {analysis} makes it" if analysis in self.on_request else "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
-        """Return the selection without these analyses, which follow later."""
+        """Return the selection without these analyses, which a later level makes."""
         return replace(self, later=tuple(analyses))
 
     def has(self, analysis: str, scene: str) -> bool:
         """
-        Return whether the analysis is made of the scene; what cannot be selected, such as a step towards others, is.
+        Return whether the analysis is made of the scene; one that cannot be selected always is.
         """
         usual = [each.name for each in self.analyses if not each.on_request]
         return analysis not in self.later and (
@@ -93,7 +93,7 @@ def select_names(
     skip: Sequence[str] | None,
     also: Sequence[str] = (),
 ) -> tuple[str, ...]:
-    """Return the analyses that are made: `only`, or all but those on request, with what they need, less `skip`."""
+    """Return the selected analyses: `only`, or all but those on request, with what they need, less `skip`."""
     needs = {each.name: each.needs for each in analyses if each.needs}
     kept = {each.name for each in analyses if not each.on_request} if only is None else set(only)
     kept |= set(also)

@@ -1,4 +1,4 @@
-"""What is asked: scenes, grid of phases, models; cut into batches for the workers."""
+"""Question of a study: scenes, grid of phases and models, cut into batches for the workers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
 @cache
 def nested_grids(grid: int) -> tuple[int, ...]:
     """
-    Grids from coarse to fine, each a part of the next, the last one with `grid` phases per axis: halvings come first.
+    Return grid sizes from coarse to fine, each dividing the next; the factors 2 come first.
 
     >>> nested_grids(48), nested_grids(96), nested_grids(7)
     ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
@@ -81,7 +81,7 @@ class Study:
 
     @cached_property
     def strides(self) -> dict[str, int]:
-        """The stride of every model by its key: the smallest that leaves it no more phases than its `most`."""
+        """Return the stride of every model by its key: the smallest with at most its `most` phases per axis."""
         strides, stride = {}, 1
         for model in sorted(self.hierarchy, key=lambda model: -(model.most or self.grid)):
             most = min(model.most or self.grid, self.grid)
@@ -91,37 +91,37 @@ class Study:
 
     @property
     def phased(self) -> tuple[Scene, ...]:
-        """The scenes that have phases."""
+        """Return the scenes that have phases."""
         return tuple(scene for scene in self.scenes if not scene.recorded)
 
-    def selecting(self, analysis: str) -> Study:
-        """The study of the scenes of which the analysis is made."""
+    def restrict_to(self, analysis: str) -> Study:
+        """Return the study restricted to the scenes of which the analysis is made."""
         return replace(self, scenes=tuple(scene for scene in self.scenes if self.selection.has(analysis, scene.name)))
 
     @cached_property
     def absent(self) -> dict[str, str]:
-        """The analyses that are made of no scene, with the reason."""
+        """Return the analyses that are made of no scene, with the reason."""
         return {
-            analysis: self.selection.why_absent(analysis)
+            analysis: self.selection.explain_absence(analysis)
             for analysis in self.selection.names
-            if not self.selecting(analysis).scenes
+            if not self.restrict_to(analysis).scenes
         }
 
     def compared(self, scene: Scene) -> list[Model]:
-        """The models that are compared on a scene, in order, without engines of the user."""
+        """Return the models that are compared on a scene, in order, without engines of the user."""
         left_out = self.left_out(scene)
         return [model for model in chain_of(scene, self.hierarchy) if model.key not in left_out]
 
     def left_out(self, scene: Scene) -> Collection[str]:
-        """The models without results on a scene, by their keys: none while nothing is computed."""
+        """Return the keys of models without results on a scene; none while nothing is computed."""
         return ()
 
     def pairs(self, scene: Scene) -> list[Pair]:
-        """The pairs of models that are compared on a scene."""
+        """Return the pairs of models that are compared on a scene."""
         return pairs_of(scene, self.hierarchy, self.left_out(scene))
 
     def stride(self, model: Model, scene: Scene | None = None) -> int:
-        """The model's stride; in a scene without phases the whole grid."""
+        """Return the model's stride; in a scene without phases the whole grid."""
         return self.grid if scene is not None and scene.recorded else self.strides[model.key]
 
     def phase_indices(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
@@ -131,20 +131,21 @@ class Study:
         return np.arange(0, self.grid, self.stride(model, scene))
 
     def points(self, model: Model, scene: Scene | None = None) -> int:
-        """Phase pairs of one surface of this model."""
+        """Return the number of phase pairs of one surface of this model."""
         return len(self.phase_indices(model, scene)) ** 2
 
     def places(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
-        """The model's phase pairs as places on the whole grid, alpha2 running fastest."""
+        """Return the model's phase pairs as indices on the whole grid, alpha2 running fastest."""
         axis = self.phase_indices(model, scene)
         return (self.grid * axis[:, None] + axis).ravel()
 
     def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
+        """Return for each of `places` the one whose answer is also its own, by the symmetries of the scene."""
         places = self.places(model, scene)
         if scene.recorded:
             return places
-        even = self.grid % self.strides[model.key] == 0  # else the last phase and the first are closer than the others
+        # Without an even grid the last phase and the first are closer than the others.
+        even = self.grid % self.strides[model.key] == 0
         return (
             places[indices_of_solved_pairs(scene, len(self.phase_indices(model)))]
             if model.symmetric(scene) and even and not self.full
@@ -152,18 +153,18 @@ class Study:
         )
 
     def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
-        """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
+        """Return the indices that the model is asked for, grouped by the first nested grid that contains them."""
         solved, stride = np.unique(self.symmetric_sources(scene, model)), self.stride(model, scene)
         level = levels_of_phases(len(self.phase_indices(model, scene)))
         first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
         return [solved[first == number] for number in range(level.max() + 1)]
 
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """The places that the model is asked for, from coarse to fine."""
+        """Return the indices that the model is asked for, from coarse to fine."""
         return np.concatenate(self.places_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
-        """The whole work, model by model, from coarse to fine; the cut does not depend on the number of workers."""
+        """Return the whole work, model by model, from coarse to fine, cut independently of the number of workers."""
         return [
             batch
             for model in self.hierarchy
@@ -175,7 +176,7 @@ class Study:
     def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
         phases, moved = phase_grid(self.grid), model.scene_of(scene)
         settings = model.arguments(self.tolerance, self.full)
-        group = model.key if model.side == "user" else ""  # engines of the user share no worker with anything else
+        group = model.key if model.side == "user" else ""  # A user's engine shares its worker with nothing else.
         batches, first = [], 0
         for places in self.places_by_level(scene, model):
             for start in range(0, len(places), model.batch):

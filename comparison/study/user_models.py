@@ -1,5 +1,5 @@
 """
-Engines that a user enters after the models of the hierarchy: a function of theirs becomes a model of the study.
+Engines of a user: a function becomes a model of the study after those of the hierarchy.
 
 Every call goes through `amplification` here, in a worker process of its own kind: whatever the function prints is
 dropped, and what it returns is read into the arrays of `reference.problem.Amplification` or refused with a reason.
@@ -22,50 +22,50 @@ from typing import Any
 import numpy as np
 
 from comparison.result_types import Array
-from comparison.study.batches import LARGEST_MU, drop_unusable
+from comparison.study.batches import MAX_MU, drop_unusable
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.wording import shorten_text
 from reference.problem import Amplification, Outcome, Scene
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
-LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
-# Keys of the models that an engine may be compared with
-LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
-MOST = 8  # phases per axis that an engine is asked for at most: what a call costs is unknown
-TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
-ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # arguments that a function gets wherever it names them
-OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
+DEFAULT_LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
+# keys of the models that an engine may be compared with
+REFERENCE_MODEL_KEYS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
+MAX_PHASES = 8  # largest number of phases per axis for an engine, because the cost of its calls is unknown
+TIME_LIMIT = 60.0  # s of processor time of one call for one phase pair
+OFFERED_ARGUMENTS = ("tolerance", "regularization", "equations")  # arguments that a function receives if it names them
+OWN_PACKAGES, INSTALLATION_FOLDERS = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # error of an engine that states none
-LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
+MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status that a message repeats
 
 
 @dataclass(frozen=True)
 class EngineAnswer(Amplification):
-    """Answer of a user-supplied engine. error_message: statuses in its own words; "" without any."""
+    """Answer of a user's engine. error_message: statuses in its own words; "" without any."""
 
     error_message: str = ""
 
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> EngineAnswer:
     """
-    Return what a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names.
+    Return the answer of a user's function in the form of `multibody.amplification`, with the settings it names.
     """
     with silence_output():
-        function = user_function(engine["function"])
-        begin = _processor_time()
+        function = load_user_function(engine["function"])
+        begin = _read_processor_time()
         try:
-            answer = function(scene, np.array(phases), **_names_by(function, settings))
+            answer = function(scene, np.array(phases), **_select_settings(function, settings))
         except SystemExit as ended:
             raise RuntimeError(f"the engine asked the process to end: exit code {ended.code}") from None
         except Exception as error:
             note_line(error, _file_of(function))
             raise
-        seconds = _processor_time() - begin
+        seconds = _read_processor_time() - begin
         return _read_answer(answer, len(phases), len(scene.bodies), seconds)
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """Add to an exception where in the user's files, those in the folder of the engine's, it arose."""
+    """Add to an exception the line in the user's files, those in the folder of the engine's file, where it arose."""
     if file is None:
         return
     folder = file.parent
@@ -74,8 +74,8 @@ def note_line(error: BaseException, file: Path | None) -> None:
     lines = []
     for frame, line in traceback.walk_tb(error.__traceback__):
         place, package = Path(frame.f_code.co_filename), str(frame.f_globals.get("__name__")).split(".")[0]
-        inside = folder in place.parents and not INSTALLED & set(place.relative_to(folder.parent).parts)
-        if place == file or (inside and package not in OURS):
+        inside = folder in place.parents and not INSTALLATION_FOLDERS & set(place.relative_to(folder.parent).parts)
+        if place == file or (inside and package not in OWN_PACKAGES):
             lines.append(f"{place.name}, line {line}")
     if lines:
         error.add_note(lines[-1])
@@ -84,12 +84,12 @@ def note_line(error: BaseException, file: Path | None) -> None:
 def _file_of(function: Callable[..., Any]) -> Path | None:
     try:
         return Path(inspect.getfile(inspect.unwrap(function)))
-    except TypeError:  # a compiled function, or an object that can be called
+    except TypeError:  # raised for a compiled function or a callable object
         return None
 
 
-def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
-    """The function, or the one at "module:name". Raises TypeError if it cannot be called with a scene and phases."""
+def load_user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function, or that at "module:name". Raises TypeError if it cannot take a scene and phases."""
     if isinstance(path, str):
         module, name = path.split(":")
         function: Any = import_module(module)
@@ -99,13 +99,13 @@ def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
         function, name = path, getattr(path, "__name__", type(path).__name__)
     if not callable(function):
         raise TypeError(f"{name} is {type(function).__name__}, not a function")
-    with suppress(ValueError):  # some compiled functions have no signature
-        inspect.signature(function).bind(None, None, **_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+    with suppress(ValueError):  # Some compiled functions have no signature.
+        inspect.signature(function).bind(None, None, **_select_settings(function, dict.fromkeys(OFFERED_ARGUMENTS)))
     return function  # type: ignore[no-any-return]
 
 
-def user_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: float = TIME_LIMIT) -> Model:
-    """The model of a user-supplied engine, called with the settings of the reference's model `like`, for `limit` s."""
+def make_user_model(name: str, engine: Mapping[str, Any], like: str = DEFAULT_LIKE, limit: float = TIME_LIMIT) -> Model:
+    """Return the model of a user's engine, with the settings of the reference's model `like`; limit: s per call."""
     model = next(known for known in MODEL_HIERARCHY if known.key == like)
     return Model(
         key=name,
@@ -117,27 +117,27 @@ def user_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: fl
         settings={**model.settings, "engine": dict(engine)},
         assumptions={},
         batch=1,
-        most=MOST,
+        most=MAX_PHASES,
         like=like,
         timeout=limit,
     )
 
 
-def engine_of(settings: Mapping[str, Any]) -> Mapping[str, str]:
+def engine_description(settings: Mapping[str, Any]) -> Mapping[str, str]:
     """
-    Return what is known of the engine that settings are for: its function, what that takes, versions; empty for none.
+    Return the description of the user's engine in some settings (function, argument names, versions); {} for none.
     """
     engine: Mapping[str, str] = settings.get("engine", {})
     return engine
 
 
-def names_of(function: Callable[..., Any]) -> str:
-    """Return which of ALWAYS_GIVEN a function takes, separated by spaces."""
-    return " ".join(_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+def list_argument_names(function: Callable[..., Any]) -> str:
+    """Return which of OFFERED_ARGUMENTS a function takes, separated by spaces."""
+    return " ".join(_select_settings(function, dict.fromkeys(OFFERED_ARGUMENTS)))
 
 
-def _names_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings that a function names among its arguments, or all of them if it takes any."""
+def _select_settings(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings that a function names among its arguments, or all if it takes any."""
     try:
         parameters = inspect.signature(function).parameters.values()
     except ValueError:
@@ -150,7 +150,7 @@ def _names_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict
 
 
 def _read_answer(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
-    """An answer of any accepted form: an object with `mu`, an array mu, or a tuple (mu, error)."""
+    """Return an answer of any accepted form (object with `mu`, array mu, tuple (mu, error)) as EngineAnswer."""
     if hasattr(answer, "mu"):
         mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
         outcomes = getattr(answer, "status", None)
@@ -173,13 +173,13 @@ def _read_answer(answer: Any, points: int, bodies: int, seconds: float) -> Engin
     for point in np.flatnonzero(missing).tolist():
         status[point] = Outcome.SOLVER_FAILED.value if status[point] == Outcome.OK else status[point]
     for name in ("instant", "displacement"):
-        arrays[name][~((arrays[name] >= 0.0) & (arrays[name] <= LARGEST_MU))] = np.nan
+        arrays[name][~((arrays[name] >= 0.0) & (arrays[name] <= MAX_MU))] = np.nan
     arrays["displacement"][missing] = np.nan
     return EngineAnswer(status=np.array(status), cost=seconds, error_message=error_message, **arrays)
 
 
 def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """A new array of this shape; NaN without a value."""
+    """Return a new array of this shape; NaN without a value."""
     if value is None:
         return np.full(shape, np.nan)
     array = np.array(value)
@@ -187,24 +187,24 @@ def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
         raise TypeError(f"the engine's {name} has {array.dtype} in place of real numbers")
     if array.shape != shape:
         raise ValueError(f"the engine's {name} has shape {array.shape}, asked: {shape}")
-    with np.errstate(over="ignore"):  # longer numbers may be infinite in double precision
+    with np.errstate(over="ignore"):  # Numbers of higher precision may overflow in double precision.
         return array.astype(float)
 
 
 def _read_outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
-    """The outcomes that the engine states, "solver failed" in place of its own words, and a message with these."""
+    """Return the outcomes that the engine states, "solver failed" for its own words, and a message with these."""
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")
     known = {outcome.value: outcome.value for outcome in Outcome}
     own_words = dict.fromkeys(text for text in texts if text not in known and not text.startswith(Outcome.OK))
-    messages = [f"the engine's status is {shorten_text(text, LONGEST_STATUS)!r}" for text in own_words]
+    messages = [f"the engine's status is {shorten_text(text, MAX_STATUS_LETTERS)!r}" for text in own_words]
     otherwise = (Outcome.OK if text.startswith(Outcome.OK) else Outcome.SOLVER_FAILED for text in texts)
     return [known.get(text, other.value) for text, other in zip(texts, otherwise)], "; ".join(messages)
 
 
-def _processor_time() -> float:
-    """Processor time of this process and of those it has waited for, s."""
+def _read_processor_time() -> float:
+    """Return the processor time of this process and of those it has waited for, s."""
     spent = os.times()
     return time.process_time() + spent.children_user + spent.children_system
 

@@ -1,4 +1,4 @@
-"""The limits of a study, stated by its scenes or held by every engine of the user, compared with what was found."""
+"""Acceptance limits of a study, stated by its scenes or by default for a user's engine, compared with the results."""
 
 from collections.abc import Iterator, Sequence
 from math import isnan
@@ -10,8 +10,8 @@ from comparison.result_types import Number, Phases, Text, result
 from comparison.study.models import models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.budget import closure_error
-from comparison.surfaces.differences import AGREEMENT, Difference
+from comparison.surfaces.budget import compute_closure_error
+from comparison.surfaces.differences import MAX_AGREEING_RATIO, Difference
 from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.statements import word_breach
 from reference.problem import Scene
@@ -21,7 +21,7 @@ NAN = float("nan")
 
 @result
 class Breach:
-    """One place where an acceptance limit is broken."""
+    """One place where the results exceed an acceptance limit."""
 
     body: Annotated[int, "number of the body; 0 where the limit is of the scene"]
     found: Annotated[Number, "value that exceeds the limit; null without one"]
@@ -42,60 +42,58 @@ class Limit:
 
     @property
     def breach_texts(self) -> list[str]:
-        """One text for each breach, without the scene."""
+        """Return one text for each breach, without the scene."""
         return [word_breach(self, breach) for breach in self.breaches]
 
     @computed_field  # type: ignore[prop-decorator]
     @property
     def broken(self) -> list[str]:
-        """One line for each breach."""
+        """Return one line for each breach."""
         return [f"{self.scene}: {text}" for text in self.breach_texts]
 
 
-def pairs_without_limit(study: Study, scene: Scene) -> list[str]:
+def list_pairs_without_limit(study: Study, scene: Scene) -> list[str]:
     """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
     stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.list_limited_differences()]
-    limited = {_name_of_same_pair(study, scene, pair) for pair, _ in stated} | set(
-        _engines_without_limits(study, scene)
-    )
+    limited = {_find_equal_pair(study, scene, pair) for pair, _ in stated} | set(_engines_without_limits(study, scene))
     return [pair.key for pair in study.pairs(scene) if pair.key not in limited]
 
 
 def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
-    """Keys of the engines of the user of which the scene states no limit: they must agree with their like."""
+    """Return the keys of a user's engines without a limit in the scene: they must agree with their own equations."""
     stated = {pair for _, pair, _, _ in scene.acceptance.list_limited_differences()}
     models = models_of(scene, study.hierarchy)
     return [model.key for model in models if model.side == "user" and model.key not in stated]
 
 
 def check_limits(bodies: Sequence[BodyComparison], gaps: Sequence[MissingValues]) -> list[Limit]:
-    """Return every limit of a scene, compared with its bodies and with what is missing, in the order of its keys."""
+    """Return every limit of a scene, compared with its bodies and with its missing values, in the order of its keys."""
     closure = bodies[0].scene.acceptance.closure
     limits = list(_check_differences(bodies, gaps))
     if closure is not None:
-        remainders = [(body.body, closure_error(body), None) for body in bodies]
-        limits.append(Limit(bodies[0].scene.name, "closure", closure, _breaches_beyond(remainders, closure)))
+        remainders = [(body.body, compute_closure_error(body), None) for body in bodies]
+        limits.append(Limit(bodies[0].scene.name, "closure", closure, _list_breaches(remainders, closure)))
     return [*limits, *_check_missing_points(bodies[0].study, bodies[0].scene, gaps)]
 
 
 def _check_differences(bodies: Sequence[BodyComparison], gaps: Sequence[MissingValues]) -> Iterator[Limit]:
-    """The limits on the differences of models, and those of engines of the user by default."""
+    """Yield the limits on the differences of models, and the default limits of a user's engines."""
     study, scene = bodies[0].study, bodies[0].scene
     stated, rows = scene.acceptance, [row for body in bodies for row in body.rows.values()]
     engines = _engines_without_limits(study, scene)
-    defaults = [(f"{key}.ratio", key, "ratio", AGREEMENT) for key in engines]
+    defaults = [(f"{key}.ratio", key, "ratio", MAX_AGREEING_RATIO) for key in engines]
     for key, pair, measure, allowed in (*stated.list_limited_differences(), *defaults):
-        compared = [row for row in rows if row.pair == _name_of_same_pair(study, scene, pair)]
+        compared = [row for row in rows if row.pair == _find_equal_pair(study, scene, pair)]
         if any(row.asked > row.unanswered for row in compared):
             missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
-            breaches = _breaches_beyond([(row.body, getattr(row, measure), row) for row in compared], allowed, missing)
+            breaches = _list_breaches([(row.body, getattr(row, measure), row) for row in compared], allowed, missing)
         else:
-            breaches = (Breach(0, NAN, f"nothing to compare ({_why_not(study, scene, pair, gaps)})"),)
+            breaches = (Breach(0, NAN, f"nothing to compare ({_explain_missing_pair(study, scene, pair, gaps)})"),)
         yield Limit(scene.name, key, allowed, breaches, pair in engines)
 
 
 def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValues]) -> Iterator[Limit]:
-    """The limit on points without an answer; an engine of the user may lack none by default."""
+    """Yield the limit on points without an answer; by default a user's engine may lack none."""
     stated, engines = scene.acceptance, _engines_without_limits(study, scene)
     allowed_points = 0 if engines and stated.allowed_failures is None else stated.allowed_failures
     if allowed_points is not None:
@@ -113,10 +111,10 @@ def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValu
         )
 
 
-def _breaches_beyond(
+def _list_breaches(
     values: Sequence[tuple[int, float, Difference | None]], allowed: float, missing: str = "no phase pair to compare"
 ) -> tuple[Breach, ...]:
-    """The bodies whose value is not within the limit; no value is not within any, for the reason `missing`."""
+    """Return the bodies whose value exceeds the limit or is missing, the latter with the reason `missing`."""
     return tuple(
         Breach(body, value, missing if isnan(value) else "", *((row.largest, row.phases) if row else ()))
         for body, value, row in values
@@ -124,16 +122,16 @@ def _breaches_beyond(
     )
 
 
-def _name_of_same_pair(study: Study, scene: Scene, pair: str) -> str:
-    """The pair under which a study compares these models: the translational difference may be the total one."""
+def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
+    """Return the name of the pair in the study: the translational difference may be the total one."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
     return "total" if alone else pair
 
 
-def _why_not(study: Study, scene: Scene, pair: str, gaps: Sequence[MissingValues]) -> str:
-    """Why a pair of models is not compared."""
+def _explain_missing_pair(study: Study, scene: Scene, pair: str, gaps: Sequence[MissingValues]) -> str:
+    """Return why a pair of models is not compared."""
     wanted = next((known for known in pairs_of(scene, study.hierarchy) if known.key == pair), None)
     if wanted is None and pair in scene.acceptance.user_engine_limits:
         return f"no engine {pair} in this study: --model {pair}=module:function enters it"

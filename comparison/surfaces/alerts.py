@@ -1,4 +1,4 @@
-"""What a reader must know before trusting a number: refusals, broken limits, gaps, faults, wide swings. One place."""
+"""Alerts for the reader: refusals, broken limits, missing values, solver messages, large displacements."""
 
 from collections.abc import Iterator, Sequence
 from typing import Literal
@@ -11,20 +11,20 @@ from comparison.study.models import models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.missing_values import MissingValues
-from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
+from comparison.surfaces.surfaces import find_largest_cap_share, find_largest_travel_share
 
-NEARLY_ALL = 0.9  # share of the travel from which on a reader is told
-WIDE = 0.5  # share of rho from which on a displacement from the middle is told
+LARGE_TRAVEL_SHARE = 0.9  # share of the travel from which a displacement raises an alert
+LARGE_DISPLACEMENT_SHARE = 0.5  # share of rho from which a displacement raises an alert
 
-STATED_BROKEN = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
-DEFAULT_BROKEN = (
+STATED_LIMIT_HELP = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
+DEFAULT_LIMIT_HELP = (
     "name the equations that your engine solves (docs/other-engines.md), let it state an error that holds, or state "
     "limits of its own in the table of its name below acceptance"
 )
 
 
 class Alert(Part):
-    """One thing that a reader must know before trusting a number."""
+    """One warning that a reader needs before using a number."""
 
     level: Literal["red", "amber"]
     """red: a model refused or a limit is broken; amber: a number is missing or to be read with care"""
@@ -48,12 +48,17 @@ def list_alerts(
     limits: Sequence[Limit],
     faults: Sequence[Alert],
 ) -> list[Alert]:
-    """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
-    listed = [*_alerts_of_gaps(gaps), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
+    """Return every alert of a run, red (no value, broken limit) before amber; faults: messages of the solvers."""
+    listed = [
+        *_alerts_of_missing_values(gaps),
+        *_limit_alerts(limits),
+        *faults,
+        *_alerts_of_large_displacements(study, surfaces),
+    ]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
-def _alerts_of_gaps(gaps: Sequence[MissingValues]) -> list[Alert]:
+def _alerts_of_missing_values(gaps: Sequence[MissingValues]) -> list[Alert]:
     rows = []
     for gap in gaps:
         refused = gap.points + gap.unusable == gap.asked
@@ -80,23 +85,23 @@ def _limit_alerts(limits: Sequence[Limit]) -> list[Alert]:
             kind="limit",
             scene=limit.scene,
             text=text,
-            help=DEFAULT_BROKEN if limit.default else STATED_BROKEN,
+            help=DEFAULT_LIMIT_HELP if limit.default else STATED_LIMIT_HELP,
         )
         for limit in limits
         for text in limit.breach_texts
     ]
 
 
-def _far_motions(study: Study, surfaces: xr.Dataset) -> Iterator[Alert]:
-    """Models whose platform moves by more than a share of what it may."""
+def _alerts_of_large_displacements(study: Study, surfaces: xr.Dataset) -> Iterator[Alert]:
+    """Yield an alert for each model whose platform moves by more than a share of rho or of the travel."""
     swing = "the model assumes a cap that reaches so far: compare with the isolator that is to be built"
     travel = "a larger displacement ends the motion as travel reached"
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
             about = f"{model.title}: the platform"
-            if (share := largest_cap_share(surfaces, scene.name, model.key)) > WIDE:
+            if (share := find_largest_cap_share(surfaces, scene.name, model.key)) > LARGE_DISPLACEMENT_SHARE:
                 text = f"{about} moves up to {100.0 * share:.1f} % of rho from the middle"
                 yield Alert(level="amber", kind="swing", scene=scene.name, text=text, help=swing)
-            if (share := largest_travel_share(surfaces, scene, model.key)) > NEARLY_ALL:
+            if (share := find_largest_travel_share(surfaces, scene, model.key)) > LARGE_TRAVEL_SHARE:
                 text = f"{about} uses up to {100.0 * share:.1f} % of the isolator's travel"
                 yield Alert(level="amber", kind="travel", scene=scene.name, text=text, help=travel)

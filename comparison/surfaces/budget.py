@@ -1,5 +1,5 @@
 """
-The total difference of a surface, taken apart: what each model of the hierarchy adds, with its uncertainty.
+Budget of the total difference of a surface: what each model of the hierarchy adds, with its uncertainty.
 
 Steps are taken between neighboring models that apply to the scene, so that they add up to the total by construction.
 All are relative to mu of the first model: their sum is then the relative total.
@@ -13,8 +13,8 @@ import numpy as np
 from comparison.result_types import Array, Number, result
 from comparison.study.models import Pair
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.differences import DifferenceStatistics, difference_statistics
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.differences import DifferenceStatistics, compute_difference_statistics
+from comparison.surfaces.surfaces import select_values
 
 TOTAL = "total"
 
@@ -22,7 +22,7 @@ TOTAL = "total"
 @result
 class BudgetEntry(DifferenceStatistics):
     """
-    One step of the model hierarchy, or the total, in one body; relative to mu of the first model.
+    Difference statistics of one step between models, or of the total, for one body, over the first model's mu.
 
     Its signed mean is the bar in `waterfalls`.
     """
@@ -37,20 +37,23 @@ class BudgetEntry(DifferenceStatistics):
     points: Annotated[int, "phase pairs where both models have a value"]
 
 
-def budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEntry]:
+def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEntry]:
     """Return every entry of the table, in the order scene, body, step."""
     return [
         _budget_entry(comparison, pair, key)
         for comparison in comparisons
-        for key, pair in [*((pair.second.key, pair) for pair in comparison.chain_pairs), (TOTAL, comparison.total_pair)]
+        for key, pair in [
+            *((pair.second.key, pair) for pair in comparison.consecutive_model_pairs),
+            (TOTAL, comparison.total_pair),
+        ]
     ]
 
 
-def closure_error(comparison: BodyComparison) -> float:
+def compute_closure_error(comparison: BodyComparison) -> float:
     """Return the largest |sum of the steps - total| relative to mu of the first model: rounding; NaN without a common
     point."""
     total = comparison.difference(comparison.total_pair)
-    differences = [comparison.difference(pair) for pair in comparison.chain_pairs]
+    differences = [comparison.difference(pair) for pair in comparison.consecutive_model_pairs]
     coarsest = max([total.stride, *(each.stride for each in differences)])
     gap = np.abs(
         np.sum([each.at_stride(coarsest, each.size) for each in differences], axis=0)
@@ -59,8 +62,8 @@ def closure_error(comparison: BodyComparison) -> float:
     return float(np.nanmax(gap)) if np.isfinite(gap).any() else float("nan")
 
 
-def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
-    """Distance of two phase pairs on the square that closes at 2 pi in both directions, rad."""
+def compute_torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
+    """Return the distance of two phase pairs on the square that is periodic in both directions, rad."""
     apart = np.abs(np.subtract(first, second)) % (2.0 * np.pi)
     return float(np.hypot(*np.minimum(apart, 2.0 * np.pi - apart)))
 
@@ -68,14 +71,18 @@ def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
 def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEntry:
     scene, difference = comparison.scene.name, comparison.difference(pair)
     known = difference.known
-    about: dict[str, Any] = {**difference_statistics(scene, difference), "step": key, "points": int(known.sum())}
+    about: dict[str, Any] = {
+        **compute_difference_statistics(scene, difference),
+        "step": key,
+        "points": int(known.sum()),
+    }
     if not known.any():
         names = ("rms", "resolved", "unresolved", "error_estimate", "peak_moves", "correlation")
         return BudgetEntry(**about | dict.fromkeys(names, float("nan")))
     pairs = (pair.first, pair.second, pair.base), (pair.second, pair.first, pair.base)
 
     def values(name: str) -> list[Array]:
-        columns = (values_of(comparison.surfaces, name, scene, *each)[difference.body - 1] for each in pairs)
+        columns = (select_values(comparison.surfaces, name, scene, *each)[difference.body - 1] for each in pairs)
         return [np.where(known, column, np.nan) for column in columns]
 
     both, errors = values("mu"), values("error")
@@ -89,13 +96,13 @@ def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEnt
         error_estimate=float(np.median(difference.uncertainty[known])),
         peak_moves=float("nan")
         if difference.recorded
-        else min(torus_distance(first, second) for first in highest[0] for second in highest[1]),
+        else min(compute_torus_distance(first, second) for first in highest[0] for second in highest[1]),
         correlation=_correlation(both[0][known], both[1][known]),
     )
 
 
 def _correlation(first: Array, second: Array) -> float:
-    """Pearson's, NaN for a flat surface."""
+    """Return Pearson's correlation, NaN for a flat surface."""
     a, b = first - first.mean(), second - second.mean()
     scale = float(np.sqrt((a @ a) * (b @ b)))
     return float(a @ b) / scale if scale > 0.0 else float("nan")

@@ -1,5 +1,5 @@
 """
-A model that is computed on fewer phases than the study has, completed through the model before it that has them all.
+Completion of a model's surface that has fewer phases than the study, through the difference to a complete model.
 
 Two neighboring models differ little and smoothly although both surfaces have ridges: the completed surface is the
 finer model plus the interpolated difference of the two. A ridge between the computed phases then stands where the finer
@@ -26,7 +26,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.model_difference import RESOLVED, drop_worthless, usable_mu
+from comparison.surfaces.model_difference import RESOLVED_RATIO, drop_unusable_values, usable_mu
 from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
@@ -34,22 +34,23 @@ from reference.problem.symmetry import indices_of_solved_pairs
 
 Indices = NDArray[np.intp]
 
-MIN_SPATIAL_PER_AXIS = 9  # phases per axis: fewer of the spatial model are drawn as points
-MIN_VALUES = 16  # phase pairs that an interpolation is made from
+MIN_SPATIAL_PER_AXIS = 9  # phases per axis of the spatial model, below which its values are drawn as points
+MIN_VALUES = 16  # smallest number of phase pairs from which a surface is interpolated
 CONFIDENCE = 0.95
-HELD_OUT = 59  # phase pairs of a model and scene: 1 - 0.05^(1/59) = 5 %
-# Largest share of the phase pairs that may be off by more than the stated error. With fewer held-out values nothing is
+# Held-out phase pairs per model and scene: 1 - 0.05^(1/59) = 5 % of the others may exceed the error
+HELD_OUT_PAIRS = 59
+# Largest share of the phase pairs whose error may exceed the stated one. With fewer held-out values no error is
 # stated.
-MAX_SHARE = 0.1
-POINTS = 8  # phase pairs of one task
-CERTIFICATE = {  # what is stored of a completed surface
+MAX_SHARE_BEYOND_ERROR = 0.1
+POINTS_PER_TASK = 8  # phase pairs of one task
+CERTIFICATE_VARIABLES = {  # variables that are stored with a completed surface
     "error": "largest relative error of `completed` at phase pairs that were computed and not used",
     "share": "at most so many phase pairs are off by more than completed_error, with the confidence of `completed`",
     "held_out": "phase pairs that were computed and not used",
     "model_error": "largest relative error estimate of the model itself at these",
 }
 
-# scene, model, settings of its amplification, phases (M, 2), rad
+# arguments of a task: scene, model, settings of its amplification, phases (M, 2) in rad
 Arguments = tuple[Scene, Model, Mapping[str, object], Array]
 
 
@@ -93,12 +94,12 @@ class Completion:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def accepted(self) -> bool:
-        """Whether the surface may be drawn as completed: the error is at most what was asked."""
+        """Return whether the completed surface may be drawn: its error is at most the asked tolerance."""
         return not self.reason
 
     @property
     def certificate(self) -> str:
-        """Return how far the surface is off, in words."""
+        """Return the error of the completed surface in words."""
         return (
             f"off by at most {100.0 * self.error:.2g} % at {self.held_out} held-out phase pairs, where the model's own "
             f"error is up to {100.0 * self.model_error:.2g} %; with {100.0 * self.confidence:g} % confidence at most "
@@ -108,49 +109,51 @@ class Completion:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def difference_accepted(self) -> bool:
-        """Whether its difference from the first model may be drawn, too: the error is at most a fifth of it."""
-        return self.accepted and RESOLVED * self.error <= self.difference
+        """Return whether its difference from the first model may be drawn: the error is at most a fifth of that."""
+        return self.accepted and RESOLVED_RATIO * self.error <= self.difference
 
 
 class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
-    """Held-out phase pairs of every model that is completed."""
+    """Analysis of the held-out phase pairs of every model whose surface is completed."""
 
     key, stage, level = "completion", "held-out phases", 2
     seconds = 3.5
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """A few phase pairs each."""
+        """Return the tasks, each of a few phase pairs."""
         return [task for _, _, tasks in self._list_tasks(study) for task in tasks]
 
     def collect(
         self, study: Study, surfaces: xr.Dataset | None, results: TaskResults
     ) -> dict[tuple[str, str], HeldOut] | None:
-        """By name of the scene and key of the model, in the order of `choose_held_out`; None where there are none."""
+        """Return the held-out values by scene and model, in the order of `choose_held_out`; None if there are none."""
         found = {}
         for scene, model, tasks in self._list_tasks(study):
             if not all(task in results for task in tasks):
-                continue  # a level of the study that holds out no phase pairs
+                continue  # A coarse level of the study may hold out no phase pairs.
             parts = [results.value(task, _without_value) for task in tasks]
             mu, error = (np.concatenate([getattr(part, name) for part in parts]) for name in ("mu", "error"))
             found[scene.name, model.key] = HeldOut(mu, error)
         return found or None
 
     def _list_tasks(self, study: Study) -> Iterator[tuple[Scene, Model, list[Task]]]:
-        """Scene, model and its tasks."""
+        """Yield each scene and model with its tasks."""
         for scene in study.phased:
             for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
-                # with supports that stop one by one no surface may be interpolated
+                # With supports that stop one by one a surface is not smooth enough to be interpolated.
                 lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
-                if lacks and _finer_model(study, scene, model):
+                if lacks and _find_finer_model(study, scene, model):
                     phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
                     about = model.scene_of(scene), model, model.arguments(study.tolerance, study.full)
-                    parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
+                    parts = [
+                        phases[first : first + POINTS_PER_TASK] for first in range(0, len(phases), POINTS_PER_TASK)
+                    ]
                     arguments = [(*about, part) for part in parts]
                     yield scene, model, [Task(compute_held_out, each, self.stage, about=scene) for each in arguments]
 
 
 def compute_held_out(task: Arguments) -> HeldOut:
-    """mu of one model at the phase pairs of one task. Runs inside a worker process."""
+    """Return mu of one model at the phase pairs of one task. Runs inside a worker process."""
     scene, model, settings, phases = task
     answer = import_function(model.amplification)(scene, phases, **settings)
     return HeldOut(np.asarray(answer.mu, float), np.asarray(answer.error, float))
@@ -163,7 +166,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
 
 def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
     """
-    Phase pairs that the model does not compute, chosen at random, as places on the whole grid, alpha2 running fastest.
+    Return random phase pairs that the model does not compute, as indices on the whole grid, alpha2 fastest.
 
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
     """
@@ -171,15 +174,15 @@ def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
     same = indices_of_solved_pairs(scene, study.grid) if mirrored else np.arange(study.grid**2)
     candidates = np.setdiff1d(same, same[study.places(model)])
     seed = hashlib.sha256(f"{scene.digest()} {model.key}".encode()).digest()
-    chosen: Indices = np.random.default_rng(list(seed)).permutation(candidates)[:HELD_OUT]
+    chosen: Indices = np.random.default_rng(list(seed)).permutation(candidates)[:HELD_OUT_PAIRS]
     return chosen
 
 
-def largest_share(held_out: int) -> float:
+def bound_share_beyond_error(held_out: int) -> float:
     """
-    The share of phase pairs that may be off by more than the largest error at so many held-out ones, with CONFIDENCE.
+    Return the share of phase pairs whose error may exceed that of so many held-out ones, with CONFIDENCE.
 
-    >>> round(largest_share(59), 3), largest_share(0)
+    >>> round(bound_share_beyond_error(59), 3), bound_share_beyond_error(0)
     (0.05, 1.0)
     """
     return float(1.0 - (1.0 - CONFIDENCE) ** (1.0 / held_out)) if held_out else 1.0
@@ -188,37 +191,37 @@ def largest_share(held_out: int) -> float:
 def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """A completion for every body of every model that lacks phases, or is spatial on few, in their order."""
+    """Return a completion for every body of every model that lacks phases, or is spatial on few, in their order."""
     if scene.recorded:
         return []
     listed = []
     for model in study.compared(scene):
         few = len(study.phase_indices(model)) < MIN_SPATIAL_PER_AXIS
         if study.stride(model) > 1 or (few and model.is_spatial):
-            finer, unused = _finer_model(study, scene, model), (held_out or {}).get((scene.name, model.key))
+            finer, unused = _find_finer_model(study, scene, model), (held_out or {}).get((scene.name, model.key))
             for body in range(1, len(scene.bodies) + 1):
                 listed.append(_complete_body(study, surfaces, scene, finer, model, body, unused))
     return listed
 
 
-def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
-    """The surfaces with the variable `completed`, mu where a completed surface may be drawn, and its certificate."""
+def add_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
+    """Return the surfaces with `completed`, mu where a completed surface may be drawn, and its certificate."""
     nothing, meaning = np.full(surfaces["mu"].shape, np.nan), "mu on all phases, completed through a finer model"
     about = {"units": "1", "long_name": meaning, "confidence": CONFIDENCE}
     found = surfaces.assign(completed=(surfaces["mu"].dims, nothing, about))
-    for name, meaning in CERTIFICATE.items():
+    for name, meaning in CERTIFICATE_VARIABLES.items():
         dims, empty = ("scene", "model", "body"), nothing[..., 0, 0].copy()
         found[f"completed_{name}"] = dims, empty, {"units": "1", "long_name": meaning}
     for surface in listed:
         place = {"scene": surface.scene, "model": surface.model, "body": surface.body}
         found["completed"].loc[place] = surface.mu
-        for name in CERTIFICATE:
+        for name in CERTIFICATE_VARIABLES:
             found[f"completed_{name}"].loc[place] = getattr(surface, name)
     return found
 
 
-def _finer_model(study: Study, scene: Scene, model: Model) -> Model | None:
-    """The nearest model before it that has all phases."""
+def _find_finer_model(study: Study, scene: Scene, model: Model) -> Model | None:
+    """Return the nearest model before this one that has all phases."""
     models = study.compared(scene)
     return next((before for before in reversed(models[: models.index(model)]) if study.stride(before) == 1), None)
 
@@ -232,7 +235,7 @@ def _complete_body(
     body: int,
     unused: HeldOut | None,
 ) -> Completion:
-    """The surface of a model as the finer one with the interpolated difference of the two, or why there is none."""
+    """Return the finer model's surface plus the interpolated difference, or the reason why there is none."""
     asked, nan = model.tolerance(study.tolerance), float("nan")
     about = scene.name, model.key, finer.key if finer else "", body
 
@@ -247,19 +250,19 @@ def _complete_body(
         nothing = np.full((study.grid, study.grid), nan)
         return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
 
-    if reason := _why_not_interpolated(study, finer, model, computed, unused):
+    if reason := _explain_refusal(study, finer, model, computed, unused):
         return refuse(reason)
     assert finer is not None
     assert unused is not None
     every = phase_axis(study.grid)
     surface = mu(finer, finer) + interpolate_on_phases(gap, every[study.phase_indices(model)], every)
     truth_error = unused.error[:, body - 1]
-    truth = drop_worthless(unused.mu[:, body - 1], truth_error)
+    truth = drop_unusable_values(unused.mu[:, body - 1], truth_error)
     missed = np.abs(surface.ravel()[choose_held_out(study, scene, model)] - truth) / truth
     checked = np.isfinite(missed)
     held_out = int(checked.sum())
-    share = largest_share(held_out)
-    if share > MAX_SHARE:
+    share = bound_share_beyond_error(held_out)
+    if share > MAX_SHARE_BEYOND_ERROR:
         return refuse(f"{held_out} held-out phase pairs with a value are too few")
     error, model_error = float(missed[checked].max()), float((truth_error / truth)[checked].max())
     first = study.compared(scene)[0]
@@ -275,9 +278,7 @@ def _complete_body(
     )
 
 
-def _why_not_interpolated(
-    study: Study, finer: Model | None, model: Model, computed: int, unused: HeldOut | None
-) -> str:
+def _explain_refusal(study: Study, finer: Model | None, model: Model, computed: int, unused: HeldOut | None) -> str:
     """Return why the difference of two models is not interpolated, "" where it is; computed: values of both."""
     count = len(study.phase_indices(model))
     if finer is None:
@@ -292,13 +293,13 @@ def _why_not_interpolated(
 
 
 def interpolate_on_phases(values: Array, phase: Array, every: Array) -> Array:
-    """Values (K, K) at phases (K,), NaN where not known, by thin plates at the phases `every` (L,), rad."""
+    """Return values (K, K) at phases (K,), NaN where unknown, by thin-plate splines at the phases `every` (L,), rad."""
     known = np.isfinite(values.ravel())
-    made: Array = RBFInterpolator(_torus_coordinates(phase)[known], values.ravel()[known])(_torus_coordinates(every))
+    made: Array = RBFInterpolator(_map_onto_torus(phase)[known], values.ravel()[known])(_map_onto_torus(every))
     return made.reshape(len(every), len(every))
 
 
-def _torus_coordinates(phase: Array) -> Array:
-    """The phase pairs of a square grid on a torus in four dimensions, (K^2, 4): functions of it are periodic."""
+def _map_onto_torus(phase: Array) -> Array:
+    """Return the phase pairs of a square grid on a torus in four dimensions, (K^2, 4): functions there are periodic."""
     alpha1, alpha2 = (axis.ravel() for axis in np.meshgrid(phase, phase, indexing="ij"))
     return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)

@@ -1,4 +1,4 @@
-"""How far two models' surfaces lie apart, in numbers: one row per scene, pair of models and body."""
+"""Difference statistics of two models' surfaces: one row for each scene, pair of models and body."""
 
 import math
 from typing import Annotated, Any
@@ -8,13 +8,13 @@ import numpy as np
 from comparison.result_types import Number, Phases, Text, result
 from comparison.study.models import readings_of
 from comparison.study.study import nested_grids
-from comparison.surfaces.model_difference import RESOLVED, ModelDifference
-from comparison.surfaces.sampling import mean_of_known, sampling_error
+from comparison.surfaces.model_difference import RESOLVED_RATIO, ModelDifference
+from comparison.surfaces.sampling import compute_mean_of_known, estimate_sampling_error
 from reference.measures.distribution import fractile
 from reference.problem import Scene
 from reference.problem.readings import BOTH_READINGS
 
-AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond it one of their errors is false
+MAX_AGREEING_RATIO = 2.0  # largest |D| / u_D of two models that agree: beyond it one of their error estimates is wrong
 
 
 @result
@@ -74,12 +74,12 @@ class Difference(DifferenceStatistics):
 
     @property
     def error(self) -> float:
-        """Error of the mean, numerical and of sampling; NaN where one is not known."""
+        """Return the error of the mean, numerical and of sampling; NaN where one is not known."""
         return float(np.hypot(self.numerical_error, self.sampling_error))
 
     @property
     def largest(self) -> float:
-        """Signed size of the largest absolute one, which is at `phases`."""
+        """Return the signed size of the largest absolute difference, which is at `phases`."""
         return self.low if abs(self.low) > abs(self.high) else self.high
 
     @property
@@ -87,15 +87,15 @@ class Difference(DifferenceStatistics):
         """
         Return whether the models agree within their errors wherever both have a value; None where an error is unknown.
         """
-        return None if math.isnan(self.ratio) else self.ratio <= AGREEMENT
+        return None if math.isnan(self.ratio) else self.ratio <= MAX_AGREEING_RATIO
 
     @property
     def mean_is_resolved(self) -> bool:
         """Return whether the mean exceeds its sampling error, and five times the numerical one."""
-        return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED * self.numerical_error
+        return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED_RATIO * self.numerical_error
 
 
-def difference_statistics(scene: str, difference: ModelDifference) -> dict[str, Any]:
+def compute_difference_statistics(scene: str, difference: ModelDifference) -> dict[str, Any]:
     """Return the fields of `DifferenceStatistics`."""
     size = np.abs(difference.size[difference.known])
     median, percentile95, maximum = (fractile(size, p) if size.size else np.nan for p in (0.5, 0.95, 1.0))
@@ -113,21 +113,21 @@ def difference_statistics(scene: str, difference: ModelDifference) -> dict[str, 
     }
 
 
-def difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
+def make_difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
     """Return the row of a difference; independent, not_ok: see the fields of `Difference`."""
     pair, size, known = difference.pair, difference.size, difference.known
     grid = len(size)
     stated = known & np.isfinite(difference.uncertainty)
     nan = float("nan")
-    ends = difference.place_of(-size), difference.place_of(size)
+    ends = difference.find_largest(-size), difference.find_largest(size)
     return Difference(
-        **difference_statistics(scene.name, difference),
+        **compute_difference_statistics(scene.name, difference),
         pair=pair.key,
         effect=pair.effect,
         reading=" to ".join(readings_of((pair.first, pair.second), scene)) or BOTH_READINGS,
-        mean=mean_of_known(size),
+        mean=compute_mean_of_known(size),
         numerical_error=float(difference.uncertainty[known].mean()) if known.any() else nan,
-        sampling_error=0.0 if difference.recorded else sampling_error(size, independent),
+        sampling_error=0.0 if difference.recorded else estimate_sampling_error(size, independent),
         spread=float(size[known].std()) if known.any() else nan,
         low=difference.at(size, ends[0]),
         low_error=difference.at(difference.uncertainty, ends[0]),
@@ -148,4 +148,4 @@ def difference_row(scene: Scene, difference: ModelDifference, independent: int, 
 
 def _grid_mean(sizes: np.ndarray) -> GridMean:
     known = np.abs(sizes[np.isfinite(sizes)])
-    return GridMean(len(sizes), mean_of_known(sizes), float(known.max()) if known.size else float("nan"))
+    return GridMean(len(sizes), compute_mean_of_known(sizes), float(known.max()) if known.size else float("nan"))

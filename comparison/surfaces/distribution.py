@@ -1,4 +1,4 @@
-"""mu of every model as a random variable over uniform phases, and its highest point, on the phases computed."""
+"""Distribution of mu by model over uniform phases, and its maximum on the phases computed."""
 
 from collections.abc import Iterator, Sequence
 from typing import Annotated
@@ -9,12 +9,12 @@ import xarray as xr
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.study.models import Model
 from comparison.surfaces.model_difference import usable_mu
-from comparison.surfaces.surfaces import stride_of, values_of
+from comparison.surfaces.surfaces import find_common_stride, select_values
 from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
 
-CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
+CURVE_PROBABILITIES = np.linspace(0.01, 0.99, 50)  # probabilities of the points of the drawn curve
 
 
 @result
@@ -51,28 +51,28 @@ class GridMaximum:
 
 
 def compute_distributions(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[Distribution]:
-    """One for each model and body with an answer, in this order."""
+    """Return a distribution for each model and body with an answer, in this order."""
     listed = []
     for model, body, mu, error in _usable_values(surfaces, scene, models):
         known = mu[np.isfinite(mu)]
         if known.size:
             taken = phase_distribution(mu, error)
             fractiles = tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles))
-            curve = tuple(fractile(known, p) for p in CURVE)
+            curve = tuple(fractile(known, p) for p in CURVE_PROBABILITIES)
             mean = UncertainNumber.model_validate(taken.mean)
             listed.append(Distribution(model.key, body, taken.points, taken.unknown, mean, fractiles, curve))
     return listed
 
 
-def grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[GridMaximum]:
-    """One per model and body, in this order. Of phase pairs with the same value it is the first."""
+def find_grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[GridMaximum]:
+    """Return the maximum for each model and body, in this order; of equal values the first phase pair."""
     maxima, nan = [], float("nan")
     for model, body, mu, error in _usable_values(surfaces, scene, models):
         if not np.isfinite(mu).any():
             maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
             continue
         row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
-        phase = surfaces["alpha1"].values[:: stride_of(surfaces, scene.name, model)]
+        phase = surfaces["alpha1"].values[:: find_common_stride(surfaces, scene.name, model)]
         phases = (nan, nan) if scene.recorded else (float(phase[row]), float(phase[column]))
         maxima.append(GridMaximum(model.key, body, float(mu[row, column]), float(error[row, column]), phases))
     return maxima
@@ -81,8 +81,8 @@ def grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> 
 def _usable_values(
     surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]
 ) -> Iterator[tuple[Model, int, Array, Array]]:
-    """Every model and body with its usable values and their errors, on the phases that the model was asked for."""
+    """Yield every model and body with its usable values and their errors, on the phases asked of the model."""
     for model in models:
-        of_bodies = zip(usable_mu(surfaces, scene.name, model), values_of(surfaces, "error", scene.name, model))
+        of_bodies = zip(usable_mu(surfaces, scene.name, model), select_values(surfaces, "error", scene.name, model))
         for body, (mu, error) in zip(range(1, len(scene.bodies) + 1), of_bodies):
             yield model, body, mu, error

@@ -1,4 +1,4 @@
-"""How far the engine and the paper's equations differ in one body, and why: in numbers, and in one plain sentence."""
+"""Headline of one body: how much the engine and the paper's equations differ, and why, in numbers and one sentence."""
 
 import math
 from collections.abc import Sequence
@@ -10,21 +10,23 @@ from comparison.study.models import Model, chain_of, models_of, partner_of
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.differences import Difference
 from comparison.surfaces.statements import name_engine, word_engine, word_engine_without_values, word_headline
-from comparison.surfaces.surfaces import outcome_counts
+from comparison.surfaces.surfaces import count_outcomes
 from comparison.surfaces.waterfall import NAN, Waterfall
 
-NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
-# the same effect in another order: key of the pair in the chain; of the other pair, and what is different there
-ELSEWHERE = {
+# Share of the total from which an effect is a cause; share of an effect from which an interaction is stated
+NAMED_SHARE = 0.2
+# by pair of the sequence: the pair with the same effect in another order of the models, and that order in words
+SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
 }
-SUPREMA = {"geometry": "geometry-supremum"}  # the effect of the chain, and the pair of literal suprema
+# By effect of the sequence: the pair with the same effect between literal suprema
+SUPREMUM_PAIRS = {"geometry": "geometry-supremum"}
 
 
 @result
 class Effect:
-    """Share of mu of a body that one step of the chain adds in the mean, and what it adds in another order."""
+    """Mean difference that one step of the model sequence adds for a body, and that in another order of the steps."""
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]
@@ -40,16 +42,16 @@ class Effect:
     @property
     def depends_on_order(self) -> bool:
         """Return whether the interaction exceeds a fifth of the effect."""
-        return abs(self.interaction) > NAMED * abs(self.mean)
+        return abs(self.interaction) > NAMED_SHARE * abs(self.mean)
 
 
-NOTHING = Effect("", "", 0.0, 0.0, NAN, True, NAN, "", NAN, NAN)
+NO_EFFECT = Effect("", "", 0.0, 0.0, NAN, True, NAN, "", NAN, NAN)
 
 
 @result
 class Headline:
     """
-    The total difference of one body in numbers and in a plain sentence.
+    Total difference of one body in numbers and in one sentence.
 
     All sizes are as integrated and relative to mu of the first model, unless they say otherwise.
     """
@@ -103,7 +105,7 @@ class Headline:
 
     @property
     def statement(self) -> str:
-        """The sentence below a heading that names the scene."""
+        """Return the sentence for a place below a heading that names the scene."""
         return self.sentence.removeprefix(f"{self.scene}, ")
 
     @property
@@ -111,8 +113,8 @@ class Headline:
         """Return whether the mean is within its error."""
         return abs(self.mean) <= self.error
 
-    def effect_named(self, name: str) -> Effect:
-        """Return the effect of this name."""
+    def find_effect(self, name: str) -> Effect:
+        """Return the effect that has this name."""
         return next(effect for effect in self.effects if effect.effect == name)
 
 
@@ -120,8 +122,8 @@ def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
     """Return the headline of one body; bars: its waterfall."""
     total, pair, largest = comparison.total, comparison.total_pair, bars.largest
     scene = comparison.scene
-    effects = effects_of(comparison)
-    causes = causes_of(effects, total)
+    effects = compute_effects(comparison)
+    causes = select_causes(effects, total)
     alike, supremum = comparison.rows.get("like-for-like"), comparison.rows.get("supremum")
     numbers = Headline(
         scene=scene.name,
@@ -129,9 +131,9 @@ def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         name="platform" if comparison.body == 1 else f"body {comparison.body}",
         reading=total.reading,
         first=pair.first.key,
-        first_name=_name_in_words(pair.first, chain_of(scene, comparison.study.hierarchy)),
+        first_name=_word_model_name(pair.first, chain_of(scene, comparison.study.hierarchy)),
         second=pair.second.key,
-        second_name=_name_in_words(pair.second, ()),
+        second_name=_word_model_name(pair.second, ()),
         mean=total.mean,
         error=total.error,
         resolved=total.mean_is_resolved,
@@ -153,7 +155,7 @@ def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         maximum_model=largest.total.model,
         effects=effects,
         causes=tuple(effect.effect for effect in causes),
-        main_cause=main_cause_of(effects, causes),
+        main_cause=find_main_cause(effects, causes),
         like_for_like=alike.maximum if alike else NAN,
         like_for_like_met=alike.agrees if alike else None,
         like_for_like_ratio=alike.ratio if alike else NAN,
@@ -161,13 +163,13 @@ def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         supremum_error=supremum.error if supremum else NAN,
         supremum_maximum=supremum.high if supremum else NAN,
         supremum_phases=supremum.high_phases if supremum else (NAN, NAN),
-        engines=engine_sentences(comparison),
+        engines=word_engines(comparison),
         sentence="",
     )
     return replace(numbers, sentence=word_headline(numbers))
 
 
-def engine_sentences(comparison: BodyComparison) -> tuple[str, ...]:
+def word_engines(comparison: BodyComparison) -> tuple[str, ...]:
     """Return a sentence for each engine of the user, also for one without a value to compare."""
     study, scene = comparison.study, comparison.scene
     compared, left_out = {pair.key: pair for pair in comparison.pairs}, study.left_out(scene)
@@ -181,18 +183,18 @@ def engine_sentences(comparison: BodyComparison) -> tuple[str, ...]:
             continue
         like = partner_of(engine, scene, study.hierarchy)
         missing, name = (engine, name_engine(engine.title)) if engine.key in left_out else (like, f"the {like.title}")
-        outcomes = outcome_counts(comparison.surfaces, scene.name, missing)
+        outcomes = count_outcomes(comparison.surfaces, scene.name, missing)
         sentences.append(word_engine_without_values(engine.title, like.title, name, outcomes))
     return tuple(sentences)
 
 
-def effects_of(comparison: BodyComparison) -> tuple[Effect, ...]:
-    """Return what every step of the chain adds, in its order."""
+def compute_effects(comparison: BodyComparison) -> tuple[Effect, ...]:
+    """Return what every step of the model sequence adds, in its order."""
     total, rows = comparison.total, comparison.rows
     effects = []
-    for row in comparison.chain_rows:
-        key, order = ELSEWHERE.get(row.pair, ("", ""))
-        other, suprema = rows.get(key), rows.get(SUPREMA.get(row.pair, ""))
+    for row in comparison.consecutive_rows:
+        key, order = SAME_EFFECT_PAIRS.get(row.pair, ("", ""))
+        other, suprema = rows.get(key), rows.get(SUPREMUM_PAIRS.get(row.pair, ""))
         effects.append(
             Effect(
                 effect=row.effect,
@@ -210,23 +212,23 @@ def effects_of(comparison: BodyComparison) -> tuple[Effect, ...]:
     return tuple(effects)
 
 
-def causes_of(effects: Sequence[Effect], total: Difference) -> list[Effect]:
+def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
     """Return the resolved effects above a fifth of a resolved total, in either direction, largest first."""
     if not total.mean_is_resolved:
         return []
-    named = [effect for effect in effects if effect.resolved and abs(effect.mean) > NAMED * abs(total.mean)]
+    named = [effect for effect in effects if effect.resolved and abs(effect.mean) > NAMED_SHARE * abs(total.mean)]
     return sorted(named, key=lambda effect: -abs(effect.mean))
 
 
-def main_cause_of(effects: Sequence[Effect], causes: Sequence[Effect]) -> str:
-    """Return the largest of all effects if it is a cause; "" where their errors leave open which is larger."""
-    first, second = (sorted([*effects, NOTHING, NOTHING], key=lambda effect: -abs(effect.mean)))[:2]
+def find_main_cause(effects: Sequence[Effect], causes: Sequence[Effect]) -> str:
+    """Return the largest of all effects if it is a cause; "" if their errors leave open which is larger."""
+    first, second = (sorted([*effects, NO_EFFECT, NO_EFFECT], key=lambda effect: -abs(effect.mean)))[:2]
     told = abs(first.mean) - abs(second.mean) > math.hypot(first.error, second.error)
     return first.effect if told and first in causes else ""
 
 
-def _name_in_words(model: Model, chain: Sequence[Model]) -> str:
-    """Return how a sentence names a model; chain: that of the scene, whose first model are the paper's equations."""
+def _word_model_name(model: Model, chain: Sequence[Model]) -> str:
+    """Return the name of a model in a sentence; chain: models of the scene, the first the paper's equations."""
     if model.side == "engine":
         return f"Exudyn ({model.title.replace(' engine', '')})"
     return "the paper's equations" if chain and model is chain[0] else f"the {model.title}"

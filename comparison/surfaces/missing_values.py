@@ -1,4 +1,4 @@
-"""Models without a usable value at some or at every phase pair of a scene: which, why, and what helps."""
+"""Missing values: models without a usable value at some or all phase pairs, with the outcomes and what helps."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 from pydantic import computed_field
 
 from comparison.result_types import Text, result
-from comparison.study.batches import refusal_of
+from comparison.study.batches import find_refusal
 from comparison.study.models import Model, chain_of, models_of
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import usable_mu
-from comparison.surfaces.surfaces import outcome_counts, values_of
+from comparison.surfaces.surfaces import count_outcomes, select_values
 from reference.problem import ADVICE, Outcome, Scene
 
 
 @result
 class OutcomeNote:
-    """One outcome of a model that is not ok."""
+    """One outcome of a model other than ok, with its count and advice."""
 
     outcome: Annotated[str, "name of the outcome"]
     count: Annotated[int, "phase pairs that ended so"]
@@ -43,25 +43,25 @@ class MissingValues:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def why(self) -> str:
-        """The outcomes with their counts, what they mean, and what helps, in one line."""
+        """Return the outcomes with their counts, what they mean, and what helps, in one line."""
         alone = len(self.outcomes) == 1 and self.outcomes[0].count == self.asked
         return "; ".join(f"{'' if alone else f'{o.count} × '}{o.outcome}: {o.advice}" for o in self.outcomes)
 
     @computed_field  # type: ignore[prop-decorator]
     @property
     def sentence(self) -> str:
-        """The whole in one line."""
+        """Return the scene, the model, the missing values and their outcomes in one line."""
         return f"{self.scene}: {self.description}."
 
     @property
     def description(self) -> str:
-        """Return the same without the scene."""
+        """Return the sentence without the name of the scene."""
         rest = "" if self.used else ". Comparisons leave this model out"
         return f"{self.title}: {self.where}{f': {self.why}' if self.why else ''}{rest}"
 
     @property
     def where(self) -> str:
-        """At how many phase pairs there is no value, or only one whose error is above half of it."""
+        """Return at how many phase pairs there is no value, or only one whose error is above half of it."""
         parts = ("no value", self.points), ("only values with errors above half of them", self.unusable)
         return ", ".join(f"{what}{self._word_count(count)}" for what, count in parts if count)
 
@@ -73,22 +73,24 @@ class MissingValues:
 
 @dataclass(frozen=True)
 class ComparedStudy(Study):
-    """A study that is computed: without_results, by name of the scene, are the models that comparisons leave out."""
+    """A computed study. without_results: keys of models that comparisons leave out, by name of the scene."""
 
     without_results: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def left_out(self, scene: Scene) -> Collection[str]:
-        """The models without results on a scene, by their keys."""
+        """Return the keys of the models without results on a scene."""
         return self.without_results.get(scene.name, ())
 
 
-def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
-    """The study whose comparisons leave out models without any usable value, unless fewer than two would be left."""
+def leave_out_empty_models(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
+    """Return the study without models that lack any usable value, unless fewer than two models would remain."""
     without_results = {}
     for scene in study.scenes:
         steps = chain_of(scene, study.hierarchy)
         empty = {
-            model.key for model in models_of(scene, study.hierarchy) if not _usable_points(surfaces, scene, model).any()
+            model.key
+            for model in models_of(scene, study.hierarchy)
+            if not _find_usable_points(surfaces, scene, model).any()
         }
         of_users = empty - {model.key for model in steps}
         if len(empty - of_users) >= len(steps) - 1:
@@ -100,17 +102,20 @@ def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
 
 
 def list_missing_values(study: Study, surfaces: xr.Dataset) -> list[MissingValues]:
-    """Every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
+    """Return every model of every scene that lacks a usable value somewhere, in the order of scenes and models."""
     gaps = []
     for scene in study.scenes:
         left_out = study.left_out(scene)
         for model in models_of(scene, study.hierarchy):
-            answered, usable = _has_answer(surfaces, scene, model), _usable_points(surfaces, scene, model)
+            answered, usable = (
+                _find_answered_points(surfaces, scene, model),
+                _find_usable_points(surfaces, scene, model),
+            )
             missing, unusable = int((~answered).sum()), int((answered & ~usable).sum())
             if missing or unusable:
                 asked = study.points(model, scene)
                 used = model.key not in left_out and missing < asked
-                counts = outcome_counts(surfaces, scene.name, model).items()
+                counts = count_outcomes(surfaces, scene.name, model).items()
                 bad = [(outcome, count) for outcome, count in counts if outcome != Outcome.OK]
                 notes = tuple(OutcomeNote(*each, advise_on_outcome(study, scene, model, each[0])) for each in bad)
                 gaps.append(MissingValues(scene.name, model.key, model.title, missing, unusable, asked, used, notes))
@@ -122,16 +127,16 @@ def advise_on_outcome(study: Study, scene: Scene, model: Model, outcome: str) ->
     if model.side == "user" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
         return "see what the solvers reported"
     refused = ""
-    if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # the latter of bars that would buckle
-        refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
+    if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # Bars that would buckle may cause these outcomes.
+        refused = find_refusal(scene, model, model.tolerance(study.tolerance), study.full)
     return refused or ADVICE[Outcome(outcome)]
 
 
-def _has_answer(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
-    """At which phase pairs asked of a model every body has a value."""
-    return np.asarray(np.isfinite(values_of(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
+def _find_answered_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+    """Return for the phase pairs asked of a model whether every body has a value."""
+    return np.asarray(np.isfinite(select_values(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
 
 
-def _usable_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
-    """At which of them every value is known to better than half of its size."""
+def _find_usable_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+    """Return for the phase pairs asked of a model whether the error of every value is below half of the value."""
     return np.asarray(np.isfinite(usable_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

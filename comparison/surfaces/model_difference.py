@@ -1,4 +1,4 @@
-"""The difference of two models' surfaces with its uncertainty, point by point: tables and figures are made of it."""
+"""Difference of two models' surfaces with its uncertainty, point by point, for tables and figures."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 from comparison.study.models import Model, Pair
-from comparison.surfaces.surfaces import stride_of, values_of
+from comparison.surfaces.surfaces import find_common_stride, select_values
 
-WORTHLESS = 0.5  # share of a value: an error estimate above it means that the value says nothing
-RESOLVED = 5.0  # multiple of u_D: a difference that large is known to a fifth of itself or better
+MAX_USABLE_ERROR = 0.5  # share of a value: with a larger error estimate the value is unusable
+RESOLVED_RATIO = 5.0  # multiple of u_D from which a difference is known to a fifth of itself or better
 
 
 @dataclass(frozen=True)
@@ -37,17 +37,17 @@ class ModelDifference:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Return where every value is there. Its uncertainty may be unknown: then no difference is resolved."""
+        """Return where every value exists; its uncertainty may be unknown, and then no difference is resolved."""
         return np.isfinite(self.size)
 
     @property
     def resolved(self) -> NDArray[np.bool_]:
-        """Return where the models differ: beyond the uncertainty, and known to a fifth of itself."""
-        return self.known & (np.abs(self.size) > RESOLVED * self.uncertainty)
+        """Return where the difference exceeds five times its uncertainty, so that it is known to a fifth of itself."""
+        return self.known & (np.abs(self.size) > RESOLVED_RATIO * self.uncertainty)
 
     @property
     def unresolved(self) -> NDArray[np.bool_]:
-        """Return where it exceeds its uncertainty, but less than fivefold: probably there, of unknown size."""
+        """Return where the difference exceeds its uncertainty but less than fivefold, so that its size is unknown."""
         return self.known & (np.abs(self.size) > self.uncertainty) & ~self.resolved
 
     @property
@@ -59,11 +59,11 @@ class ModelDifference:
         return ratio
 
     @property
-    def place(self) -> tuple[int, int] | None:
-        """Row and column of the largest absolute size on the study's grid, None without any."""
-        return self.place_of(np.abs(self.size))
+    def largest_place(self) -> tuple[int, int] | None:
+        """Return row and column of the largest absolute size on the study's grid, None without any size."""
+        return self.find_largest(np.abs(self.size))
 
-    def place_of(self, values: Array) -> tuple[int, int] | None:
+    def find_largest(self, values: Array) -> tuple[int, int] | None:
         """Return row and column of the largest of the values on the study's grid, None without any size."""
         if not self.known.any():
             return None
@@ -71,7 +71,7 @@ class ModelDifference:
         return int(row) * self.stride, int(column) * self.stride
 
     def phases_at(self, place: tuple[int, int] | None) -> tuple[float, float]:
-        """Return (alpha1, alpha2) of a place on the study's grid, NaN without one, or where there are no phases."""
+        """Return (alpha1, alpha2) at an index pair of the study's grid, NaN without one, or under a record."""
         if place is None or self.recorded:
             return float("nan"), float("nan")
         row, column = place
@@ -79,11 +79,11 @@ class ModelDifference:
 
     @property
     def phases(self) -> tuple[float, float]:
-        """(alpha1, alpha2) of the largest absolute size, NaN without any, or where there are no phases."""
-        return self.phases_at(self.place)
+        """Return (alpha1, alpha2) of the largest absolute size, NaN without any size, or under a record."""
+        return self.phases_at(self.largest_place)
 
     def at(self, values: Array, place: tuple[int, int] | None) -> float:
-        """Return one of `values` at a place of the study's grid; NaN where it is not computed there."""
+        """Return one of `values` at an index pair of the study's grid; NaN if it is not computed there."""
         if place is None or place[0] % self.stride or place[1] % self.stride:
             return float("nan")
         return float(values[place[0] // self.stride, place[1] // self.stride])
@@ -93,16 +93,16 @@ class ModelDifference:
         return values[:: stride // self.stride, :: stride // self.stride]
 
 
-def difference_of(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> ModelDifference:
+def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> ModelDifference:
     """Return the pair's difference in one body; values whose error is above half of them are missing."""
     models = pair.first, pair.second, pair.base
-    stride = stride_of(surfaces, scene, *models)
+    stride = find_common_stride(surfaces, scene, *models)
 
     def mu(model: Model) -> Array:
         every: Array = usable_mu(surfaces, scene, model, *models)[body - 1]
         return every
 
-    errors = (values_of(surfaces, "error", scene, model, *models)[body - 1] for model in (pair.first, pair.second))
+    errors = (select_values(surfaces, "error", scene, model, *models)[body - 1] for model in (pair.first, pair.second))
     unit = mu(pair.base)
     scale = np.where(unit > 0.0, unit, np.nan)
     return ModelDifference(
@@ -118,10 +118,10 @@ def difference_of(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Mo
 
 
 def usable_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
-    """Return mu of the first model by body, as `values_of`; NaN where its error is above half of it."""
-    return drop_worthless(*(values_of(surfaces, name, scene, *models) for name in ("mu", "error")))
+    """Return mu of the first model by body, as `select_values`; NaN where its error is above half of it."""
+    return drop_unusable_values(*(select_values(surfaces, name, scene, *models) for name in ("mu", "error")))
 
 
-def drop_worthless(mu: Array, error: Array) -> Array:
+def drop_unusable_values(mu: Array, error: Array) -> Array:
     """Return mu where its error is at most half of it or unknown, NaN elsewhere."""
-    return np.where(error > WORTHLESS * mu, np.nan, mu)
+    return np.where(error > MAX_USABLE_ERROR * mu, np.nan, mu)

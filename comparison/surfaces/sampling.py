@@ -1,5 +1,5 @@
 """
-The error of a mean over phases that a grid of phases leaves.
+Sampling error of a mean over all phases that is taken on a grid of phases.
 
 A grid of n x n phases consists of p^2 coarser ones that are shifted against each other, p being the last factor of n
 (`nested_grids`). How far their means scatter shows what the coarser grids miss; the finer one misses less where the
@@ -16,26 +16,28 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 from comparison.study.study import nested_grids
 
-SAFETY = 1.5  # factor on the scatter, see above
-FEWEST = 4  # phase pairs that no symmetry relates: of fewer a mean over all phases is not known
+SCATTER_FACTOR = 1.5  # factor on the scatter of the means over shifted grids, for the error of the mean over all phases
+MIN_INDEPENDENT_PHASES = 4  # smallest number of independent phase pairs from which a mean over all phases is estimated
 
 
-def sampling_error(sizes: Array, independent: int) -> float:
+def estimate_sampling_error(sizes: Array, independent: int) -> float:
     """
     Return the estimated absolute error of the mean of `sizes` as a mean over all phases; NaN where nothing is known.
 
     sizes: (n, n), NaN where a value is missing. independent: phase pairs with a value that no symmetry relates.
     """
     grid = len(sizes)
-    if independent < FEWEST:
+    if independent < MIN_INDEPENDENT_PHASES:
         return float("nan")
     factor = grid // (1, *nested_grids(grid))[-2]
-    shifted = [mean_of_known(sizes[row::factor, column::factor]) for row in range(factor) for column in range(factor)]
-    scatter = float(np.sqrt(np.nanmean((np.array(shifted) - mean_of_known(sizes)) ** 2)))
-    return SAFETY * max(scatter, float(np.nanstd(sizes)) / grid)
+    shifted = [
+        compute_mean_of_known(sizes[row::factor, column::factor]) for row in range(factor) for column in range(factor)
+    ]
+    scatter = float(np.sqrt(np.nanmean((np.array(shifted) - compute_mean_of_known(sizes)) ** 2)))
+    return SCATTER_FACTOR * max(scatter, float(np.nanstd(sizes)) / grid)
 
 
-def mean_of_known(sizes: NDArray[np.float64]) -> float:
+def compute_mean_of_known(sizes: NDArray[np.float64]) -> float:
     """Return the mean of the values that are known, NaN without any."""
     known = sizes[np.isfinite(sizes)]
     return float(known.mean()) if known.size else float("nan")

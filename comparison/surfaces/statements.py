@@ -8,7 +8,7 @@ from itertools import groupby
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from comparison.wording import degrees, difference_with_error, more_or_less, percent, signed
+from comparison.wording import degrees, more_or_less, percent, signed, word_difference
 from reference.problem.readings import BOTH_READINGS
 from reference.support.arguments import name_some
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from comparison.surfaces.headline import Effect, Headline
 
 
-# Relative difference below which two mu are called the same: the error asked of the equations
-SAME = 1e-6
-UNRESOLVED = "less than five times the numerical error"
-NAMED = 4  # scenes that a sentence names one by one
+# Relative difference below which two mu count as equal: the error asked of the equations
+EQUAL_DIFFERENCE = 1e-6
+UNRESOLVED_TEXT = "less than five times the numerical error"
+MAX_NAMED_SCENES = 4  # largest number of scenes that a sentence names
 
 
 def word_headline(numbers: Headline) -> str:
-    """Return the headline of one body: how much, why, how closely the codes agree, and the literal supremum."""
+    """Return the headline of one body: difference, causes, agreement of the codes, and the literal supremum."""
     parts = [word_total(numbers), word_causes(numbers), word_agreement(numbers), word_supremum(numbers)]
     rest = " ".join(part for part in parts if part)
     where = f"{numbers.scene}, {numbers.name}, {numbers.reading}"
@@ -33,7 +33,7 @@ def word_headline(numbers: Headline) -> str:
 
 
 def word_total(numbers: Headline) -> str:
-    """Return by how much the last model differs from the first, in the mean and at its ends."""
+    """Return by how much the last model differs from the first: in the mean, smallest and largest."""
     first, second = numbers.first_name, numbers.second_name
     if numbers.first == numbers.second:
         return f"only {first} were computed, there is nothing to compare."
@@ -42,7 +42,7 @@ def word_total(numbers: Headline) -> str:
         return f"the models from {first} to {second} have no value in common{where}."
     if numbers.phases_per_axis == 1:
         return _word_total_under_record(numbers)
-    size = difference_with_error(numbers.mean, numbers.error)
+    size = word_difference(numbers.mean, numbers.error)
     grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
     over = grid if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of {grid}"
     ends = word_range(numbers)
@@ -55,21 +55,21 @@ def word_total(numbers: Headline) -> str:
     if numbers.resolved_share > 0.0:
         if numbers.within_error:
             return f"{second} and {first} have no mean difference beyond its error over {over} ({size}; {ends})."
-        return f"{second} and {first} differ in the mean over {over} by {size}, {UNRESOLVED} ({ends})."
+        return f"{second} and {first} differ in the mean over {over} by {size}, {UNRESOLVED_TEXT} ({ends})."
     if numbers.within_error and numbers.beyond_error == 0.0:
         return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
-    return f"{second} and {first} differ by {UNRESOLVED} over {over} (mean {size}; {ends})."
+    return f"{second} and {first} differ by {UNRESOLVED_TEXT} over {over} (mean {size}; {ends})."
 
 
 def _word_total_under_record(numbers: Headline) -> str:
     """Return by how much the last model differs from the first under a record."""
     first, second = numbers.first_name, numbers.second_name
-    size = difference_with_error(numbers.mean, numbers.error)
+    size = word_difference(numbers.mean, numbers.error)
     if numbers.resolved:
         return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
     if numbers.within_error:
         return f"{second} and {first} agree within the numerical error under the record (difference {size})."
-    return f"{second} and {first} differ by {size} under the record, {UNRESOLVED}."
+    return f"{second} and {first} differ by {size} under the record, {UNRESOLVED_TEXT}."
 
 
 def word_range(numbers: Headline) -> str:
@@ -79,7 +79,7 @@ def word_range(numbers: Headline) -> str:
         (numbers.high, numbers.high_error, numbers.high_phases),
     )
     (low, high) = (
-        f"{difference_with_error(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends
+        f"{word_difference(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends
     )
     return low if numbers.low == numbers.high else f"from {low} to {high}"
 
@@ -92,7 +92,7 @@ def word_causes(numbers: Headline) -> str:
     untold = "the errors do not tell" if numbers.phases_per_axis == 1 else f"{grid} do not tell"
     if not numbers.causes:
         return f"Which effect causes it {untold}."
-    causes = [numbers.effect_named(name) for name in numbers.causes]
+    causes = [numbers.find_effect(name) for name in numbers.causes]
     listed = ", ".join(map(word_effect, causes))
     several = f"Cause{'s' if len(causes) > 1 else ''}: {listed}"
     if numbers.main_cause:
@@ -103,11 +103,11 @@ def word_causes(numbers: Headline) -> str:
 def word_effect(effect: Effect) -> str:
     """Return one cause with its mean, its share of the total, and its mean in another order where that differs."""
     other = f", {signed(effect.elsewhere)} {effect.order}" if effect.depends_on_order else ""
-    return f"{effect.effect} {difference_with_error(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
+    return f"{effect.effect} {word_difference(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
 
 
 def word_agreement(numbers: Headline) -> str:
-    """Return how far the two codes lie apart where they solve the same equations with the same friction law."""
+    """Return the largest difference of the two codes for the same equations and friction law."""
     if math.isnan(numbers.like_for_like):
         return ""
     verdict = {
@@ -120,15 +120,15 @@ def word_agreement(numbers: Headline) -> str:
 
 
 def _word_multiple(ratio: float) -> str:
-    """Return in which multiple of both errors a difference lies that agrees."""
+    """Return how many times both errors together an agreeing difference is, in words."""
     return "" if ratio <= 1.0 else "twice "
 
 
 def word_supremum(numbers: Headline) -> str:
-    """Return how much higher the literal supremum of the first model's equations is than the same as integrated."""
+    """Return how much higher the literal supremum of the first model's equations is than mu as integrated."""
     if math.isnan(numbers.supremum_mean):
         return ""
-    if numbers.supremum_maximum < SAME:
+    if numbers.supremum_maximum < EQUAL_DIFFERENCE:
         return "The literal supremum is the same."
     if numbers.phases_per_axis == 1:
         return f"The literal supremum is {percent(numbers.supremum_mean)} higher."
@@ -142,7 +142,7 @@ def name_engine(title: str) -> str:
 
 
 def word_engine(row: Difference, title: str, like: str) -> str:
-    """Return how far an engine of the user is from the equations that it solves, and whether the errors explain it."""
+    """Return the difference of a user's engine from the equations that it solves, and whether errors explain it."""
     known, axis = row.asked - row.unanswered, row.phases_per_axis
     if not known:
         return f"{name_engine(title)} and the {like} have no value in common: not compared."
@@ -154,7 +154,7 @@ def word_engine(row: Difference, title: str, like: str) -> str:
     places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
     pairs = "1 phase pair lacks" if row.unanswered == 1 else f"{row.unanswered} phase pairs lack"
     missing = f", as {pairs} a usable value" if row.unanswered else ""
-    mean = difference_with_error(row.mean, row.error)
+    mean = word_difference(row.mean, row.error)
     sizes = f"{mean} in the mean over {places}{missing}, and by {signed(row.largest)} at most,{where}"
     return f"{name_engine(title)} differs from the {like} by {sizes}: {verdict}."
 
@@ -176,7 +176,7 @@ def word_engine_without_values(title: str, like: str, missing: str, outcomes: Ma
 
 
 def word_breach(limit: Limit, breach: Breach) -> str:
-    """Return where, by which value and how a limit is broken; without the scene."""
+    """Return in which body, by which value and by how much a limit is broken, without the scene."""
     body = f"body {breach.body}: " if breach.body else ""
     found = breach.reason or f"{_digits_above(breach.found, limit.allowed)} found"
     text = f"{body}acceptance.{limit.key}: {found}, {limit.allowed:g} allowed"
@@ -193,9 +193,9 @@ def _digits_above(found: float, allowed: float) -> str:
     return next((text for text in texts if float(text) > allowed), f"{found:.3g}")
 
 
-def word_gate(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) -> str:
+def word_limit_check(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) -> str:
     """
-    Return whether the limits hold, and what has none.
+    Return whether the limits are kept, and which comparisons have no limit.
 
     limits, broken: their numbers. unchecked: by scene, the pairs of models without a limit.
     """
@@ -212,16 +212,16 @@ def word_gate(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) 
 
 
 def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
-    """Return which pairs of models of which scenes no limit holds; "" where all are checked."""
+    """Return which pairs of models of which scenes have no limit; "" if all have one."""
     without_limit = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
     groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(without_limit, lambda each: each[0])]
-    listed = "; ".join(f"{', '.join(pairs)} of {name_some(scenes, NAMED)}" for pairs, scenes in groups)
+    listed = "; ".join(f"{', '.join(pairs)} of {name_some(scenes, MAX_NAMED_SCENES)}" for pairs, scenes in groups)
     return f"not checked, as no limit is stated: {listed}" if listed else ""
 
 
 def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     """
-    Return the answer of the whole study in at most three sentences.
+    Return the answer to the whole study's question in at most three sentences.
 
     How far the paper's equations lie from the last model, in which reading; how closely the codes agree where they
     solve the same, and what the other reading is worth; what was measured.
@@ -237,7 +237,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
     """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
-    size = difference_with_error(abs(largest.mean), largest.error).removeprefix("+")
+    size = word_difference(abs(largest.mean), largest.error).removeprefix("+")
     over = " in the mean over the initial phases" if largest.phases_per_axis > 1 else " under the record"
     than = "lower" if largest.mean < 0.0 else "higher"
     rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
@@ -245,10 +245,10 @@ def _word_largest(known: Sequence[Headline]) -> str:
     if phased:
         low = min((each.low, each.low_error) for each in phased)
         high = max((each.high, each.high_error) for each in phased)
-        single = f", and by {difference_with_error(*low)} to {difference_with_error(*high)} at single phase pairs"
+        single = f", and by {word_difference(*low)} to {word_difference(*high)} at single phase pairs"
     first = " or ".join(sorted({each.first_name for each in known}))
     second = " or ".join(sorted({each.second_name for each in known}))
-    # what is the same in both readings is also that of the others
+    # Scenes in which both readings are equal count for the second reading as well.
     readings = sorted({each.reading for each in known} - {BOTH_READINGS}) or [BOTH_READINGS]
     return (
         f"The largest accelerations that {first} give, read {' or '.join(readings)}, differ from those of "
@@ -258,7 +258,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
 
 
 def _word_codes(known: Sequence[Headline]) -> str:
-    """Return how far the codes lie apart given the same, and by how much the literal supremum is higher."""
+    """Return the difference of the codes for the same equations, and how much higher the literal supremum is."""
     parts = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
@@ -290,29 +290,29 @@ def _capitalize(text: str) -> str:
 
 
 def word_difference_cell(numbers: Headline) -> str:
-    """Return the mean difference of the first screen's table."""
+    """Return the cell of the first screen's table with the mean difference."""
     if numbers.first == numbers.second or not numbers.points:
         return "no value in common"
     if math.isnan(numbers.error) and numbers.phases_per_axis > 1:
         return f"{signed(numbers.mean)}, too few phases for an error"
-    return difference_with_error(numbers.mean, numbers.error)
+    return word_difference(numbers.mean, numbers.error)
 
 
 def word_range_cell(numbers: Headline) -> str:
-    """Return the range over the phases of the first screen's table; "" under a record."""
+    """Return the cell of the first screen's table with the range over the phases; "" under a record."""
     return word_range(numbers) if numbers.points and numbers.phases_per_axis > 1 else ""
 
 
 def word_causes_cell(numbers: Headline) -> str:
-    """Return the causes of the first screen's table."""
+    """Return the cell of the first screen's table with the causes of the difference."""
     if not numbers.resolved:
-        return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED}"
+        return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED_TEXT}"
     words = word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
     return words.replace(" of it", "")
 
 
 def word_agreement_cell(numbers: Headline) -> str:
-    """Return how far the codes lie apart given the same equations and friction law, in the first screen's table."""
+    """Return the cell of the first screen's table with the difference of the codes for the same equations."""
     if math.isnan(numbers.like_for_like):
         return "not compared"
     verdict = {True: "met", False: "not met", None: "error unknown"}[numbers.like_for_like_met]
@@ -320,17 +320,17 @@ def word_agreement_cell(numbers: Headline) -> str:
 
 
 def word_supremum_cell(numbers: Headline) -> str:
-    """Return by how much the literal supremum is higher, in the first screen's table."""
+    """Return the cell of the first screen's table with the excess of the literal supremum."""
     if math.isnan(numbers.supremum_mean):
         return "no difference" if numbers.reading == BOTH_READINGS else "not compared"
-    if numbers.supremum_maximum < SAME:
+    if numbers.supremum_maximum < EQUAL_DIFFERENCE:
         return "no difference"
     if numbers.phases_per_axis == 1:
         return signed(numbers.supremum_mean)
     return f"{signed(numbers.supremum_mean)}, up to {signed(numbers.supremum_maximum)}"
 
 
-CELLS = SimpleNamespace(
+CELL_WORDINGS = SimpleNamespace(
     difference=word_difference_cell,
     range=word_range_cell,
     causes=word_causes_cell,

@@ -1,4 +1,4 @@
-"""The surfaces mu_i(alpha1, alpha2) of every scene and model: the tasks that they take, and one xarray data set."""
+"""Surfaces mu_i(alpha1, alpha2) of every scene and model: their tasks, and one xarray data set of their results."""
 
 import math
 from collections import Counter
@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult, execute_batch
-from comparison.study.costs import seconds_per_point
+from comparison.study.costs import estimate_point_seconds
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.phases import phase_axis
 
-NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
-MEANING = {  # unit and meaning of the variables
+NOT_APPLICABLE = "not applicable"  # status of a model that does not apply to a scene
+MEANING_OF_VARIABLE = {  # unit and meaning of each variable
     "mu": {"units": "1", "long_name": "dynamic amplification factor (5.1)"},
     "error": {"units": "1", "long_name": "estimated absolute error of mu"},
     "instant": {"units": "s", "long_name": "time when the outcome arose"},
@@ -27,18 +27,18 @@ MEANING = {  # unit and meaning of the variables
     "cap_share": {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
     "status": {"long_name": "named outcome of the point"},
 }
-NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
+NOT_ASKED = "not asked"  # status at phases that a model skips because it computes every k-th phase
 
 
-def surface_tasks(study: Study) -> list[Task]:
-    """A task for every batch of the study, in the same order."""
+def make_surface_tasks(study: Study) -> list[Task]:
+    """Return a task for every batch of the study, in the same order."""
     models = {model.key: model for model in study.hierarchy}
     return [
         Task(
             execute_batch,
             batch,
             models[batch.model].title,
-            batch.points * seconds_per_point(batch.scene, models[batch.model]),
+            batch.points * estimate_point_seconds(batch.scene, models[batch.model]),
             batch.question,
             needs_compiled_reference=batch.amplification.startswith("reference:"),
             timeout=batch.timeout,
@@ -49,8 +49,8 @@ def surface_tasks(study: Study) -> list[Task]:
     ]
 
 
-def batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResult]:
-    """Return what the models answered to the batches; NaN with the reason where a task ended without a result."""
+def collect_batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResult]:
+    """Return the models' answers to the batches; NaN with the reason for a task that ended without a result."""
     return [
         results.value(task, lambda batch, failed: batch.without_result(failed.outcome, failed.error_message))
         for task in tasks
@@ -59,7 +59,7 @@ def batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResu
 
 def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
-    The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
+    Return the answers on dimensions scene, model, body, alpha1, alpha2 (rad).
 
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
     scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
@@ -73,7 +73,7 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
     variables = {}
     for name, array in values.items():
         dims = ("scene", "model", *(("body",) if array.ndim > 3 else ()), "alpha1", "alpha2")
-        variables[name] = dims, array.reshape(*array.shape[:-1], study.grid, study.grid), MEANING[name]
+        variables[name] = dims, array.reshape(*array.shape[:-1], study.grid, study.grid), MEANING_OF_VARIABLE[name]
     strides = [[study.stride(model, scene) for model in study.hierarchy] for scene in study.scenes]
     of_scenes = {
         "recorded": ([scene.recorded for scene in study.scenes], "whether it has no phases"),
@@ -101,7 +101,7 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
 def _place_answers(
     study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult], bodies: int
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.float64]]:
-    """The answers by name, (scene, model, [body,] place on the grid), and the cost of each surface, s."""
+    """Return the answers by name, (scene, model, [body,] index on the grid), and the cost of each surface, s."""
     names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
     square, points = (len(names), len(models)), study.grid**2
     values: dict[str, NDArray[Any]] = {name: np.full((*square, bodies, points), np.nan) for name in ("mu", "error")}
@@ -123,7 +123,7 @@ def _place_answers(
 
 
 def copy_to_mirror_images(study: Study, arrays: Sequence[NDArray[Any]]) -> None:
-    """Copy arrays (scene, model, ..., place on the grid) from the phase pairs computed to their mirror images."""
+    """Copy arrays (scene, model, ..., index on the grid) from the computed phase pairs to their mirror images."""
     for row, scene in enumerate(study.scenes):
         for column, model in enumerate(study.hierarchy):
             if model.applies(scene):
@@ -132,38 +132,38 @@ def copy_to_mirror_images(study: Study, arrays: Sequence[NDArray[Any]]) -> None:
                     array[row, column][..., place] = array[row, column][..., source]
 
 
-def largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
-    """Largest displacement of the platform over rho among the phases of a model; NaN where none has an answer."""
-    return float(surfaces["cap_share"].sel(scene=scene, model=model).max())  # skips NaN
+def find_largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
+    """Return the largest displacement of the platform over rho among the phases; NaN without an answer."""
+    return float(surfaces["cap_share"].sel(scene=scene, model=model).max())  # max() skips NaN
 
 
-def largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> float:
-    """Largest displacement of the platform over the isolator's travel; NaN without an answer or a travel."""
+def find_largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> float:
+    """Return the largest displacement of the platform over the isolator's travel; NaN without either."""
     travel = scene.isolator.travel
     displacement = surfaces["displacement"].sel(scene=scene.name, model=model)
     return math.nan if travel is None else float(displacement.max()) / travel
 
 
-def stride_of(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
-    """Every which of the study's phases all these models were asked for."""
+def find_common_stride(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
+    """Return the stride of the study's phases that all these models were asked for."""
     strides = surfaces.variables["stride"].values
-    return int(max(strides[_place_of_model(surfaces, scene, model)] for model in models))
+    return int(max(strides[_find_model_index(surfaces, scene, model)] for model in models))
 
 
-def values_of(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> NDArray[Any]:
-    """A variable of the first model, by body where it has some, at the phases that all these models were asked for."""
-    every = slice(None, None, stride_of(surfaces, scene, *models))
+def select_values(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> NDArray[Any]:
+    """Return a variable of the first model, by body if it has them, at the phases asked of all these models."""
+    every = slice(None, None, find_common_stride(surfaces, scene, *models))
     values: NDArray[Any] = surfaces.variables[name].values[
-        (*_place_of_model(surfaces, scene, models[0]), ..., every, every)
+        (*_find_model_index(surfaces, scene, models[0]), ..., every, every)
     ]
     return values
 
 
-def outcome_counts(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, int]:
+def count_outcomes(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, int]:
     """Return how many of the phase pairs asked of the model ended in each outcome, most frequent first."""
-    return dict(Counter(values_of(surfaces, "status", scene, model).ravel().tolist()).most_common())
+    return dict(Counter(select_values(surfaces, "status", scene, model).ravel().tolist()).most_common())
 
 
-def _place_of_model(surfaces: xr.Dataset, scene: str, model: Model) -> tuple[Any, Any]:
-    """Row and column of a model of a scene."""
+def _find_model_index(surfaces: xr.Dataset, scene: str, model: Model) -> tuple[Any, Any]:
+    """Return the row and column of a model of a scene."""
     return surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc(model.key)

@@ -1,5 +1,5 @@
 """
-The total difference of one body as signed bars that add up: what each effect of the chain of models adds.
+Waterfall of one body: the total difference as signed bars that add up, one for each effect of the model sequence.
 
 A bar is the mean over the finest grid of phases that both of its models have, relative to mu of the first model. The
 total has the grid of the coarsest model; what the means of the finer grids leave of it is a bar of its own.
@@ -12,16 +12,16 @@ from comparison.result_types import Number, Phases, Text, result
 from comparison.study.models import Pair
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.differences import Difference
-from comparison.surfaces.model_difference import RESOLVED
+from comparison.surfaces.model_difference import RESOLVED_RATIO
 
 NAN = float("nan")
-PHASES = "phases"  # key of the bar of phase pairs that not all models have
-ROUNDING = 1e-9  # share of mu: less than that is left by rounding, and no bar
+UNEQUAL_PHASES = "phases"  # key of the bar for phase pairs that only some of the models have
+MAX_ROUNDING_SHARE = 1e-9  # share of mu: a smaller remainder is rounding and has no bar
 
 
 @result
 class WaterfallBar:
-    """One effect of the chain of models, or the total; relative to mu of the first model."""
+    """One effect of the model sequence, or the total; relative to mu of the first model."""
 
     model: Annotated[str, "key of the model that the effect leads to; phases for phase pairs that not all models have"]
     size: Annotated[Number, "signed size; null where a model has no value"]
@@ -31,7 +31,7 @@ class WaterfallBar:
 
 @result
 class LargestDifference:
-    """The largest absolute difference of an engine model and the first model, taken apart at its phase pair."""
+    """Largest absolute difference of an engine model and the first model, split into effects at its phase pair."""
 
     bars: tuple[WaterfallBar, ...]
     """one per effect, up to the model that has the difference; they add up to the total"""
@@ -56,17 +56,17 @@ class Waterfall:
 def make_waterfall(comparison: BodyComparison) -> Waterfall:
     """Return the waterfall of one body."""
     total = comparison.total
-    bars = [_mean_bar(row) for row in comparison.chain_rows]
+    bars = [_mean_bar(row) for row in comparison.consecutive_rows]
     left = total.mean - sum(bar.size for bar in bars)
-    if abs(left) > ROUNDING:
-        bars.append(WaterfallBar(PHASES, left, abs(left), resolved=False))
+    if abs(left) > MAX_ROUNDING_SHARE:
+        bars.append(WaterfallBar(UNEQUAL_PHASES, left, abs(left), resolved=False))
     about = comparison.scene.name, comparison.body
-    return Waterfall(*about, tuple(bars), _mean_bar(total), largest_difference(comparison))
+    return Waterfall(*about, tuple(bars), _mean_bar(total), find_largest_difference(comparison))
 
 
-def largest_difference(comparison: BodyComparison) -> LargestDifference:
+def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
     """Return the largest difference of any engine model (without one, of the last model) and the first model."""
-    models = comparison.chain
+    models = comparison.model_sequence
     later = [model for model in models[1:] if model.side == "engine"] or models[-1:]
     totals = [replace(comparison.total_pair, second=model, base=models[0]) for model in later]
     known = [pair for pair in totals if comparison.difference(pair).known.any()]
@@ -75,14 +75,14 @@ def largest_difference(comparison: BodyComparison) -> LargestDifference:
 
     def size(pair: Pair) -> float:
         difference = comparison.difference(pair)
-        return abs(difference.at(difference.size, difference.place))
+        return abs(difference.at(difference.size, difference.largest_place))
 
     largest = max(known, key=size)
     total = comparison.difference(largest)
-    assert total.place is not None
-    chain = comparison.chain_pairs[: models.index(largest.second)]
-    bars = tuple(_bar_at(comparison, pair, total.place) for pair in chain)
-    return LargestDifference(bars, _bar_at(comparison, largest, total.place), total.phases, len(total.size))
+    assert total.largest_place is not None
+    chain = comparison.consecutive_model_pairs[: models.index(largest.second)]
+    bars = tuple(_bar_at(comparison, pair, total.largest_place) for pair in chain)
+    return LargestDifference(bars, _bar_at(comparison, largest, total.largest_place), total.phases, len(total.size))
 
 
 def _mean_bar(row: Difference) -> WaterfallBar:
@@ -92,4 +92,4 @@ def _mean_bar(row: Difference) -> WaterfallBar:
 def _bar_at(comparison: BodyComparison, pair: Pair, place: tuple[int, int]) -> WaterfallBar:
     difference = comparison.difference(pair)
     size, error = difference.at(difference.size, place), difference.at(difference.uncertainty, place)
-    return WaterfallBar(pair.second.key, size, error, bool(abs(size) > RESOLVED * error))
+    return WaterfallBar(pair.second.key, size, error, bool(abs(size) > RESOLVED_RATIO * error))

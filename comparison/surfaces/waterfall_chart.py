@@ -1,4 +1,4 @@
-"""Waterfalls of the page's first screen as bars in percent of a width, all on one scale."""
+"""Layout of the waterfalls on the page's first screen: bars in percent of a width, all on one scale."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -6,84 +6,84 @@ from dataclasses import dataclass
 from math import isfinite
 
 from comparison.surfaces.waterfall import WaterfallBar
-from comparison.wording import difference_with_error
+from comparison.wording import word_difference
 
-MARGIN = 0.03  # share of the scale beyond the longest bar
+SCALE_MARGIN = 0.03  # share of the scale that is left free beyond the longest bar
 MAX_TICKS = 5
 
 
 @dataclass(frozen=True)
-class Scale:
-    """One horizontal axis: `low` and `high` are relative sizes at its ends, `ticks` round values between them."""
+class LinearScale:
+    """Horizontal axis: `low` and `high` are relative sizes at its ends, `ticks` round values between them."""
 
     low: float
     high: float
     ticks: tuple[float, ...]
 
     def at(self, size: float) -> float:
-        """Place of a size on the axis, percent of its length from the left."""
+        """Return the position of a size on the axis, percent of its length from the left."""
         return round(100.0 * (size - self.low) / (self.high - self.low), 3)
 
 
 @dataclass(frozen=True)
-class Bar:
-    """One bar: places in percent of the width."""
+class ChartBar:
+    """One bar of the chart, with positions in percent of the width."""
 
     model: str  # key of the model that the step leads to, or "total"
     kind: str  # "up", "down", "total", "unresolved" (not beyond its error) or "none" (no value)
     left: float
     width: float
-    error: tuple[float, float]  # ends of the error bar
-    end: float  # where the next bar begins
-    text: str  # size and error in words
+    error: tuple[float, float]  # positions of the ends of the error bar
+    end: float  # position where the next bar begins
+    text: str  # text with the size and its error
 
 
-def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> list[Bar]:
-    """The bars of a waterfall."""
+def place_bars(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: LinearScale) -> list[ChartBar]:
+    """Return the bars of a waterfall, ready to be drawn."""
     return [_place_bar(bar, model, start, scale) for bar, model, start in _bars_with_starts(bars, total)]
 
 
-def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) -> Scale:
-    """The one axis on which all these waterfalls have room, error bars included."""
+def make_common_scale(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) -> LinearScale:
+    """Return one axis on which all these waterfalls have room, error bars included."""
     drawn = [each for bars, total in waterfalls for each in _bars_with_starts(bars, total) if isfinite(each[0].size)]
     sizes = [0.0, *(start + bar.size + side * _finite_error(bar) for bar, _, start in drawn for side in (-1.0, 1.0))]
     low, high = min(sizes), max(sizes)
     if low == high:
         low, high = -0.01, 0.01
-    room = MARGIN * (high - low)
+    room = SCALE_MARGIN * (high - low)
     low, high = low - room, high + room
-    return Scale(low, high, tuple(_tick_values(low, high)))
+    return LinearScale(low, high, tuple(_tick_values(low, high)))
 
 
 @dataclass(frozen=True)
 class LogScale:
-    """A logarithmic axis of relative sizes; `ticks` are the places of the powers of ten, percent."""
+    """Logarithmic axis of relative sizes; `ticks` are the positions of the powers of ten, percent."""
 
     low: float
     high: float
 
     def at(self, size: float) -> float:
-        """Place of a size, percent of the length; at the edge what lies beyond."""
+        """Return the position of a size, percent of the length; sizes beyond an end are at that end."""
         if not size > self.low:
             return 1.0
         return round(min(99.0, 1.0 + 98.0 * math.log(size / self.low) / math.log(self.high / self.low)), 3)
 
     @property
     def ticks(self) -> list[float]:
-        """Places of the powers of ten."""
+        """Return the positions of the powers of ten."""
         powers = range(round(math.log10(self.low)), round(math.log10(self.high)) + 1)
         return [self.at(10.0**power) for power in powers]
 
 
-def log_scale(sizes: Iterable[float]) -> LogScale:
-    """Powers of ten around all sizes above zero."""
+def make_log_scale(sizes: Iterable[float]) -> LogScale:
+    """Return an axis whose powers of ten enclose all sizes above zero."""
     powers = [math.log10(size) for size in sizes if isfinite(size) and size > 0.0]
     low, high = (math.floor(min(powers)), math.ceil(max(powers))) if powers else (-4, 0)
     return LogScale(10.0**low, 10.0 ** max(high, low + 1))
 
 
 def _bars_with_starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple[WaterfallBar, str, float]]:
-    """Every bar with its model and where it begins: where the one before it ends, and the total at zero."""
+    """Yield every bar with its model and its start: where the previous one ends, and zero for the total."""
     start = 0.0
     for bar in bars:
         yield bar, bar.model, start
@@ -95,21 +95,21 @@ def _finite_error(bar: WaterfallBar) -> float:
     return bar.error if isfinite(bar.error) else 0.0
 
 
-def _place_bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
+def _place_bar(bar: WaterfallBar, model: str, start: float, scale: LinearScale) -> ChartBar:
     begin = scale.at(start)
     if not isfinite(bar.size):
-        return Bar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
+        return ChartBar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
     end = scale.at(start + bar.size)
     ends = scale.at(start + bar.size - _finite_error(bar)), scale.at(start + bar.size + _finite_error(bar))
     kind = "unresolved" if not bar.resolved else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
-    return Bar(
+    return ChartBar(
         model,
         kind,
         min(begin, end),
         round(abs(end - begin), 3),
         ends,
         end,
-        difference_with_error(bar.size, _finite_error(bar)),
+        word_difference(bar.size, _finite_error(bar)),
     )
 
 

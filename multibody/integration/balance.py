@@ -37,7 +37,7 @@ MAX_ITERATIONS = 50
 # Largest residual of the forces, in weights, at which Newton's iteration may end. The rounding of the forces is added
 # to it, times a safety factor for many contacts and stiff links.
 MAX_RESIDUAL = 1e-9
-SAFETY_OF_RESIDUAL = 100.0
+SAFETY_OF_FORCE_ROUNDING = 100.0
 
 CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current
 
@@ -94,7 +94,7 @@ class _EquilibriumSolver:
         self._carried = np.zeros(self._size)
         self._carried[self.model.bodies] = self.acceleration
         rounding = self.model.rounding / self.penetration
-        self._limit = MAX_RESIDUAL + SAFETY_OF_RESIDUAL * rounding
+        self._limit = MAX_RESIDUAL + SAFETY_OF_FORCE_ROUNDING * rounding
 
     def gaps(self, coordinates: Array) -> Array:
         """Return the gaps (K,) of the contacts at coordinates (n,)."""

@@ -38,8 +38,8 @@ SAFETY_OF_ROUNDING = 3.0
 
 # Noise of the contact force over the bound of its rounding error, in translation (measured: up to 0.27) and of a
 # platform that turns (measured: up to 0.10).
-NOISE_OF_ROUNDING = 0.5
-NOISE_OF_TURNING = 0.2
+FORCE_NOISE_RATIO = 0.5
+FORCE_NOISE_RATIO_OF_TURNING = 0.2
 
 # Force on the platform of a flat slider, over Newton's residual, above which the residual acts only in part (measured:
 # 34).
@@ -66,8 +66,8 @@ ERROR_PER_WARPING_LOAD = 0.25
 # levels 1 to 4).
 MIN_ERROR_WITH_IMPACTS = 4e-3
 
-# Error that a level typically has where friction yields, over that of rigid friction (measured at level 2: 2.0).
-FLOOR_OF_SPRINGS = 3.0
+# Typical error of a level where friction yields over that of rigid friction (measured at level 2: 2.0).
+ERROR_FLOOR_RATIO_OF_YIELDING = 3.0
 
 # Smallest relative error that any peak is given: no smaller one has been verified.
 SMALLEST_MEASURED_ERROR = 1e-6
@@ -102,7 +102,7 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
         rate = np.where(turned | (rate > MAX_CREDIBLE_RATE), MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
     change = safety * change * (1.0 + contact_lag(levels[-2], model)) / (rate - 1.0)
     unsolved = levels[-1].newton * levels[-1].load
-    floor = levels[-1].error_floor * (1.0 if model.springs is None else FLOOR_OF_SPRINGS)
+    floor = levels[-1].error_floor * (1.0 if model.springs is None else ERROR_FLOOR_RATIO_OF_YIELDING)
     level_error: Array = np.maximum(change, floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
     starting = _error_of_starting_links(peaks[-1], levels[-1], model)
@@ -142,9 +142,9 @@ def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: Engin
     """
     peaks, shares = run.peaks.value, scene.masses / scene.total_mass
     if model.depressions is not None:
-        noise = NOISE_OF_TURNING * level.rounding
+        noise = FORCE_NOISE_RATIO_OF_TURNING * level.rounding
         return np.where(peaks <= noise, noise, 0.0)
-    noise = NOISE_OF_ROUNDING * level.rounding
+    noise = FORCE_NOISE_RATIO * level.rounding
     vertical = peaks if model.ground.accelerates(2) else np.minimum(run.max_vertical, peaks)
     gain = (2.0 * vertical + noise) * noise
     error = np.minimum(noise, gain / np.maximum(peaks + np.sqrt(np.maximum(peaks**2 - gain, 0.0)), SMALLEST_CHANGE))

@@ -21,10 +21,11 @@ from multibody.models.assembly import assemble
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Scene
-from reference.problem.ranges import TOLERANCE
+from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
+# Largest number of levels of accuracy that a phase pair goes through.
 MAX_LEVELS = 8
 
 # Smallest tolerance at which a record has a level before level 0 (measured: docs/records/multibody.md).
@@ -237,7 +238,7 @@ def levels(
     >>> len(multibody.levels(reference.load_scene("fig3-I")))
     8
     """
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     with silence_engine():
         return plan_levels(scene, assemble(scene, model, regularization), tolerance)
 

@@ -43,6 +43,7 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
+# Outcomes of a run that stops before the end of the motion without an event.
 UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 
 # Largest share of the tolerance that the warping load of closed supports may cause as an error.

@@ -35,10 +35,10 @@ WORK_RANGE = Range(1.0, 1e12, "steps")
 # Number of successive levels with impacts, each another motion than the level before, after which refinement ends.
 MAX_DIFFERENT_MOTIONS = 3
 
-# Least number of levels that show an error where friction yields. Short slides that one level has and the next has not
-# decide how the platform swings on its springs: levels 0 and 1 may agree and both be off (measured: by seven times the
-# error that their difference shows, and level 2 by a seventeenth of theirs).
-LEAST_LEVELS_OF_SPRINGS = 3
+# Smallest number of levels with an error estimate where friction yields. Short slides that occur at one level and not
+# at the next decide how the platform oscillates on its springs: levels 0 and 1 may agree and both be wrong (measured:
+# by seven times the error that their difference shows, and level 2 by a seventeenth of their error).
+MIN_LEVELS_OF_YIELDING = 3
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class _AnswerSearch:
         if run.outcome != Outcome.OK:
             self.has_ended = True
             return
-        if self.runs.pair.model.springs is not None and len(done) < LEAST_LEVELS_OF_SPRINGS:
+        if self.runs.pair.model.springs is not None and len(done) < MIN_LEVELS_OF_YIELDING:
             return
         self.candidate = self.runs.make_candidate()
         if done[-1] is not run:  # a run on springs of real bearings has taken its place

@@ -15,7 +15,7 @@ from multibody.integration.refine import MAX_WORK, WORK_RANGE
 from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
-from reference.problem.ranges import TOLERANCE
+from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
@@ -60,7 +60,7 @@ def refusal(
     >>> multibody.refusal(reference.load_scene("fig3-I"))
     ''
     """
-    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
     if softened:
         try:

@@ -10,7 +10,7 @@ from multibody.models.spatial import assemble_spatial
 from multibody.models.system import EngineModel
 from multibody.models.translational import assemble_translational
 from reference.problem import Scene
-from reference.problem.ranges import REGULARIZATION
+from reference.problem.ranges import REGULARIZATION_RANGE
 from reference.problem.reductions import body_cannot_tilt
 from reference.support.arguments import check_choice, check_number
 
@@ -33,7 +33,7 @@ def assemble(
     """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or a wrong v_reg."""
     check_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
-        regularization = check_number("regularization", regularization, REGULARIZATION)
+        regularization = check_number("regularization", regularization, REGULARIZATION_RANGE)
     elif scene.has_dry_friction:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
     built = BUILDERS[model](scene, regularization, contact_force=contact_force, **options)

@@ -31,7 +31,7 @@ ROUNDING_ERROR = 1e-13  # relative error of a frequency and of each operation
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return peak accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and `ends`, (M,) each.
+    Return peak accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and True at the end, (M,).
 
     The scene is one that `linear` allows. `ends` is True at phase pairs at which the platform may reach the end of its
     travel, or without one the rim (4.1): such a motion has left the range of the small equations.

@@ -107,6 +107,7 @@ def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: i
 
 @cache_on_disk(__file__, nogil=True)
 def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
+    """Set the largest lengths over time, and their errors, of all bodies at each phase pair."""
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))

@@ -42,7 +42,7 @@ class Estimate:
 NEVER_RESTS = "never at rest: no dry friction"
 MOVING_AT_END = "moving at the end: take a longer duration"
 NOT_SAMPLED = "no samples of the last rest"
-UNKNOWN = Estimate(math.nan, math.nan)
+UNKNOWN_ESTIMATE = Estimate(math.nan, math.nan)
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
@@ -122,7 +122,7 @@ class DemandReader:
     def extreme(self, read: ReadNumber) -> Estimate:
         """Return a number that `read` computes from samples, with its error."""
         if not self.answered:
-            return UNKNOWN
+            return UNKNOWN_ESTIMATE
         value = read(self.samples)
         sampling = max(abs(read(samples) - value) for samples in self.decimated)
         return Estimate(value, sampling + self._solution_error(value, [read(samples) for samples in self.coarser]))
@@ -130,7 +130,7 @@ class DemandReader:
     def residual(self) -> Estimate:
         """Return the displacement in the last rest, with the creep in all rests as a part of its error."""
         if not self.answered:
-            return UNKNOWN
+            return UNKNOWN_ESTIMATE
         scene, stick = self.motion.scene, self.motion.stick
         yields = scene.dry_friction.elastic
         stick = stick[-1:] if yields else stick  # elastic displacements of several rests do not add up
@@ -150,7 +150,7 @@ class DemandReader:
     def energy(self, read: Callable[[Energy], float]) -> Estimate:
         """Return an energy that `read` integrates over the samples, with its error."""
         if not self.answered:
-            return UNKNOWN
+            return UNKNOWN_ESTIMATE
         (energy, *coarser), decimated = self._energies
         value = read(energy)
         sampling = max(abs(read(part) - value) for part in decimated) / (DECIMATION - 1)
@@ -166,7 +166,7 @@ class DemandReader:
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
         """Return the number of events that `read` counts; its error is the difference of the runs."""
         if not self.answered:
-            return UNKNOWN
+            return UNKNOWN_ESTIMATE
         value = read(self.motion)
         return Estimate(value, max((abs(value - read(other)) for other in self.others), default=math.nan))
 
@@ -174,9 +174,10 @@ class DemandReader:
         """Return the largest accelerations of all bodies, with their errors."""
         bodies = len(self.motion.scene.bodies)
         if not self.answered:
-            return (UNKNOWN,) * bodies
+            return (UNKNOWN_ESTIMATE,) * bodies
         errors = self.accuracy.peak_error if self.accuracy else np.full(bodies, np.nan)
         return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
 
     def _solution_error(self, value: float, others: list[float], scale: float | None = None) -> float:
+        """Return the error that the differences of the runs give to a value; NaN without other runs."""
         return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)

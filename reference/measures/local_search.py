@@ -27,7 +27,7 @@ from reference.problem.scene import Scene
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
 # Coordinates along each axis of the square at which the quotient is computed: first, and then around the largest
 COARSE_PLACES, FINE_PLACES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
-REFINEMENTS = 5  # number of grids for the largest quotient, each four times finer than the one before
+QUOTIENT_GRIDS = 5  # number of grids for the largest quotient, each four times finer than the one before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when the half width of its square is smaller
 # The square moves and keeps its size if the best pair is farther from the center than this share of the half width
 MOVING_FRACTION = 0.8
@@ -42,7 +42,7 @@ LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0
 MAX_MERGED_WIDTH = 0.04  # rad: two searches that share a square of smaller width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
 JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # squares in which a search follows a jump, and grids in each square
-DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
+FALL_DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
 # Ratio of the falls at the near and the far distance: it is 0.01 for a parabola, 0.1 for an edge, 1 for a jump
 KINK_FALL, JUMP_FALL = 0.03, 0.3
@@ -181,7 +181,7 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
         return values
 
-    place, value = _maximize_on_square(quotient, [COARSE_PLACES, *[FINE_PLACES] * (REFINEMENTS - 1)])
+    place, value = _maximize_on_square(quotient, [COARSE_PLACES, *[FINE_PLACES] * (QUOTIENT_GRIDS - 1)])
     return search.phases + search.half_width * place, value
 
 
@@ -248,7 +248,7 @@ def classify_maximum(surface: Surface, search: LocalSearch) -> tuple[str, tuple[
     # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance tells which, in any of the
     # DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the
     # directions without one.
-    angle = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    angle = 2.0 * np.pi * np.arange(FALL_DIRECTIONS) / FALL_DIRECTIONS
     directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     far, near = (
         search.value - surface.compute(search.phases + distance * directions).value

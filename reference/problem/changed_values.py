@@ -93,6 +93,7 @@ def name_with_changes(name: str, changes: Sequence[str]) -> str:
 
 
 def _changed_key(change: str) -> str:
+    """Return the key of one change in a scene's name."""
     return change.partition("=")[0].removesuffix(" changed")
 
 

@@ -184,6 +184,7 @@ def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]
 
 
 def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
+    """Return exp(i alpha) for both initial phases."""
     turns: NDArray[np.complex128] = np.exp(1j * check_phase(phase))
     return turns
 
@@ -215,4 +216,5 @@ def _integrate_record(knots: Array, time: ArrayLike, times: int) -> Array:
 
 
 def _cumulative_sums(gains: Array) -> Array:
+    """Return zeros, then the cumulative sums of the gains (K, 3) over the intervals."""
     return np.vstack([np.zeros(3), np.cumsum(gains, axis=0)])

@@ -29,8 +29,8 @@ import numpy as np
 from reference.problem.changed_values import short_key, word_table
 from reference.problem.scene import Scene
 from reference.problem.scene_file import (
-    RANGE,
-    VALUES,
+    RANGE_KEYS,
+    VALUES_KEYS,
     find_varied_keys,
     make_scene,
     scale_loading,
@@ -58,8 +58,8 @@ BOUND_FACTOR = Range(0.01, 100.0)
 BOUND_DIGITS = 12  # digits to which a bound's coefficient is rounded: 0.075, not 0.07500000000000001
 
 Value = float | int | str
-Files = dict[str, str]  # file names of one record by direction
-Numbers = dict[str, float]  # the numbers of one table, such as that of friction
+FilesByDirection = dict[str, str]  # file names of one record by direction
+NumbersByKey = dict[str, float]  # the numbers of one table, such as that of friction
 
 
 @dataclass(frozen=True)
@@ -372,10 +372,13 @@ def _motion_names(data: dict[str, Any], label: str) -> dict[int, str]:
         return {}
 
 
-def _list_values_of_key(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:
-    if set(table) == VALUES:
+def _list_values_of_key(
+    label: str, key: str, table: dict[str, Any]
+) -> Sequence[Value | FilesByDirection | NumbersByKey]:
+    """Return the values that a range or a list gives a key. Raises SceneError."""
+    if set(table) == VALUES_KEYS:
         return _check_listed_values(label, f"{key}.values", table["values"])
-    if set(table) != RANGE:
+    if set(table) != RANGE_KEYS:
         rule = "must be {range = [lowest, highest], steps = N} or {values = [...]} and hold nothing else"
         raise SceneError(label, key, table, rule)
     ends, steps = table["range"], table["steps"]
@@ -394,7 +397,8 @@ def _list_values_of_key(label: str, key: str, table: dict[str, Any]) -> Sequence
     return [int(value) for value in spaced] if whole else spaced
 
 
-def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | Files | Numbers]:
+def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | FilesByDirection | NumbersByKey]:
+    """Return listed values of one kind. Raises SceneError."""
     kinds = (_is_number, lambda value: isinstance(value, str), _is_table_of_files, _is_table_of_numbers)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MAX_SCENES):
@@ -416,7 +420,7 @@ def _is_number(value: Any) -> bool:
     return math.isfinite(as_float(value))
 
 
-def _word_values(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> list[str]:
+def _word_values(label: str, key: str, values: Sequence[Value | FilesByDirection | NumbersByKey]) -> list[str]:
     """Return short texts of values for names of scenes, no two alike; a path becomes a file name. Raises SceneError."""
     for digits in range(4, 18):
         texts = [
@@ -430,6 +434,7 @@ def _word_values(label: str, key: str, values: Sequence[Value | Files | Numbers]
 
 
 def _replace_value(data: dict[str, Any], path: tuple[str | int, ...], value: Any) -> dict[str, Any]:
+    """Return a copy of tables with another value at a path of keys and indices."""
     changed: Any = copy.deepcopy(data)
     place = changed
     for part in path[:-1]:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Discriminator, Tag, model_validator
 
 from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
-from reference.problem.validation import FRICTIONS
+from reference.problem.validation import FRICTION_FORMS
 from reference.support.arguments import Range
 
 LEAST_LOAD = 1e-6  # normal force over the weight below which friction depends on it no further
@@ -236,11 +236,11 @@ class VelocityFriction(Table):
 
 def kind_of_friction(friction: Any) -> str:
     """Return the form that the user means a friction to have: a constant or a table."""
-    return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
+    return FRICTION_FORMS[int(isinstance(friction, dict | VelocityFriction))]
 
 
 Friction = Annotated[
-    Annotated[NonNegative, Tag(FRICTIONS[0])] | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
+    Annotated[NonNegative, Tag(FRICTION_FORMS[0])] | Annotated[VelocityFriction, Tag(FRICTION_FORMS[1])],
     Discriminator(kind_of_friction),
 ]
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.ranges import PHASE
+from reference.problem.ranges import PHASE_RANGE
 from reference.support.arguments import Range, check_array, check_whole_number
 
 Array = NDArray[np.float64]
@@ -20,18 +20,18 @@ def check_phases(phases: ArrayLike) -> Array:
 
     Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given.
     """
-    array = check_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
+    array = check_array("phases", phases, f"must be (M, 2), {PHASE_RANGE.rule}")
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError(f"phases: shape {array.shape}: must be (M, 2), rad")
-    if array.size and (np.abs(array) > PHASE.highest).any():
+    if array.size and (np.abs(array) > PHASE_RANGE.highest).any():
         largest = array.flat[np.abs(array).argmax()]
-        raise ValueError(f"phases: {largest:g}: {PHASE.rule}: reduce it modulo 2 pi")
+        raise ValueError(f"phases: {largest:g}: {PHASE_RANGE.rule}: reduce it modulo 2 pi")
     return np.where(np.abs(array) <= 2.0 * np.pi, array, np.arctan2(np.sin(array), np.cos(array)))
 
 
 def check_phase(phase: ArrayLike) -> Array:
     """Return one phase pair (2,), rad, as an array. Raises ValueError as `check_phases`."""
-    pair = check_array("phases", phase, f"must be (2,), {PHASE.rule}")
+    pair = check_array("phases", phase, f"must be (2,), {PHASE_RANGE.rule}")
     if pair.size != 2:
         raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
     return check_phases(pair.reshape(1, 2))[0]
@@ -39,7 +39,7 @@ def check_phase(phase: ArrayLike) -> Array:
 
 def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
     """Return phase pairs (..., 2), rad, as (M, 2), and their shape before the last axis. Raises as `check_phases`."""
-    rule = f"must be (..., 2), {PHASE.rule}"
+    rule = f"must be (..., 2), {PHASE_RANGE.rule}"
     array = check_array("phases", phases, rule)
     if array.shape[-1:] != (2,):
         raise ValueError(f"phases: shape {array.shape}: must be (..., 2), rad")

@@ -17,17 +17,17 @@ from reference.support.arguments import Range, check_array, quote
 Array = NDArray[np.float64]
 
 MAX_SUPPORTS = 1000
-SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # coordinate of a support along x or y
-DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # coefficient of a link's damper along one axis
+SUPPORT_POSITION_RANGE = Range(-1e6, 1e6, "m")  # coordinate of a support along x or y
+DAMPING_COEFFICIENT_RANGE = Range(0.0, 1e30, "N s/m")  # coefficient of a link's damper along one axis
 MAX_CYCLES = 1e6  # the duration has at most so many of the shortest periods of loading and pendulum
 
 # beyond these phases two neighboring double-precision numbers are 1.2e-10 rad apart, the strictest tolerance
-PHASE = Range(-1e6, 1e6, "rad")
-REGULARIZATION = Range(1e-12, 1e6, "m/s")
-CUTOFF = Range(1e-15, 1e6, "m/s")
-POSITION = Range(-1e12, 1e12, "m")  # displacement in an initial state
-VELOCITY = Range(-1e9, 1e9, "m/s")
-TOLERANCE = Range(1e-10, 0.1)
+PHASE_RANGE = Range(-1e6, 1e6, "rad")
+REGULARIZATION_RANGE = Range(1e-12, 1e6, "m/s")
+CUTOFF_RANGE = Range(1e-15, 1e6, "m/s")
+POSITION_RANGE = Range(-1e12, 1e12, "m")  # displacement in an initial state
+VELOCITY_RANGE = Range(-1e9, 1e9, "m/s")
+TOLERANCE_RANGE = Range(1e-10, 0.1)
 
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits, so the ground counts as at rest
 
@@ -43,7 +43,7 @@ def check_state(initial: Any, bodies: int, radius: float, travel: float | None =
         raise ValueError(f"initial = {quote(initial)}: must be a reference.problem.State") from None
     if x.shape != (bodies, 2) or v.shape != (bodies, 2):
         raise ValueError(f"initial: {rule}")
-    for values, allowed in ((x, POSITION), (v, VELOCITY)):
+    for values, allowed in ((x, POSITION_RANGE), (v, VELOCITY_RANGE)):
         if np.abs(values).max() > allowed.highest:
             raise ValueError(f"initial: {values.flat[np.abs(values).argmax()]:g}: {allowed.rule}")
     if float(np.hypot(*x[0])) >= radius:

@@ -29,10 +29,12 @@ AXIS_LABELS = {
 
 
 def _count_statuses(status: NDArray[np.str_]) -> list[str]:
+    """Return the number of points with each status, as texts."""
     return [f"{count} {name}" for name, count in zip(*np.unique(status, return_counts=True))]
 
 
 def _join_facts(facts: Sequence[str]) -> str:
+    """Return facts as one text, without the middle ones of a long list."""
     shown = facts if len(facts) <= 8 else [*facts[:6], "...", facts[-1]]
     return ", ".join(shown)
 

@@ -25,7 +25,7 @@ from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES
 from reference.problem.supports import are_on_one_line, ring_positions, static_shares
 from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, Superstructure, kind_of_excitation
-from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
+from reference.problem.validation import EXCITATION_FORMS, FRICTION_FORMS, first_scene_error
 from reference.records.loading import load_record_samples
 from reference.records.samples import subtract_zero_line
 from reference.support.arguments import Range, as_float, require_type
@@ -84,7 +84,7 @@ class Scene(Table):
     bodies: Annotated[list[Body], Field(min_length=1, max_length=MAX_BODIES)]
     superstructure: Superstructure | None = None
     excitation: Annotated[
-        Annotated[Excitation, Tag(EXCITATIONS[0])] | Annotated[Record, Tag(EXCITATIONS[1])],
+        Annotated[Excitation, Tag(EXCITATION_FORMS[0])] | Annotated[Record, Tag(EXCITATION_FORMS[1])],
         Discriminator(kind_of_excitation),
     ]
     acceptance: Acceptance = Acceptance()
@@ -424,7 +424,7 @@ class Scene(Table):
 
     @cached_property
     def dry_friction(self) -> DryFriction:
-        """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
+        """Law of dry friction mu(|v|, N); a law without friction for a lubricated scene."""
         sliders = 1 if self.support_places is None else len(self.support_places)
         return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
 
@@ -442,7 +442,7 @@ class Scene(Table):
             raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
 
     def with_yield_displacement(self, way: float) -> Scene:
-        """Return the scene, of the same name, with friction that yields at `way`, m; 0: rigid, as without the keys."""
+        """Return the scene, of the same name, with friction that slides after an elastic `way`, m; rigid for 0."""
         friction = self.isolator.friction
         if not isinstance(friction, VelocityFriction) or (way == 0.0 and not self.dry_friction.elastic):
             return self if way == 0.0 else self._with_friction({"slow": friction, "yield_displacement": way})
@@ -452,6 +452,7 @@ class Scene(Table):
         return self._with_friction(stated if len(stated) > 1 else friction.slow)
 
     def _with_friction(self, friction: object) -> Scene:
+        """Return the scene with another friction, under the same name."""
         return self.with_values({"isolator.friction": friction, "name": self.name})
 
     @property
@@ -599,9 +600,9 @@ KEYS: dict[str, tuple[str, ...]] = {
     "": tuple(Scene.model_fields),
     "isolator": tuple(Isolator.model_fields),
     "isolator.friction": tuple(VelocityFriction.model_fields),
-    f"isolator.friction.{FRICTIONS[1]}": tuple(VelocityFriction.model_fields),
+    f"isolator.friction.{FRICTION_FORMS[1]}": tuple(VelocityFriction.model_fields),
     "isolator.friction.heating": tuple(Heating.model_fields),
-    f"isolator.friction.{FRICTIONS[1]}.heating": tuple(Heating.model_fields),
+    f"isolator.friction.{FRICTION_FORMS[1]}.heating": tuple(Heating.model_fields),
     "bodies": tuple(Body.model_fields),
     "bodies.bars": tuple(Bars.model_fields),
     "superstructure": tuple(Superstructure.model_fields),
@@ -611,7 +612,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "acceptance.demands": tuple(DemandLimits.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational", "*")},
     "excitation": (*Excitation.model_fields, "record", "detrend"),
-    f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),
-    f"excitation.{EXCITATIONS[1]}": ("record", "scale", "detrend"),
+    f"excitation.{EXCITATION_FORMS[0]}": tuple(Excitation.model_fields),
+    f"excitation.{EXCITATION_FORMS[1]}": ("record", "scale", "detrend"),
 }
 """Keys of every table by its name, with the kind of the excitation where that is known."""

@@ -18,7 +18,7 @@ from reference.support.arguments import require_type
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
 
-RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table that gives a key several values
+RANGE_KEYS, VALUES_KEYS = {"range", "steps"}, {"values"}  # keys of an inline table that gives a key several values
 MAX_BYTES = 2**22  # a scene file has at most so many bytes
 MAX_NESTING = 10  # a scene file nests at most so many tables and lists in one another
 RECORD_KEYS = (*TWO_FREQUENCY_KEYS, *READER_KEYS)  # keys of [excitation] that the reader of records checks
@@ -193,7 +193,7 @@ def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
 
 def find_varied_keys(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
     """Iterate over the paths in the tables at which a key has several values, with the inline table that gives them."""
-    if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
+    if isinstance(value, dict) and path and value.keys() & (RANGE_KEYS | VALUES_KEYS):
         yield path, value
     elif isinstance(value, dict | list):
         for key, part in value.items() if isinstance(value, dict) else enumerate(value):

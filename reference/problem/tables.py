@@ -34,8 +34,8 @@ from reference.problem.keys import (
     key,
     range_validator,
 )
-from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_POSITION
-from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
+from reference.problem.ranges import DAMPING_COEFFICIENT_RANGE, MAX_SUPPORTS, SUPPORT_POSITION_RANGE
+from reference.problem.validation import DAMPING_FORMS, EXCITATION_FORMS, SUPPORT_FORMS
 from reference.records.samples import check_samples, file_name, files_by_axis
 from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
@@ -50,12 +50,12 @@ def _check_damping(value: Any) -> Any:
 
 
 def _kind_of_damping(value: Any) -> str:
-    return DAMPINGS[isinstance(value, list)]
+    return DAMPING_FORMS[isinstance(value, list)]
 
 
 Damping = Annotated[
-    Annotated[float, Tag(DAMPINGS[0])]
-    | Annotated[list[Annotated[float, range_validator(DAMPING_COEFFICIENT)]], Tag(DAMPINGS[1])],
+    Annotated[float, Tag(DAMPING_FORMS[0])]
+    | Annotated[list[Annotated[float, range_validator(DAMPING_COEFFICIENT_RANGE)]], Tag(DAMPING_FORMS[1])],
     Discriminator(_kind_of_damping),
     BeforeValidator(_check_damping),
 ]
@@ -63,11 +63,11 @@ Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 NonNegativePair = Annotated[list[NonNegative], Field(min_length=2, max_length=2)]
 Edges = Annotated[list[Positive], Field(min_length=3, max_length=3)]
-Position = Annotated[list[Annotated[float, range_validator(SUPPORT_POSITION)]], Field(min_length=2, max_length=2)]
+Position = Annotated[list[Annotated[float, range_validator(SUPPORT_POSITION_RANGE)]], Field(min_length=2, max_length=2)]
 Supports = Annotated[
-    Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORTS[0])]
-    | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORTS[1])],
-    Discriminator(lambda supports: SUPPORTS[int(isinstance(supports, list))]),
+    Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORT_FORMS[0])]
+    | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORT_FORMS[1])],
+    Discriminator(lambda supports: SUPPORT_FORMS[int(isinstance(supports, list))]),
 ]
 
 
@@ -301,4 +301,4 @@ class Record(Table):
 def kind_of_excitation(excitation: Any) -> str:
     """Return the form that the user means an excitation to have: two frequencies or a recorded motion."""
     recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
-    return EXCITATIONS[int(recorded)]
+    return EXCITATION_FORMS[int(recorded)]

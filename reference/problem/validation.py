@@ -19,20 +19,20 @@ from reference.support.scene_error import (
 )
 
 # Names of the forms of a table or key: pydantic puts the name of the intended form into the location of an error
-EXCITATIONS = ("two frequencies", "recorded motion")
-SUPPORTS = ("number of supports", "positions of supports")
-FRICTIONS = ("constant friction", "velocity-dependent friction")
+EXCITATION_FORMS = ("two frequencies", "recorded motion")
+SUPPORT_FORMS = ("number of supports", "positions of supports")
+FRICTION_FORMS = ("constant friction", "velocity-dependent friction")
 ALONG_AXES = {  # form of keys of a body
     "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
 }  # fmt: skip
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list means several sliding surfaces
 # Pydantic's name of the limit
 LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
-MISSING = {
+MISSING_TABLE_RULES = {
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
 }
-DAMPINGS = ("damping ratio", "damping coefficients")
+DAMPING_FORMS = ("damping ratio", "damping coefficients")
 
 
 class LocatedError(ValueError):
@@ -91,7 +91,7 @@ def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
-    forms = EXCITATIONS + SUPPORTS + FRICTIONS + DAMPINGS
+    forms = EXCITATION_FORMS + SUPPORT_FORMS + FRICTION_FORMS + DAMPING_FORMS
     place = [part for part in error["loc"] if part not in forms]
     if isinstance(misfit, LocatedError):
         return SceneError(file, ".".join(map(str, [*place, *misfit.place])), misfit.value, misfit.rule)
@@ -100,7 +100,7 @@ def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
         return unknown_key(file, key, error["input"], keys_of_table(table, keys))
     if error["type"] == "missing":
-        return SceneError(file, key, None, MISSING.get(key, IS_REQUIRED))
+        return SceneError(file, key, None, MISSING_TABLE_RULES.get(key, IS_REQUIRED))
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     if error["type"] in ("dataclass_type", "model_type"):
         rule = "must be a table of keys"

@@ -123,6 +123,7 @@ class RecordDescription:
 
     @property
     def _head(self) -> str:
+        """Return a sentence on the number of samples, the step and the duration."""
         taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
         taken += f', detrend = "{self.detrend}"' if self.detrend else ""
         return f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"

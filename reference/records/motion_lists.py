@@ -83,9 +83,11 @@ class MotionList:
         )
 
     def _count_ignored(self, kind: str) -> str:
+        """Return the number of ignored files of a kind, in words."""
         return f"1 {kind.removesuffix('s')}" if self.ignored[kind] == 1 else f"{self.ignored[kind]} {kind}"
 
     def _list_ignored_names(self, kind: str) -> str:
+        """Return the names of ignored files of a kind in brackets, or ""."""
         names = [one_line(name) for name in self.names.get(kind, ())]
         return f" ({name_some(names, MAX_NAMED_FILES)})" if names else ""
 
@@ -173,6 +175,7 @@ def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) ->
 
 
 def _whole_number(name: str, text: str) -> int:
+    """Return a whole number up to MAX_NUMBER. Raises RecordError."""
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
         raise RecordError(f"{name} = {quote(text)}: must be a whole number up to {MAX_NUMBER}")
     return int(text)

@@ -155,10 +155,12 @@ def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str]:
 
 
 def _word_file(axis: str, file: Path) -> str:
+    """Return the name of a file, with its axis if it has one."""
     return f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
 
 
 def _list_record_set_numbers(name: str) -> list[int]:
+    """Return the numbers of the motions of a record set."""
     return [int(number) for number in _load_record_set(name).records.index]
 
 
@@ -262,6 +264,8 @@ def _classify_other_file(file: Path) -> str:
 
 # A suite of n motions is listed n times, so what was read of a file is kept until its time of change or size changes.
 def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path], FileContent]:
+    """Return a function that reads a file again only after a change of its time or size."""
+
     @lru_cache(maxsize=MAX_FILES)
     def read_uncached(file: Path, modified_ns: int, size: int) -> FileContent:
         return read(file)

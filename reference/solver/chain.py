@@ -34,13 +34,13 @@ from reference.solver.work import Workspace
 TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
 FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# Response at all stages to a number at stage m through channel j, by the channel's real and imaginary part
-_THROUGH = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
-THROUGH_REAL, THROUGH_IMAGINARY = (
+# Responses at all stages to a unit number at stage m through channel j, by the channel's real and imaginary part
+_CHANNEL_RESPONSES = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
+CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (
     np.array([columns_as_rows(part) for part in parts])
-    for parts in zip(*((through.real, through.imag) for through in _THROUGH))
+    for parts in zip(*((through.real, through.imag) for through in _CHANNEL_RESPONSES))
 )
-# Rounding of an acceleration on the way through the channels, as a share of the loads, at the worst stage (3e-13)
+# Rounding error of an acceleration that is computed through the channels, over the loads, at the worst stage (3e-13)
 CHANNEL_ROUNDING = float(
     np.finfo(float).eps * exact_product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max()
 )
@@ -60,14 +60,14 @@ def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
 
 @compiled
 def reciprocal(number: complex) -> complex:
-    """Return 1 / number; the square of its size must neither overflow nor vanish."""
+    """Return 1 / number; the squared size of the number must neither overflow nor vanish."""
     square = number.real * number.real + number.imag * number.imag
     return complex(number.real / square, -number.imag / square)
 
 
 @compiled
 def eliminate_chain(system: System, work: Workspace, h: float) -> None:
-    """Set the inverse pivots of the chain and its gain on the platform for the step length h."""
+    """Set the inverse pivots of the chain, and the response of the platform to it, for the step length h."""
     # Each channel j couples body i to its neighbors only (see above), so elimination from the top down costs one pivot
     # per body. d_i = e_i + L b_i, and e_i = 1 + L c_i e_{i+1} / d_{i+1} replaces the usual difference
     # 1 + L c_i - L^2 c_i b_{i+1} / d_{i+1}, in which a stiff link would cancel all digits of the inertia.
@@ -97,13 +97,15 @@ def set_feedback(system: System, work: Workspace, h: float) -> None:
         for j in range(CHANNELS):
             gain = -work.gain[axis, j]
             for m in range(STAGES):
-                through = gain.real * row(THROUGH_REAL, (j, m)) - gain.imag * row(THROUGH_IMAGINARY, (j, m))
+                through = gain.real * row(CHANNEL_RESPONSES_REAL, (j, m)) - gain.imag * row(
+                    CHANNEL_RESPONSES_IMAGINARY, (j, m)
+                )
                 put(feedback, (axis, m), row(feedback, (axis, m)) + through)
 
 
 @compiled
 def transform_to_channels(values: Row) -> Row:
-    """Return the numbers at the stages in the eigenbasis."""
+    """Return the numbers in the channels, the eigenbasis of the collocation, from the numbers at the stages."""
     return combine_columns(TO_CHANNELS_COLUMNS, values)
 
 
@@ -114,7 +116,7 @@ def transform_from_channels(values: Row) -> Row:
 
 
 @compiled
-def load_chain(system: System, work: Workspace, h: float) -> None:
+def set_chain_loads(system: System, work: Workspace, h: float) -> None:
     """Set the loads of the eliminated chain from the state and the ground, and the platform's drive `free`."""
     # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
     # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
@@ -156,8 +158,8 @@ def load_chain(system: System, work: Workspace, h: float) -> None:
 
 
 @compiled
-def move_chain(system: System, work: Workspace, h: float) -> None:
-    """Set the bodies' stage accelerations from those of the platform, and the end of the step in x1, v1."""
+def recover_chain_motion(system: System, work: Workspace, h: float) -> None:
+    """Set the bodies' stage accelerations from the platform's, and their positions and velocities x1, v1 at the end."""
     x, v, a, load, inverse, channels = work.x, work.v, work.a, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):

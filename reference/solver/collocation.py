@@ -19,10 +19,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7
-ROW_LENGTH = STAGES + 1  # numbers in a row (rows.py)
-CHANNELS = (STAGES + 1) // 2  # one real eigenvalue and one of each conjugate pair
-GUESSED_DIGITS = 3  # decimals of LAPACK's results that serve as first guesses
-ITERATIONS = 12  # iterations from such a guess to rounding
+ROW_LENGTH = STAGES + 1  # length of a row (rows.py)
+CHANNELS = (STAGES + 1) // 2  # number of channels: one for the real eigenvalue, and one for each conjugate pair
+GUESSED_DIGITS = 3  # number of decimals of LAPACK's results that serve as first guesses
+EIGENVALUE_ITERATIONS = 12  # number of iterations from such a guess to rounding
 
 
 def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -40,7 +40,7 @@ def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def exact_product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return left @ right with exact sums."""
+    """Return the matrix product left @ right with exactly rounded sums."""
     columns = right.T.tolist()
     entries = np.array([[_exact_dot(row, column) for column in columns] for row in left.tolist()])
     return entries if np.iscomplexobj(left) or np.iscomplexobj(right) else entries.real.copy()
@@ -61,7 +61,7 @@ def _radau_nodes(stages: int) -> np.ndarray:
     """Return the right Radau points on (0, 1]: the roots of P_s - P_{s-1} (Hairer and Wanner, IV.5)."""
     polynomial = _legendre_basis(stages) - _legendre_basis(stages - 1)
     roots = np.round(np.sort(polynomial.roots().real), GUESSED_DIGITS)
-    for _ in range(ITERATIONS):
+    for _ in range(EIGENVALUE_ITERATIONS):
         roots -= polynomial(roots) / polynomial.deriv()(roots)
     roots[-1] = 1.0
     return roots
@@ -76,16 +76,16 @@ def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
 
 
 NODES = _radau_nodes(STAGES)
-A = _interpolation_weights(NODES, True)
-A2 = exact_product(A, A)
+A = _interpolation_weights(NODES, True)  # Butcher's matrix: integrals from the start of a step to the stages
+A2 = exact_product(A, A)  # matrix of the second integrals to the stages
 # Weights of the interpolating polynomial at theta = 0: its defect there against the known acceleration is the error
 AT_START = _interpolation_weights(np.zeros(1), False)[0]
-# Coefficients of theta^k of the interpolating polynomial
+# Coefficients of the powers of theta of the interpolating polynomial
 MONOMIALS = _solve_linear(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
 def _defect_polynomial() -> np.ndarray:
-    """Return the coefficients of theta^k, highest first, of the polynomial that is 1 at theta = 0, 0 at the stages."""
+    """Return the coefficients of the polynomial in theta, highest power first, that is 1 at 0 and 0 at the stages."""
     coefficients = [1.0]
     for node in NODES.tolist():
         coefficients = [a - b / node for a, b in zip([0.0, *coefficients], [*coefficients, 0.0])]
@@ -108,7 +108,8 @@ def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     guesses = np.round(np.linalg.eigvals(A), GUESSED_DIGITS)
     kept = sorted((complex(guess) for guess in guesses if guess.imag >= 0.0), key=lambda guess: guess.imag)
     values, vectors = zip(*(_eigenpair_near(guess) for guess in kept))
-    doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]  # a kept channel stands for its conjugate, too
+    # A channel that is kept stands for its conjugate as well
+    doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]
     others = [vector.conj() for vector, factor in zip(vectors, doubled) if factor == 2.0]
     every = np.stack([*vectors, *others], axis=1)
     inverse = _solve_linear(every, np.eye(STAGES))
@@ -122,7 +123,7 @@ def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     vector = _solve_linear(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())
     value = guess
-    for _ in range(ITERATIONS):
+    for _ in range(EIGENVALUE_ITERATIONS):
         vector = np.array([[entry / vector[unit, 0].item()] for entry in vector[:, 0].tolist()])
         image = exact_product(A, vector)
         value = image[unit, 0].item()
@@ -133,7 +134,7 @@ def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
 
 EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _compute_channels())
 
-# Places in a step, theta, at which the search for peaks and events begins
+# Shares of a step, theta, at which the search for peaks and events begins
 SEARCH_POINTS = np.linspace(0.0, 1.0, 15)
 
 

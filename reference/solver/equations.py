@@ -27,7 +27,7 @@ def exact_acceleration(
     fx: Number,
     fy: Number,
     pressure: Number,
-    speed2: Number,
+    squared_speed: Number,
     sx: Number,
     sy: Number,
     mass_ratio: float,
@@ -48,7 +48,7 @@ def exact_acceleration(
     tilt = nx * nx + ny * ny
     nz = sqrt(1.0 - tilt)
     determinant = 1.0 + (mass_ratio - 1.0) * (tilt - nx * sx - ny * sy)
-    reaction = mass_ratio * (speed2 * curvature - nx * fx - ny * fy + nz * pressure) / determinant
+    reaction = mass_ratio * (squared_speed * curvature - nx * fx - ny * fy + nz * pressure) / determinant
     return fx + reaction * (nx - sx), fy + reaction * (ny - sy), reaction, determinant
 
 
@@ -67,7 +67,7 @@ def small_acceleration(
     radius: float,
 ) -> tuple[Number, Number, Number, Number]:
     """
-    Return (ax, ay, reaction N / m1, 1) by (4.3) as printed.
+    Return (ax, ay, reaction N / m1, 1) by (4.3) as printed in the paper.
 
     Friction is mu [M (g + zeta'') w - u (p . w) / rho]. As in the paper, the terms with xi'' p are kept, and those with
     the acceleration and the spring force, which are of the same order, are left out.
@@ -87,7 +87,7 @@ def vertical_motion(
     px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number, radius: float
 ) -> tuple[Number, Number, Number]:
     """Return height above the lowest point, vertical velocity and acceleration on the sphere (2.1), (3.4)-(3.5)."""
-    depth = sqrt(radius * radius - px * px - py * py)  # -Delta of (3.3)
+    depth = sqrt(radius * radius - px * px - py * py)  # depth is -Delta of (3.3)
     vz = (px * vx + py * vy) / depth
     az = (vx * vx + vy * vy + vz * vz + px * ax + py * ay) / depth
     return (px * px + py * py) / (radius + depth), vz, az

@@ -25,24 +25,24 @@ from reference.solver.system import (
 )
 
 # The constants of the estimate and their measurements are in docs/decisions/0002-two-run-error.md.
-TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
-# Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO is expected
+TOLERANCE_RATIO = 30.0  # ratio of the tolerance inside a step of the coarser run to that of the finer run
+# Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO would be expected
 DIFFERENCE_FRACTION = 0.4
 # Lower bounds on the error, since closer agreement of two runs is accidental. The first is in units of the tolerance
 # inside a step, the second in those of the requested tolerance. The third takes the place of the second where friction
 # yields, or depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
 MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
 MIN_ERROR_FRACTION = 0.007
-MIN_ERROR_FRACTION_VARYING = 0.07
-READING_ERROR_FACTOR = 2.0  # factor of the interpolation error at the peak: the step before may add as much
-ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations
+MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07
+READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at the peak: the step before may add as much
+ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations each
 # Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps
 MAX_STEP_TOLERANCE = 1e-5
 MIN_STEP_TOLERANCE = 1e-11
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
-# Its share under friction that yields, whose short slides are changes within a step that both runs may miss alike
-YIELDING_SHARE = 0.01
+# Factor on it for friction that yields, whose short slides are changes within a step that both runs may miss
+YIELDING_TOLERANCE_FACTOR = 0.01
 # Time by which the coarser run goes beyond the last peak, over RunSettings.period: its events come earlier or later
 EVENT_MARGIN = 0.01
 
@@ -50,19 +50,19 @@ FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: ste
 # With heating the last run changes peaks and mean k_T by less than the first share of the tolerance, or by less than
 # the tolerance and more than the second share of the change before: what remains is the steps' own error. In the first
 # runs a change may be larger than the one before it: runs agree up to an instant that comes later with each run.
-SETTLED_SHARE, CONTRACTING_SHARE = 0.02, 0.5
-MAX_HEATED_RUNS = 30  # runs for one k_T at most
-SMALLEST_VALUE = 1e-300  # lower bound on a peak, m/s^2, that a change is divided by
+MAX_SETTLED_CHANGE, MIN_CONTRACTION_RATIO = 0.02, 0.5
+MAX_HEATED_RUNS = 30  # largest number of runs in the iteration for the friction factor k_T
+SMALLEST_VALUE = 1e-300  # m/s^2: changes are divided by at least this peak
 
-NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
+NOT_MET = 100  # outcome of a run whose error stays above the tolerance; system.py has the other outcomes
 
 
 class RunPeaks(NamedTuple):
-    """Largest absolute accelerations with estimated errors, and outcome, instant and cost of the runs."""
+    """Largest absolute accelerations with estimated errors, and outcome, instant and cost of their runs."""
 
     value: Array  # (M, N) m/s^2
     error: Array  # (M, N) m/s^2
-    code: Array  # (M,) outcome (system.py), or NOT_MET
+    code: Array  # (M,) outcome of the runs (system.py), or NOT_MET
     instant: Array  # (M,) s, end of the run
     steps: Array  # (M,) number of steps of the last run
     reach: Array  # (M,) m, largest horizontal displacement of the platform
@@ -73,7 +73,7 @@ def peaks_at(
     system: System, phases: Array, settings: RunSettings, tolerance: float, until: Array | None = None
 ) -> RunPeaks:
     """
-    Return the peaks of one run from rest for every phase pair (M, 2), with this tolerance inside the steps.
+    Return the peaks of one run from rest for every phase pair (M, 2), rad, with this tolerance inside the steps.
 
     Errors are those of reading a peak, with the drift of the steps before it. Runs that do not end early make no step
     beyond `until` (M,), s, by default the end of the motion.
@@ -81,7 +81,7 @@ def peaks_at(
     rest = np.zeros((len(system.below), 2))
     settings = settings._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        (pair,) = phases  # every phase pair has a k_T of its own
+        (pair,) = phases  # every phase pair has its own friction factor k_T
         return record_run(rest, rest, system, pair, settings)[0]
     return peaks_from(rest, rest, system, phases, settings, allocate_record(0, len(rest)), until)
 
@@ -95,7 +95,7 @@ def peaks_from(
     record: StepRecord,
     until: Array | None = None,
 ) -> RunPeaks:
-    """Return the peaks of one run from x and v (N, 2) for every phase pair (M, 2), rad; `record` keeps the steps."""
+    """Return the peaks of one run from x and v (N, 2) for every phase pair (M, 2), rad; keep the steps in `record`."""
     count, bodies = len(phases), len(x)
     value, error = np.empty((count, bodies)), np.empty((count, bodies))
     ends = np.empty((len(RunPeaks._fields) - 2, count))
@@ -109,7 +109,7 @@ def record_run(
     x: Array, v: Array, system: System, phase: Array, settings: RunSettings
 ) -> tuple[RunPeaks, StepRecord, System]:
     """
-    Return the peaks of one run with all its steps, however many, and the system with k_T by the heat of the last run.
+    Return the peaks of one run with all its steps, and the system with the friction factor k_T by its heat.
 
     With heating, the run is repeated until its k_T no longer changes; the last change counts as error.
     """
@@ -134,14 +134,14 @@ def record_run(
         now = np.array([*peaks.value[0], mean_factor(system)])
         change = np.abs(now - known)
         known, worst = now, (change / np.maximum(now, SMALLEST_VALUE)).max() / settings.tolerance
-        if not worst > SETTLED_SHARE or CONTRACTING_SHARE * before < worst <= 1.0 or made == MAX_HEATED_RUNS:
+        if not worst > MAX_SETTLED_CHANGE or MIN_CONTRACTION_RATIO * before < worst <= 1.0 or made == MAX_HEATED_RUNS:
             return peaks._replace(error=peaks.error + change[:-1]), record, system
         before = worst
 
 
 def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole: bool = False) -> RunPeaks:
     """
-    Return the peaks to the relative tolerance of `settings`, with errors.
+    Return the peaks to the relative tolerance of `settings`, with estimated errors.
 
     With `whole` all runs go to the end of the motion; otherwise they end where no peak, displacement or outcome can
     change any more (look_ahead.py).
@@ -156,8 +156,9 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
     settings = settings._replace(early=early)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * settings.tolerance, MIN_STEP_TOLERANCE))
     if system.law == YIELDING:
-        tolerance = max(YIELDING_SHARE * tolerance, MIN_STEP_TOLERANCE)
-    if len(system.heat) and len(phases) and not len(system.k_t):  # every pair has its own k_T, first from a coarse run
+        tolerance = max(YIELDING_TOLERANCE_FACTOR * tolerance, MIN_STEP_TOLERANCE)
+    # Every pair has its own friction factor k_T, which a coarse run gives first
+    if len(system.heat) and len(phases) and not len(system.k_t):
         rest, coarse = np.zeros((len(system.below), 2)), settings._replace(tolerance=TOLERANCE_RATIO * tolerance)
         begun = [record_run(rest, rest, system, pair, coarse)[2] for pair in phases]
         each = [peaks_with_error(its, pair[None], settings, whole) for its, pair in zip(begun, phases)]
@@ -176,7 +177,7 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
         after = peaks_at(system, phases[unfinished], settings, tolerance)
         finer, disagree = _compare_runs(before, after, tolerance, system, settings)
         given_up = _where_unfinished(before, after)
-        better = ~(given_up & known[unfinished])  # elsewhere the known peaks stay, with their errors
+        better = ~(given_up & known[unfinished])  # all other pairs keep their known peaks and errors
         for values, found in zip(peaks, finer):
             values[unfinished[better]] = found[better]
         peaks.code[unfinished[~better]] = NOT_MET
@@ -194,20 +195,20 @@ def _where_unfinished(before: RunPeaks, after: RunPeaks) -> npt.NDArray[np.bool_
 def _compare_runs(
     before: RunPeaks, after: RunPeaks, tolerance: float, system: System, settings: RunSettings
 ) -> tuple[RunPeaks, Array]:
-    """Return `after` with its errors, and True for pairs (M,) at which the runs disagree by too much for `settings`."""
+    """Return the peaks `after` with errors, and True for pairs (M,) at which the runs disagree by too much."""
     error = _estimate_error(before, after, tolerance, settings.unit)
     permitted = settings.tolerance * after.value
     solved = (before.code == SOLVED) & (after.code == SOLVED)
     met = solved & (error <= permitted).all(axis=1)
     refused = (before.code == after.code) & (after.code != SOLVED)
     plain = system.rate == 0.0 and system.law != YIELDING
-    fraction = MIN_ERROR_FRACTION if plain else MIN_ERROR_FRACTION_VARYING
+    fraction = MIN_ERROR_FRACTION if plain else MIN_ERROR_FRACTION_VARYING_FRICTION
     return after._replace(error=np.maximum(error, fraction * permitted)), ~(met | refused)
 
 
 def _estimate_error(before: RunPeaks, after: RunPeaks, tolerance: float, unit: float) -> Array:
     """
-    Return the estimated error of `after`, (M, N): that of reading the peak, and that of the state of the runs.
+    Return the estimated error of `after`, (M, N): that of reading the peak plus that of the state of the runs.
 
     Two runs that differ by less than rounding agree by chance: there the error is that of rounding.
     """

@@ -9,34 +9,36 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import static_limit
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.ground import k_t_at
-from reference.solver.polynomial import expand, value_at
-from reference.solver.rows import Row, broadcast_like, highest, put, row, where_positive
+from reference.solver.polynomial import evaluate_polynomial, set_coefficients
+from reference.solver.rows import Row, broadcast_like, put, row, row_maximum, where_positive
 from reference.solver.system import Load, System
-from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Workspace
+from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, Workspace
 
-# Kinds of events: the polynomial in powers[0] passes zero, friction at rest its limit, the sliding speed a given one.
-# No literals (system.py).
-LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
-NEVER = 2.0  # theta of an event that is not within the step
-GOLDEN_SECTIONS = 30  # sections of an interval that may hide an event: one shorter than 1e-6 of a step moves nothing
-GOLDEN_SHARE = 0.382  # share of the interval that a golden section cuts off, (3 - sqrt(5)) / 2
-MAX_SECANTS = 200  # steps of regula falsi
-SECANTS_PER_HALVING = 3  # steps that do not halve the interval, before a bisection follows
-LOCATION_TOLERANCE = 1e-15  # share of the step to which an event is located
-NEAR_LIMIT = 0.5  # share of the squared friction limit by which the excess at rest changes less between two stages
+# Kinds of events: the polynomial in powers[0] passes zero, friction at rest reaches its limit, the sliding speed passes
+# a given one. The kinds are numbers of NumPy, no literals (system.py).
+LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
+NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
+# Golden sections of an interval that may hide an event: one shorter than 1e-6 of a step changes nothing
+GOLDEN_SECTIONS = 30
+GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
+MAX_SECANTS = 200  # iterations of regula falsi at most
+SECANTS_PER_HALVING = 3  # after so many iterations that do not halve the interval, a bisection follows
+LOCATION_TOLERANCE = 1e-15  # error of the location of an event, as a share of the step
+# Share of the squared friction limit by which the excess over it at rest changes at most between two stages
+NEAR_LIMIT = 0.5
 
 
 @compiled
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
     """Return the first theta at which the polynomial through `values` passes `target`, coming from `start`."""
     expand_level(work, values, target)
-    return locate_first_event(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
+    return locate_first_event(system, work, LEVEL_EVENT, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
 def expand_level(work: Workspace, values: Row, target: float) -> None:
-    """Set powers[0] to the powers of theta of the polynomial through `values` less `target`."""
-    expand(values, work.powers[0])
+    """Set powers[0] to the coefficients of the polynomial through `values`, less `target`."""
+    set_coefficients(values, work.powers[0])
     work.powers[0, 0] -= target
 
 
@@ -47,25 +49,25 @@ def locate_onset(system: System, work: Workspace) -> float:
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
     limit = static_limit(system, load.k_t, reaction)
-    most = highest(excess + NEAR_LIMIT * (limit * limit))
-    if most < 0.0:  # the step does not come near the limit
-        return NEVER
+    most = row_maximum(excess + NEAR_LIMIT * (limit * limit))
+    if most < 0.0:  # the step does not come near the friction limit
+        return NOT_IN_STEP
     expand_drive(work)
-    return locate_first_event(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
+    return locate_first_event(system, work, ONSET_EVENT, 1.0, 0.0, excess_at(system, work, 0.0))
 
 
 @compiled
 def expand_drive(work: Workspace) -> None:
-    """Set the powers of theta of the drive and the ground acceleration of a step at rest."""
+    """Set the coefficients of the drive and of the ground acceleration as polynomials of theta in a step at rest."""
     for axis in range(2):
-        expand(row(work.free, axis), work.powers[axis])
+        set_coefficients(row(work.free, axis), work.powers[axis])
     for axis in range(3):
-        expand(row(work.ground, axis), work.powers[2 + axis])
+        set_coefficients(row(work.ground, axis), work.powers[2 + axis])
 
 
 @compiled
 def excess_at(system: System, work: Workspace, theta: float) -> float:
-    """Return the excess over the condition for rest at theta of a step at rest, after `expand_drive`."""
+    """Return the excess over the condition for rest at theta of a step at rest, after a call of `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -82,7 +84,7 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
 @compiled
 def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
-    Prepare `speed_excess` over the squared sliding speed `target` in a step of length h, s.
+    Set the polynomials for `speed_excess` over the squared sliding speed `target` in a step of length h, s.
 
     The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
     the stages would miss a small speed in a step whose speed becomes large.
@@ -91,8 +93,8 @@ def expand_speed(work: Workspace, h: float, target: float) -> None:
         expand_velocity(work, h, axis)
     vx, vy = row(work.stage, VELOCITY), row(work.stage, VELOCITY + 1)
     horizontal = vx * vx + vy * vy
-    expand(
-        where_positive(horizontal, row(work.stage, SPEED2) / horizontal, broadcast_like(1.0, horizontal)),
+    set_coefficients(
+        where_positive(horizontal, row(work.stage, SQUARED_SPEED) / horizontal, broadcast_like(1.0, horizontal)),
         work.powers[2],
     )
     work.powers[3, 0] = target
@@ -100,9 +102,9 @@ def expand_speed(work: Workspace, h: float, target: float) -> None:
 
 @compiled
 def expand_velocity(work: Workspace, h: float, axis: int) -> None:
-    """Set the powers of theta of the platform's velocity: the integral of its acceleration."""
+    """Set the coefficients of the platform's velocity, the integral of its acceleration, as a polynomial of theta."""
     powers = work.powers[axis]
-    expand(row(work.a, (0, axis)), powers)
+    set_coefficients(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
         powers[k + 1] = h * powers[k] / (k + 1.0)
     powers[0] = work.v[0, axis]
@@ -116,20 +118,20 @@ def speed_excess(work: Workspace, theta: float) -> float:
     for k in range(STAGES, -1, -1):
         vx = vx * theta + powers[0, k]
         vy = vy * theta + powers[1, k]
-    return (vx * vx + vy * vy) * value_at(powers[2], theta) - powers[3, 0]
+    return (vx * vx + vy * vy) * evaluate_polynomial(powers[2], theta) - powers[3, 0]
 
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """Return a value that is positive past an event at theta: `way` is 1 if it is passed upward, -1 downward."""
-    if event == ONSET:
+    """Return a value that is positive past an event at theta; `way` is 1 for an upward event, -1 for a downward one."""
+    if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
-    return way * (speed_excess(work, theta) if event == SPEED else value_at(work.powers[0], theta))
+    return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """Return the first theta after `begin` at which `event_value` is positive; `start` is the value at `begin`."""
+    """Return the first theta after `begin` at which `event_value` is positive; `start` is its value at `begin`."""
     # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter one may hide: the
     # value passes zero and returns between two points. That is possible only if the largest value seen lies below zero
     # by no more than the largest change from point to point. Then golden sections look for a positive value around it.
@@ -146,7 +148,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
             top, place = here, SEARCH_POINTS[n]
         before, low = here, SEARCH_POINTS[n]
     if top + change < 0.0:
-        return NEVER
+        return NOT_IN_STEP
     low, high = max(begin, place - SEARCH_POINTS[1]), min(1.0, place + SEARCH_POINTS[1])
     first = low
     for _ in range(GOLDEN_SECTIONS):
@@ -158,7 +160,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
             high = right
         else:
             low = left
-    return NEVER
+    return NOT_IN_STEP
 
 
 @compiled
@@ -195,7 +197,7 @@ def locate_crossing(system: System, work: Workspace, event: int, way: float, low
 @compiled
 def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
-    Mark the parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
+    Mark the parts of the step in which the value of `event`, which is `start` at theta = 0, is at least zero.
 
     With `way` = -1, those in which it is not above zero. Return their number; their ends, in theta, are in work.edges.
     """

@@ -10,13 +10,13 @@ from reference.solver.rows import broadcast_like, put, row
 from reference.solver.system import Array, Ground, System
 from reference.solver.work import SERIES_TERMS, Workspace
 
-MAX_SERIES_ANGLE = 2.0  # turn and decay of a harmonic in a step beyond which its Taylor series would lose digits
-SERIES_ROUNDING = 1e-17  # size of a term of the Taylor series, over the harmonic, at which the series ends
+MAX_SERIES_ANGLE = 2.0  # rad: beyond this angle and decay of a harmonic in a step its Taylor series would lose digits
+SERIES_ROUNDING = 1e-17  # share of the harmonic: the Taylor series ends at a term of this size
 
 
 @compiled
 def next_knot(record: Array, t: float) -> int:
-    """Return the index of the first knot later than t; the number of knots if none is."""
+    """Return the index of the first knot of a record later than t; the number of knots if none is later."""
     low, high = 0, record.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -29,7 +29,7 @@ def next_knot(record: Array, t: float) -> int:
 
 @compiled
 def k_t_at(system: System, t: float) -> float:
-    """Return k_T (contact/load.py) at time t: the polynomial of its piece; after the last piece, its end value."""
+    """Return the friction factor k_T at time t from the polynomial of its piece; after the last piece its end value."""
     table = system.k_t
     if table.shape[0] == 0:
         return 1.0
@@ -41,8 +41,8 @@ def k_t_at(system: System, t: float) -> float:
 
 
 @compiled
-def record_at(system: System, t: float) -> Ground:
-    """Return the acceleration of a record, linear between its knots and zero behind them, and k_T."""
+def record_acceleration_at(system: System, t: float) -> Ground:
+    """Return the ground acceleration of a record, linear between its knots and zero behind them, and k_T."""
     record, k_t = system.record, k_t_at(system, t)
     k = next_knot(record, t)
     if k == 0:
@@ -56,9 +56,9 @@ def record_at(system: System, t: float) -> Ground:
 
 @compiled
 def ground_at(system: System, work: Workspace, t: float) -> Ground:
-    """Return (xi'', eta'', zeta''), m/s^2, and k_T at time t."""
+    """Return the ground acceleration (xi'', eta'', zeta''), m/s^2, and the friction factor k_T at time t."""
     if system.record.shape[0] > 0:
-        return record_at(system, t)
+        return record_acceleration_at(system, t)
     e0, e1 = system.exponents[0], system.exponents[1]
     z0 = exp(e0.real * t) * cos(e0.imag * t + work.phase[0])
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
@@ -69,8 +69,8 @@ def ground_at(system: System, work: Workspace, t: float) -> Ground:
 
 
 @compiled
-def set_waves(system: System, work: Workspace, t: float) -> None:
-    """Prepare `set_ground_at_stages`, or `next_ground` from t on: set the harmonics at t."""
+def set_harmonics(system: System, work: Workspace, t: float) -> None:
+    """Set the harmonics of the ground at t, from which `set_ground_at_stages` and `next_ground` start."""
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
@@ -78,8 +78,8 @@ def set_waves(system: System, work: Workspace, t: float) -> None:
 
 
 @compiled
-def set_turns(system: System, work: Workspace, h: float) -> None:
-    """Prepare `next_ground` for steps of h: set the factors by which the harmonics turn and decay."""
+def set_harmonic_step_factors(system: System, work: Workspace, h: float) -> None:
+    """Set the factors by which the harmonics of the ground turn and decay in a step of length h for `next_ground`."""
     for m in range(2):
         e = system.exponents[m]
         angle, growth = e.imag * h, exp(e.real * h)
@@ -88,9 +88,9 @@ def set_turns(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def next_ground(system: System, work: Workspace, t: float) -> Ground:
-    """Return the ground at t: the time of `set_waves`, or a step of `set_turns` after the last call."""
+    """Return the ground at t: the time of `set_harmonics`, or one step after the last call."""
     if system.record.shape[0] > 0:
-        return record_at(system, t)
+        return record_acceleration_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
     work.waves[0], work.waves[1] = z0 * work.turns[0], z1 * work.turns[1]
     return Ground(
@@ -103,7 +103,7 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_ground_at_stages(system: System, work: Workspace) -> None:
-    """Set work.ground after `set_waves`; Taylor series of the harmonics are quicker than sines at every stage."""
+    """Set work.ground after `set_harmonics`, by Taylor series, which are quicker than sines at every stage."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
@@ -113,7 +113,7 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
             work.ground[0, k], work.ground[1, k], work.ground[2, k] = here.x, here.y, here.z
             work.ground[3, k] = here.k_t
         return
-    terms = expand_waves(work, e0, e1)
+    terms = expand_harmonics(work, e0, e1)
     series, a, ground = work.series, system.amplitudes, work.ground
     share = row(elapsed, ()) / longest if longest > 0.0 else broadcast_like(0.0, row(elapsed, ()))
     z0 = z1 = broadcast_like(0.0, share)
@@ -128,7 +128,7 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
 
 
 @compiled
-def expand_waves(work: Workspace, e0: complex, e1: complex) -> int:
+def expand_harmonics(work: Workspace, e0: complex, e1: complex) -> int:
     """Set work.series for a time in which the harmonics change by exp(e0), exp(e1); return the number of terms."""
     series, z0, z1 = work.series, work.waves[0], work.waves[1]
     enough = SERIES_ROUNDING * SERIES_ROUNDING * min(squared_modulus(z0), squared_modulus(z1))
@@ -144,5 +144,5 @@ def expand_waves(work: Workspace, e0: complex, e1: complex) -> int:
 
 @compiled
 def squared_modulus(z: complex) -> float:
-    """Return |z|^2."""
+    """Return the squared modulus |z|^2 of a complex number."""
     return z.real * z.real + z.imag * z.imag

@@ -16,33 +16,33 @@ from numba import njit
 
 from reference.problem.friction import Heat
 from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, STAGES, A
-from reference.solver.compiled import OPTIONS
+from reference.solver.compiled import NUMBA_OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
-from reference.solver.system import REST, Array, StepRecord, System, law_of
+from reference.solver.system import REST, Array, StepRecord, System, dry_friction_of
 from reference.support.build_cache import cache_on_disk
 
-NEWTON_STEPS = 8  # iterations to the instant at which the slider begins or ceases to cover the cap's center
+NEWTON_STEPS = 8  # iterations to the instant at which the slider begins or stops covering the cap's center
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
-MIN_PIECE = 1e-10  # length of the shortest piece, as a share of the duration
+MIN_PIECE = 1e-10  # share of the duration that the shortest piece has
 # Distances in time, in lengths of the piece: beyond the first the kernel is integrated by quadrature at the nodes,
 # beyond the second by the moments of the heat, also for whole blocks of pieces in lengths of the block.
 FAR_DISTANCE = 4.0
 BLOCK_DISTANCE = 30.0
-MAX_LAST_CHANGE = 1e-14  # change of k_T that ends the iteration within a piece
-MAX_ITERATIONS = 50  # iterations within a piece at most
-WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
+MAX_LAST_CHANGE = 1e-14  # largest change of the friction factor k_T that ends the iteration within a piece
+MAX_ITERATIONS = 50  # largest number of iterations within a piece
+NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
 
 
 def set_initial_friction_factor(system: System) -> System:
-    """Return the system with k_T at the initial temperature throughout."""
+    """Return the system with the friction factor k_T at the initial temperature throughout."""
     k_t = np.zeros((1, 3 + STAGES))
     k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])
     return system._replace(k_t=k_t)
 
 
 def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
-    """Return the system with k_T by the heat of a run that ends at `end`, s."""
+    """Return the system with the friction factor k_T by the heat of a run that ends at `end`, s."""
     # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or enters the
     # cap's center: there k_T changes like a root of time. So pieces are graded behind these instants, the latter of
     # which are located by Newton's method. By the error of the integration k_T jumps from piece to piece, and a jump
@@ -78,33 +78,34 @@ def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System
 
 
 def mean_factor(system: System) -> float:
-    """Return the mean of k_T over time."""
+    """Return the mean of the friction factor k_T over time."""
     lengths, coefficients = system.k_t[:, 1], system.k_t[:, 2:]
     return float(lengths @ coefficients @ (1.0 / np.arange(1, STAGES + 2)) / lengths.sum())
 
 
 def _nodes_of_pieces(bounds: Array) -> Array:
+    """Return the instants of the collocation nodes of all pieces, (K S,), s."""
     return (bounds[:-1, None] + np.diff(bounds)[:, None] * NODES).ravel()
 
 
 def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
-    """Return the squared displacement less that up to which the slider covers the center, m^2."""
+    """Return the squared displacement less the squared largest one at which the slider covers the center, m^2."""
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
 
 def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
-    """Return the power of friction over m1 at k_T = 1, m^2/s^3."""
+    """Return the power of friction over m1 with the factor k_T = 1, m^2/s^3."""
     x, v = motion.x[:, 0], motion.v[:, 0]
-    speed2 = (v**2).sum(axis=1)
+    squared_speed = (v**2).sum(axis=1)
     if not system.small:
-        speed2 += (x * v).sum(axis=1) ** 2 / (system.radius**2 - (x**2).sum(axis=1))
-    speed, weight = np.sqrt(speed2), system.mass_ratio * system.gravity
-    power = law_of(system).at(speed, motion.reaction / weight) * motion.reaction * speed
+        squared_speed += (x * v).sum(axis=1) ** 2 / (system.radius**2 - (x**2).sum(axis=1))
+    speed, weight = np.sqrt(squared_speed), system.mass_ratio * system.gravity
+    power = dry_friction_of(system).at(speed, motion.reaction / weight) * motion.reaction * speed
     return power * np.minimum(speed / system.v_reg, 1.0) if system.v_reg > 0.0 else power
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
     """Return the integral of the polynomial in u with these coefficients over sqrt(theta - u), u up to theta or 1."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
@@ -116,16 +117,16 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
     return total
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
     """Return the integral of the polynomial through `power` at the nodes over sqrt(theta - u), far from the piece."""
     total = 0.0
     for k in range(STAGES):
-        total += WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
+        total += NODE_WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
     return total
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def past_temperature(
     time: float,
     piece: int,
@@ -136,7 +137,7 @@ def past_temperature(
     coefficients: Array,
     moments: Array,
 ) -> float:
-    """Return the temperature at a time within a piece by the heat of all pieces before it."""
+    """Return the temperature at a time within a piece that the heat of all pieces before it causes."""
     # That sums over all pieces before. Long past, only the sum, mean time and variance of a block's heat count: with d
     # the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...) / sqrt(d), whose linear term vanishes
     # about the mean. Row l of the moments holds blocks of 2^l pieces; walking back in time the blocks grow with the
@@ -162,9 +163,9 @@ def past_temperature(
     return past
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficients: Array, k_t: Array) -> None:
-    """Fill heat, its polynomial and k_T of a piece: power and k_T depend on each other, by the heat of one piece."""
+    """Set heat, its polynomial and k_T of a piece, whose power and k_T depend on each other by its own heat."""
     for _ in range(MAX_ITERATIONS):
         change = 0.0
         for k in range(STAGES):
@@ -182,7 +183,7 @@ def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficie
 
 @cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
-    """Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature."""
+    """Set k_T at the nodes of pieces (K, S). `power` is the power at k_T = 1, times the rise of the temperature."""
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))
@@ -201,22 +202,22 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
             level += 1
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def describe_block(start: float, length: float, heat: Array, moments: Array) -> None:
-    """Fill heat, mean time and variance of one piece."""
-    total, center, variance = 0.0, 0.0, 0.0  # by loops: whole arrays take three times as long to compile
+    """Set total heat, mean time and variance of one piece."""
+    total, center, variance = 0.0, 0.0, 0.0  # whole arrays in place of loops would take three times as long to compile
     for k in range(STAGES):
-        total += WEIGHTS[k] * heat[k]
+        total += NODE_WEIGHTS[k] * heat[k]
     for k in range(STAGES):
-        center += WEIGHTS[k] * heat[k] / total * NODES[k]
+        center += NODE_WEIGHTS[k] * heat[k] / total * NODES[k]
     for k in range(STAGES):
-        variance += WEIGHTS[k] * heat[k] / total * (NODES[k] - center) ** 2
+        variance += NODE_WEIGHTS[k] * heat[k] / total * (NODES[k] - center) ** 2
     moments[0], moments[1], moments[2] = total * length, start + center * length, variance * length**2
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def join_blocks(a: Array, b: Array, both: Array) -> None:
-    """Fill heat, mean time and variance of two blocks together."""
+    """Set total heat, mean time and variance of two blocks together."""
     heat = a[0] + b[0]
     if heat > 0.0:
         center = (a[0] * a[1] + b[0] * b[1]) / heat
@@ -224,7 +225,7 @@ def join_blocks(a: Array, b: Array, both: Array) -> None:
         both[2] = (a[0] * (a[2] + (a[1] - center) ** 2) + b[0] * (b[2] + (b[1] - center) ** 2)) / heat
 
 
-@njit(**OPTIONS)
+@njit(**NUMBA_OPTIONS)
 def temperature_factor(temperature: float) -> float:
-    """Return k_T at a temperature in degrees C, as `Heat.factor`."""
+    """Return the friction factor k_T at a temperature in degrees C, as `Heat.factor`."""
     return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)

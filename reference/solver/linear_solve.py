@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.rows import highest, put, row
+from reference.solver.rows import put, row, row_maximum
 from reference.solver.system import Array
 
-MOST_BLOCKS = 2  # blocks of a system: the platform's accelerations along x and y
-MIN_PIVOT = 0.1  # share of the largest entry below a pivot that the pivot must have; otherwise rows are exchanged
+MOST_BLOCKS = 2  # a system has at most so many blocks: the platform's accelerations along x and y
+MIN_PIVOT = 0.1  # share of the largest entry below a pivot: for a smaller pivot rows are exchanged
 _PLACES = np.arange(MOST_BLOCKS * STAGES)
 
 
@@ -78,11 +78,11 @@ def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
 
 @compiled
 def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> float:
-    """Return the largest size of an entry of column i below the diagonal, which is in `block`."""
+    """Return the largest size of the entries of column i below the diagonal, which is in `block`."""
     sizes = abs(row(columns, (i, block))) * row(BELOW_DIAGONAL, (i, block))
     if block + 1 < blocks:
         sizes = max(sizes, abs(row(columns, (i, block + 1))))
-    largest: float = highest(sizes)
+    largest: float = row_maximum(sizes)
     return largest
 
 
@@ -115,7 +115,7 @@ def solve(factors: Array, pivots: Array, rhs: Array) -> None:
 
 @compiled
 def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None:
-    """Solve for this number of blocks."""
+    """Overwrite the right side of a system with this number of blocks by the solution."""
     for block in range(blocks):
         for k in range(STAGES):
             place = int(pivots[block * STAGES + k])

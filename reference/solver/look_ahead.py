@@ -22,8 +22,8 @@ from reference.solver.contact.friction import (
     viscous_factor,
 )
 from reference.solver.contact.load import scale_by_load
-from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
-from reference.solver.ground import next_ground, set_turns, set_waves
+from reference.solver.contact.platform import load_in_state, rest_excess, slip_factor, solve_platform_acceleration
+from reference.solver.ground import next_ground, set_harmonic_step_factors, set_harmonics
 from reference.solver.steps import vertical_acceleration
 from reference.solver.system import (
     CREEPING,
@@ -38,29 +38,30 @@ from reference.solver.system import (
 )
 from reference.solver.work import Workspace
 
-STEPS_PER_PERIOD = 25.0  # steps of a rough run per RunSettings.period
-MAX_STEPS_PER_STEP = 50.0  # steps of a rough run per accurate step so far, each of which costs about as much as 50
-MAX_CHAIN_ANGLE = 0.5  # rad, largest turn of the chain's fastest vibration in one step
-# If a rough run stays below this share of the largest value so far, the accurate run stays below the largest
+STEPS_PER_PERIOD = 25.0  # number of steps of a rough run per RunSettings.period
+# Largest number of steps of a rough run per accurate step so far, which costs about as much as 50 of them
+MAX_STEPS_PER_STEP = 50.0
+MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the chain's fastest vibration in one step
+# A rough run that stays below this share of the largest value so far shows that the accurate run has no larger one
 LARGE_FRACTION = 0.85
-# Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox within which a rough run is not
-# trusted: the accurate run goes on
-MIN_MARGIN = 0.1
-MAX_SLOW_STEPS = 2.0  # number of steps in which friction would stop a slide that counts as near its stop
+# Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox below which no rough run is
+# trusted, so that the accurate run goes on
+MIN_DISTANCE_TO_SINGULARITY = 0.1
+MAX_SLOW_STEPS = 2.0  # a slide is near its stop if friction would stop it in fewer steps
 DIRECTION_MARGIN = 0.35  # rad, uncertainty of the direction of a slide near its stop
-MIN_SURE_DRIVE = 0.5  # share of the friction limit below which the drive's direction changes too much until the stop
-MAX_HELD_DRIVE = 0.8  # share of the squared friction limit above which a drive may move a platform at rest
+MIN_SURE_DRIVE = 0.5  # share of the friction limit: the direction of a smaller drive changes too much until the stop
+MAX_HELD_DRIVE = 0.8  # share of the squared friction limit: a larger drive may move a platform at rest
 LOOK_AHEAD_DELAY = 0.25  # time from the last large value until the run looks ahead, over RunSettings.period
 
 
 @compiled
-def end_early(system: System, work: Workspace, settings: RunSettings) -> None:
-    """End the run in the state x, v if no large value can follow; set when to look again."""
+def end_run_early(system: System, work: Workspace, settings: RunSettings) -> None:
+    """End the run in the state x, v if no large value can follow; set the time of the next look ahead."""
     # The run looks ahead a quarter of a period after its last large value, and only if the rough run takes at most
     # fifty times as many steps as the accurate ones so far: then both cost about the same. If the rough run finds a
     # large value, the next look follows that one, so that all rough runs together cover the motion at most once. The
     # measurements are in docs/reference.md, "Early end": no result of 10 000 random scenes and records changed.
-    if not settings.early:  # the instant of the end is given
+    if not settings.early:  # the end of the run is given
         work.end = work.time
         return
     work.look_time = work.last_large + LOOK_AHEAD_DELAY * settings.period
@@ -83,14 +84,14 @@ def rough_step_length(system: System, settings: RunSettings) -> float:
 
 @compiled
 def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
-    """Return when a large value may follow the state x, v, s, by rough steps of length h; infinity if none can."""
+    """Return when a large value may follow the state x, v, s, by rough steps of length h, s; infinity if none can."""
     bodies = work.x.shape[0]
-    for i in range(bodies):  # x1, v1 keep the state: the next accurate step sets them anew
+    for i in range(bodies):  # x1, v1 keep the state here, as the next accurate step sets them anew
         for axis in range(2):
             work.x1[i, axis], work.v1[i, axis] = work.x[i, axis], work.v[i, axis]
     time, large = work.time, False
-    set_waves(system, work, time + 0.5 * h)
-    set_turns(system, work, h)
+    set_harmonics(system, work, time + 0.5 * h)
+    set_harmonic_step_factors(system, work, h)
     while time < system.duration and not large:
         large = make_rough_step(system, work, time, h)
         time += h
@@ -102,7 +103,7 @@ def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
 
 @compiled
 def make_rough_step(system: System, work: Workspace, time: float, h: float) -> bool:
-    """Move x, v by h; return True if a value may become large meanwhile. Sets a0 of the bodies above the platform."""
+    """Move x, v by h and set a0 of the bodies above the platform; return True if a value may become large meanwhile."""
     move_at_velocity(work, 0.5 * h)
     ground = next_ground(system, work, time + 0.5 * h)
     set_chain_acceleration(system, work, ground)
@@ -124,7 +125,7 @@ def make_rough_step(system: System, work: Workspace, time: float, h: float) -> b
 
 @compiled
 def move_at_velocity(work: Workspace, h: float) -> None:
-    """Move every body at its velocity."""
+    """Move every body with its velocity for a time h."""
     for i in range(work.x.shape[0]):
         for axis in range(2):
             work.x[i, axis] += h * work.v[i, axis]
@@ -133,7 +134,7 @@ def move_at_velocity(work: Workspace, h: float) -> None:
 @compiled
 def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
     """
-    Change the platform's velocity by a step of length h.
+    Change the platform's velocity by one rough step of length h, s.
 
     Return a bound on its horizontal absolute acceleration, m/s^2, and True if it may come near its largest
     displacement, the rim, the end of the travel, liftoff or Painleve's paradox.
@@ -145,23 +146,23 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
     # do not resolve, so the largest acceleration of any direction counts. (4) Near a limit: infinity, the run goes on.
     vx, vy = work.v[0, 0], work.v[0, 1]
     place2 = load.px * load.px + load.py * load.py
-    bound = (1.0 - MIN_MARGIN) * min(system.radius, system.travel)
+    bound = (1.0 - MIN_DISTANCE_TO_SINGULARITY) * min(system.radius, system.travel)
     if not place2 < bound * bound:
         return inf, True
     far = place2 >= LARGE_FRACTION * LARGE_FRACTION * work.squared_reach
-    least = MIN_MARGIN * system.mass_ratio * system.gravity
-    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
-    if system.law == SET_VALUED and speed2 == 0.0:
+    least = MIN_DISTANCE_TO_SINGULARITY * system.mass_ratio * system.gravity
+    squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
+    if system.law == SET_VALUED and squared_speed == 0.0:
         excess, reaction = rest_excess(system, load)
         if excess <= 0.0:
             nearly, largest = bound_held_acceleration(system, load, ground, excess, reaction)
             return largest, (nearly and far) or not reaction >= least
-    sx, sy = slip_in_state(system, vx, vy, speed2)
-    ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
-    if not (reaction >= least and determinant >= MIN_MARGIN):
+    sx, sy = slip_in_state(system, vx, vy, squared_speed)
+    ax, ay, reaction, determinant = solve_platform_acceleration(system, load, squared_speed, sx, sy)
+    if not (reaction >= least and determinant >= MIN_DISTANCE_TO_SINGULARITY):
         return inf, True
     held = scale_by_load(system, load.k_t, reaction, reaction)
-    gx, gy = ax + held * sx, ay + held * sy  # acceleration without friction
+    gx, gy = ax + held * sx, ay + held * sy  # acceleration if there were no friction
     free_x, free_y = vx + h * gx, vy + h * gy
     free = sqrt(free_x * free_x + free_y * free_y)
     if free == 0.0:
@@ -171,13 +172,13 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
         share = 1.0 / (1.0 + h * reaction * viscous_factor(system))
     else:
         ratio = sqrt(squared_sliding_speed(system, load.px, load.py, free_x / free, free_y / free))
-        limit = held * coefficient(system, sqrt(speed2)) / ratio
+        limit = held * coefficient(system, sqrt(squared_speed)) / ratio
         share = max(0.0, 1.0 - h * limit / free)
         if share * free * ratio < system.v_reg:
             share = 1.0 / (1.0 + h * limit * ratio / system.v_reg)
         limit = max(limit, held * kinetic_coefficient(system) / ratio)  # friction may rise on the way to the stop
         slow = share * free < MAX_SLOW_STEPS * h * limit
-        if slow and speed2 > system.v_reg * system.v_reg:
+        if slow and squared_speed > system.v_reg * system.v_reg:
             work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y
             return largest_near_stop(gx, gy, vx, vy, ground, limit), far
     work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y
@@ -200,16 +201,16 @@ def bound_held_acceleration(
 
 
 @compiled
-def slip_in_state(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
-    """Return the slip vector (friction.py) at the velocity before the step; zero where a slide begins."""
-    if speed2 == 0.0:
+def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) -> tuple[float, float]:
+    """Return the slip vector (friction.py) at the velocity before the step; zero if a slide begins."""
+    if squared_speed == 0.0:
         return 0.0, 0.0
     contact = SLIDING
     if system.law == LUBRICATED:
         contact = LUBRICATED_SLIDING
-    elif speed2 < system.v_reg * system.v_reg:
+    elif squared_speed < system.v_reg * system.v_reg:
         contact = CREEPING
-    factor = slip_factor(system, contact, speed2)
+    factor = slip_factor(system, contact, squared_speed)
     return factor * vx, factor * vy
 
 

@@ -15,13 +15,13 @@ from math import exp, inf, log
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import heading
+from reference.solver.contact.friction import slip_direction_cosines
 from reference.solver.contact.platform import acceleration_along, load_at_stages
-from reference.solver.ground import set_ground_at_stages, set_waves
+from reference.solver.ground import set_ground_at_stages, set_harmonics
 from reference.solver.linear_solve import IDENTITY, factorize, solve
 from reference.solver.polynomial import A_COLUMNS, NODES_ROW, integrate_to_stages
-from reference.solver.rows import highest, is_finite, lowest, put, row
-from reference.solver.steps import rim_or_unsolved, set_absolute_accelerations
+from reference.solver.rows import is_finite, put, row, row_maximum, row_minimum
+from reference.solver.steps import classify_unsolved_step, set_absolute_accelerations
 from reference.solver.system import OPEN, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     ACROSS,
@@ -39,41 +39,41 @@ from reference.solver.work import (
     SIGMA,
     SINE,
     SPEED,
-    SPEED2,
+    SQUARED_SPEED,
     VELOCITY,
     Workspace,
 )
 
-MAX_ITERATIONS = 40  # iterations of Newton's method before a step counts as unsolved
-SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which the slopes are computed anew
-ROUNDING_ANGLE = 1e-13  # rad, change of the angles by rounding alone
-DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, needed to a few digits only
-SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by its logarithm
+MAX_ITERATIONS = 40  # iterations of Newton's method after which a step counts as unsolved
+SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which the slopes are computed again
+ROUNDING_ANGLE = 1e-13  # rad, change of the angles that rounding alone makes
+DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, which needs only a few digits
+SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by the logarithm of the speed
 MAX_GUESSED_TURN = 0.5  # rad: the direction turns towards the force, and the guess must not turn beyond it
-DIVERGED = 1e3  # change of angle, rad, or logarithm of the speed that ends the iteration
+MAX_CHANGE = 1e3  # a change of angle, rad, or logarithm of the speed beyond this ends the iteration
 
 
 @compiled
 def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
     """Solve one step of length h in tau; `tolerance` bounds the last change of the angle. Return its outcome."""
     # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
-    # (`move_bodies`). These give ground, springs and dampers (`pull_bodies`): a fixed-point iteration for the chain,
-    # which converges because the chain hardly moves within the step. The forces give the platform's acceleration along
-    # and across its direction (`turn_platform`), and Newton's method corrects the directions, which turn fast; ln S
+    # (`set_motion_at_stages`). These give ground, springs and dampers (`set_drive_at_stages`): a fixed-point iteration
+    # for the chain, which converges as the chain hardly moves in it. The forces give the platform's acceleration along
+    # and across its direction (`set_path_acceleration`), Newton's method corrects the directions, which turn fast; ln S
     # follows from them (`correct_turning`). Slopes are kept while the changes fall fast. Two iterations are always
     # fresh: the guess is a straight line.
     guess_near_stop(system, work, h)
-    set_waves(system, work, work.time)
+    set_harmonics(system, work, work.time)
     before, slow = 0.0, True
     for iteration in range(MAX_ITERATIONS):
         fresh = iteration < 2 or slow or system.rate > 0.0
-        move_bodies(system, work, h)
-        change = pull_bodies(system, work, h)
+        set_motion_at_stages(system, work, h)
+        change = set_drive_at_stages(system, work, h)
         if not is_inside_rim(system, work):
-            return rim_or_unsolved(system, work)
-        turn_platform(system, work, fresh)
+            return classify_unsolved_step(system, work)
+        set_path_acceleration(system, work, fresh)
         change = max(change, correct_turning(system, work, h, fresh))
-        if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
+        if not change < MAX_CHANGE or (iteration > 4 and change > 2.0 * before):
             return UNSOLVED
         slow = change > SLOW_CONVERGENCE * before
         before = change
@@ -84,14 +84,14 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
                     work.v1[i, axis] = work.velocities[i, axis, STAGES - 1]
             put(work.levels, (), row(work.turning, SIGMA) + log(row(work.turning, RATIO)))
             set_absolute_accelerations(system, work, SLIDING)
-            return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
+            return SOLVED if row_minimum(row(work.stage, REACTION)) > 0.0 else OPEN
     return UNSOLVED
 
 
 @compiled
 def guess_near_stop(system: System, work: Workspace, h: float) -> None:
     """Set the first guess of directions, speeds and the chain's accelerations from those at the start of the step."""
-    ex, ey = heading(work.angle, system.axes)
+    ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
     elapsed = h * row(NODES_ROW, ())
@@ -104,11 +104,11 @@ def guess_near_stop(system: System, work: Workspace, h: float) -> None:
 
 
 @compiled
-def move_bodies(system: System, work: Workspace, h: float) -> None:
+def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
     """Set speed, time, velocities and positions at the stages."""
     x, v, a, turning = work.x, work.v, work.a, work.turning
     for k in range(STAGES):
-        turning[COSINE, k], turning[SINE, k] = heading(turning[DIRECTION, k], system.axes)
+        turning[COSINE, k], turning[SINE, k] = slip_direction_cosines(turning[DIRECTION, k], system.axes)
     speeds = exp(row(turning, SIGMA))
     elapsed = h * integrate_to_stages(speeds)
     put(turning, SPEED, speeds)
@@ -125,7 +125,7 @@ def move_bodies(system: System, work: Workspace, h: float) -> None:
 
 
 @compiled
-def pull_bodies(system: System, work: Workspace, h: float) -> float:
+def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
     """Set ground, chain and drive at the stages; return the largest change of the chain's velocity over the speed."""
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
@@ -140,7 +140,7 @@ def pull_bodies(system: System, work: Workspace, h: float) -> float:
                 pull += system.above[i, axis] * (row(place, (i + 1, axis)) - row(place, (i, axis)))
                 pull += system.damping_above[i, axis] * (row(velocity, (i + 1, axis)) - row(velocity, (i, axis)))
             pull -= row(work.ground, axis)
-            change = max(change, highest(abs(pull - row(work.a, (i, axis))) * duration))
+            change = max(change, row_maximum(abs(pull - row(work.a, (i, axis))) * duration))
             put(work.a, (i, axis), pull)
     for axis in range(2):
         drive = -row(work.ground, axis)
@@ -157,13 +157,13 @@ def pull_bodies(system: System, work: Workspace, h: float) -> float:
 def is_inside_rim(system: System, work: Workspace) -> bool:
     """Return True if the platform is within the cap at every stage (4.1)."""
     x, y = row(work.stage, POSITION), row(work.stage, POSITION + 1)
-    inside: bool = highest(x * x + y * y) < system.radius**2
+    inside: bool = row_maximum(x * x + y * y) < system.radius**2
     return inside
 
 
 @compiled
-def turn_platform(system: System, work: Workspace, fresh: bool) -> None:
-    """Set the platform's acceleration at the stages, along and across its direction; if `fresh`, its slopes, too."""
+def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
+    """Set the platform's acceleration at the stages, along and across its direction; if `fresh`, its slopes as well."""
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
     ax, ay, reaction, ratio = acceleration_along(system, load, speed, ex, ey)
@@ -174,7 +174,7 @@ def turn_platform(system: System, work: Workspace, fresh: bool) -> None:
     put(turning, ACROSS, across)
     put(turning, RATIO, ratio)
     put(stage, REACTION, reaction)
-    put(stage, SPEED2, full * full)
+    put(stage, SQUARED_SPEED, full * full)
     if not fresh:
         return
     gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
@@ -192,7 +192,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
     # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, with the derivative of the
     # sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from the corrected
     # directions, for constant friction hardly depends on the speed. Where friction depends on the speed that iteration
-    # converges slowly or not at all, and Newton's method takes its place (`correct_levels`). Infinity means no
+    # converges slowly or not at all, and Newton's method takes its place (`correct_log_speeds`). Infinity means no
     # solution of the linear equations.
     turning, residual = work.turning, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
@@ -206,19 +206,19 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
     turn = row(residual, 0)
     along = row(turning, ALONG) + row(turning, ALONG_SLOPE) * turn
     put(work.levels, (), work.log_speed + h * integrate_to_stages(along))
-    if system.rate > 0.0 and not correct_levels(work, h):
+    if system.rate > 0.0 and not correct_log_speeds(work, h):
         return inf
     rise = row(work.levels, ()) - row(turning, SIGMA)
     if not (is_finite(turn) and is_finite(rise)):
         return inf
     put(turning, DIRECTION, row(turning, DIRECTION) + turn)
     put(turning, SIGMA, row(work.levels, ()))
-    change: float = highest(max(abs(turn), abs(rise)))
+    change: float = row_maximum(max(abs(turn), abs(rise)))
     return change
 
 
 @compiled
-def correct_levels(work: Workspace, h: float) -> bool:
+def correct_log_speeds(work: Workspace, h: float) -> bool:
     """Correct the logarithms of the speed in `levels` by Newton's method; return False if it has no step."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]

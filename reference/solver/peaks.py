@@ -16,20 +16,20 @@ from reference.solver.collocation import (
 )
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, turning_rate
-from reference.solver.polynomial import POWERS, expand
-from reference.solver.rows import broadcast_like, highest, lowest, put, row
+from reference.solver.polynomial import POWERS, set_coefficients
+from reference.solver.rows import broadcast_like, put, row, row_maximum, row_minimum
 from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, YIELDING, System
-from reference.solver.work import SPEED2, Workspace
+from reference.solver.work import SQUARED_SPEED, Workspace
 
 # In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
 # exceeds the higher one by less than this share of the squared acceleration.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_WAY_FACTOR = 1.5  # bound on the way within a step over its length times the larger speed at its ends
-NEWTON_ITERATIONS = 6  # iterations from the best of SEARCH_POINTS to a maximum
-IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # numbers of components of a vector; no literals (system.py)
+MAX_PATH_FACTOR = 1.5  # bound on the path within a step over its length times the larger speed at its ends
+NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
+IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components of a vector; no literals (system.py)
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
-MAX_RATE = 60.0  # rate times step length beyond which a faster response of friction adds no more to the error
-SETTLED_FRACTION = 0.9  # share of the largest acceleration so far below which no peak is near
+MAX_RATE = 60.0  # bound on rate times step length: a faster response of friction adds no more to the error
+SETTLED_FRACTION = 0.9  # share of the largest acceleration so far: below it no peak is near
 
 
 @compiled
@@ -94,7 +94,7 @@ def velocity_defect(work: Workspace, body: int, axis: int) -> float:
 
 @compiled
 def link_error_rate(system: System, work: Workspace, h: float, body: int) -> float:
-    """Return the rate, m/s^3, at which the links make a body's acceleration wrong at the start of the step."""
+    """Return the rate, m/s^3, at which velocity errors at a step's start change a body's acceleration by its links."""
     squared, last = 0.0, work.x.shape[0] - 1
     for axis in range(2):
         own = velocity_defect(work, body, axis)
@@ -116,7 +116,7 @@ def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
         return 0.0
     if contact != SLIDING:
         return decay_rate(system, contact)
-    return turning_rate(system, sqrt(min(work.squared_start_speed, lowest(row(work.stage, SPEED2)))))
+    return turning_rate(system, sqrt(min(work.squared_start_speed, row_minimum(row(work.stage, SQUARED_SPEED)))))
 
 
 @compiled
@@ -133,7 +133,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
         missed = missed * theta + DEFECT_POLYNOMIAL[k]
         integral = integral * theta + DEFECT_INTEGRAL[k]
     error = abs(missed) * work.defect[body]
-    if contact != STOPPING:  # steps near a stop have no length in time, and are short
+    if contact != STOPPING:  # steps near a stop are short, and their length is no time
         rate = link_error_rate(system, work, h, body)
         if body == PLATFORM:
             rate += min(friction_error_rate(system, work, contact), MAX_RATE / h) * work.defect[body]
@@ -143,15 +143,15 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best (N,) to the largest |total|^2 over [low, high] of the step; return True if one is near it."""
+    """Raise work.best (N,) to the largest |total|^2 over [low, high] of the step; return True if a value is near it."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
-        most = highest(x * x + y * y + z * z)
+        most = row_maximum(x * x + y * y + z * z)
         if most < (1.0 - MAX_RISE_BETWEEN_STAGES) * work.best[i]:
             continue
         for axis in range(3):
-            expand(row(work.total, (i, axis)), work.powers[axis])
+            set_coefficients(row(work.total, (i, axis)), work.powers[axis])
         top, place = largest_square(work, IN_SPACE, low, high)
         large = large or top >= SETTLED_FRACTION**2 * work.best[i]
         if top > work.best[i]:
@@ -162,7 +162,7 @@ def update_peaks(system: System, work: Workspace, contact: int, h: float, low: f
 
 @compiled
 def update_peak_by_limit(work: Workspace, body: int, squared: float) -> None:
-    """Raise a body's largest acceleration to a one-sided limit, which is read without an error of its own."""
+    """Raise a body's largest squared acceleration to a one-sided limit, which has no error of interpolation."""
     if squared >= SETTLED_FRACTION**2 * work.best[body]:
         work.last_peak = work.last_large = work.time
     if squared > work.best[body]:
@@ -179,16 +179,16 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
     length of time and the way left is short, it is read at the stages. Return True if the displacement is near the
     largest so far.
     """
-    speed2 = 0.0
+    squared_speed = 0.0
     for axis in range(2):
-        speed2 = max(speed2, max(work.v[0, axis] ** 2, work.v1[0, axis] ** 2))
+        squared_speed = max(squared_speed, max(work.v[0, axis] ** 2, work.v1[0, axis] ** 2))
     start = work.x[0, 0] ** 2 + work.x[0, 1] ** 2
     end = work.x1[0, 0] ** 2 + work.x1[0, 1] ** 2
     far = max(start, end)
     if stretched:
         x, y = row(work.positions, (0, 0)), row(work.positions, (0, 1))
-        far = max(far, highest(x * x + y * y))
-    elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(work.squared_reach):
+        far = max(far, row_maximum(x * x + y * y))
+    elif sqrt(max(start, end)) + MAX_PATH_FACTOR * h * sqrt(squared_speed) > sqrt(work.squared_reach):
         for axis in range(2):
             expand_position(work, h, axis)
         top, _ = largest_square(work, IN_THE_PLANE, 0.0, 1.0)
@@ -199,9 +199,9 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
 
 @compiled
 def expand_position(work: Workspace, h: float, axis: int) -> None:
-    """Set the powers of theta of the platform's position: the second integral of its acceleration."""
+    """Set the coefficients of the platform's position, the second integral of its acceleration, over theta."""
     powers = work.powers[axis]
-    expand(row(work.a, (0, axis)), powers)
+    set_coefficients(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
         powers[k + 2] = h * h * powers[k] / ((k + 1.0) * (k + 2.0))
     powers[0] = work.x[0, axis]

@@ -1,4 +1,4 @@
-"""Polynomial through the numbers at the stages of a step: its integrals, coefficients and values."""
+"""Polynomial through the numbers at the stages of a step: its integrals, its coefficients and its values."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ def integrate_to_stages(values: Row) -> Row:
 
 
 @compiled
-def expand(values: Row, coefficients: Array) -> None:
-    """Set the coefficients (POWERS,) of the powers of theta."""
+def set_coefficients(values: Row, coefficients: Array) -> None:
+    """Set the coefficients (POWERS,) of the powers of theta of the polynomial through the stages."""
     put(coefficients, (), combine_columns(MONOMIALS_COLUMNS, values))
     for k in range(STAGES, POWERS):
         coefficients[k] = 0.0
 
 
 @compiled
-def value_at(coefficients: Array, theta: float) -> float:
-    """Return the polynomial at theta."""
+def evaluate_polynomial(coefficients: Array, theta: float) -> float:
+    """Return the value of the polynomial at theta."""
     value = 0.0
     for k in range(STAGES - 1, -1, -1):
         value = value * theta + coefficients[k]

@@ -1,4 +1,4 @@
-"""Keep the steps of a motion, to be sampled afterwards (samples.py)."""
+"""Recording of the steps of a motion, for samples of it (samples.py)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reference.solver.work import CLOCK, REACTION, Workspace
 
 @compiled
 def record_step(work: Workspace, record: StepRecord, h: float, contact: int) -> None:
-    """Keep the step just solved, before it is committed, while there is room; count it in any case."""
+    """Record the step just solved, before it is committed, if there is room; count it in any case."""
     n = record.counts[0]
     record.counts[0] += 1
     if n >= record.start.shape[0]:
@@ -34,7 +34,7 @@ def record_step(work: Workspace, record: StepRecord, h: float, contact: int) -> 
 
 @compiled
 def record_stick(record: StepRecord, start: float, end: float) -> None:
-    """Keep one interval of rest, if the motion does not end before it begins; join intervals that touch."""
+    """Record one interval of rest, if the motion lasts until it begins; join intervals that touch."""
     if end <= start:
         return
     n = record.counts[1]

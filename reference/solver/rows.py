@@ -31,7 +31,7 @@ from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
 
 Row: TypeAlias = Any  # a row, which exists in compiled code alone
-Number: TypeAlias = Any  # a float or a row
+Number: TypeAlias = Any  # a float, or a row of floats
 
 _VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)
 _ALIGNMENT = 8  # bytes, the alignment that numpy's arrays guarantee
@@ -61,7 +61,7 @@ def _index(k: int) -> Any:
 
 
 def _shuffle(builder: Any, values: Any, places: list[int]) -> Any:
-    """Write code for a row of the numbers at these places of another."""
+    """Write code for a row of the numbers at these places of another row."""
     return builder.shuffle_vector(values, values, ir.Constant(ir.VectorType(ir.IntType(32), ROW_LENGTH), places))
 
 
@@ -72,6 +72,7 @@ def _broadcast(builder: Any, number: Any) -> Any:
 
 
 def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
+    """Write code that makes rows of all numbers."""
     return [number if kind == _ROW else _broadcast(builder, number) for number, kind in zip(numbers, kinds)]
 
 
@@ -99,6 +100,8 @@ def _define_single(operation: Any, lower_call: Lower) -> None:
 
 
 def _lower_by_instruction(name: str) -> Lower:
+    """Return code that calls one instruction of LLVM for a whole row."""
+
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
@@ -107,7 +110,7 @@ def _lower_by_instruction(name: str) -> Lower:
 
 
 def _lower_one_by_one(operation: Any) -> Lower:
-    """Return code that applies a function to the number of every stage; the last place of the row becomes 0."""
+    """Return code that applies a function to the number at every stage; the last place of the row becomes 0."""
     # exp, expm1 and log are functions of the C library for one float: called for each number, they give the same bits
     # as at an instant.
 
@@ -123,6 +126,8 @@ def _lower_one_by_one(operation: Any) -> Lower:
 
 
 def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
+    """Return code that selects the smaller or larger numbers of two rows, by a relation of LLVM."""
+
     def lower_call(builder: Any, left: Any, right: Any) -> Any:
         return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
 
@@ -193,7 +198,7 @@ def put(context: Any, array: Any, place: Any, values: Any) -> Any:
 
 @intrinsic
 def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
-    """Return a float, or a row with it in all places if `pattern` is a row."""
+    """Return a float unchanged, or a row with it in all places if `pattern` is a row."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return _broadcast(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
@@ -213,7 +218,7 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
 
 
 def _reduce_by(relation: str) -> Callable[..., Any]:
-    """Return a function that finds the largest or smallest number of all stages; a float is its own."""
+    """Return a function that finds the largest or smallest number of a row's stages, and returns a float unchanged."""
     # Three comparisons of a row with a rearranged copy of itself leave the extreme number in the first place. The last
     # place of a row has no meaning: the last stage is compared in its stead. Where a number is NaN, any of the numbers
     # may be returned: an ordered comparison with NaN is false.
@@ -235,8 +240,8 @@ def _reduce_by(relation: str) -> Callable[..., Any]:
     return reduce
 
 
-lowest = intrinsic(_reduce_by("<"))
-highest = intrinsic(_reduce_by(">"))
+row_minimum = intrinsic(_reduce_by("<"))
+row_maximum = intrinsic(_reduce_by(">"))
 
 
 @intrinsic

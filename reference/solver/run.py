@@ -49,20 +49,20 @@ from reference.solver.work import (
 
 # Lengths of time below are in units of RunSettings.period, the time in which forces change.
 FIRST_STEP = 0.02  # length of the first step of a run
-NEGLIGIBLE_REMAINDER = 1e-8  # time before its end at which a run that fails counts as finished
-HOLDING_TIME = 1e-6  # time for which a state on the border of two phases keeps rest or creep
-RIM_SQUARED_FRACTION = 0.998  # share of rho^2 beyond which a run that fails has reached the rim
+NEGLIGIBLE_REMAINDER = 1e-8  # time before its end: a run that fails later counts as finished
+HOLDING_TIME = 1e-6  # time for which the contact keeps rest or creep in a state on the border of two phases
+RIM_SQUARED_FRACTION = 0.998  # share of rho^2: a run that fails farther out has reached the rim
 # Phases in succession that last no time: after more of them the state is on the border of two phases, each of which
 # ends at once in favor of the other.
 MAX_IDLE_PHASES = 4
 # Share of the inertia determinant without friction below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # share of the loading's velocity below which a slide that cannot go on has not moved
+MAX_CRAWL_SPEED = 1e-8  # share of the loading's velocity: a slower slide that cannot go on has not moved
 
 
 @compiled
 def initial_contact(system: System, work: Workspace) -> int:
-    """Return the state of the contact in the initial state of the motion."""
+    """Return the state of the contact at the start of the motion."""
     if system.law == LUBRICATED:
         return LUBRICATED_SLIDING
     speed = squared_speed_in_state(system, work)
@@ -131,7 +131,7 @@ def integrate(system: System, work: Workspace, settings: RunSettings, record: St
         if code == UNSOLVED and is_crawling(system, work, contact, settings):
             work.v[0, 0] = work.v[0, 1] = 0.0
             work.hold_time = max(work.hold_time, HOLDING_TIME * settings.period)
-            work.length = max(work.length, work.hold_time)  # the failed slide has shortened it to almost zero
+            work.length = max(work.length, work.hold_time)  # the failed slide has shortened the length to almost zero
             code, contact = SOLVED, REST
         if code != SOLVED:
             return classify_failure(system, work, contact, settings, code)
@@ -154,7 +154,7 @@ def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> Non
 
 @compiled
 def set_results(work: Workspace, code: int, peaks: Array, reading_errors: Array, ends: Array, m: int) -> None:
-    """Fill in what the run of phase pair m has found."""
+    """Write outcome, peaks and errors of the run of phase pair m into the results."""
     ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
     ends[4, m] = work.last_peak
     for i in range(peaks.shape[1]):

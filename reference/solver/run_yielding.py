@@ -9,15 +9,15 @@ from __future__ import annotations
 from math import inf
 
 from reference.solver.compiled import cached_entry_point, compiled
-from reference.solver.events import NEVER
+from reference.solver.events import NOT_IN_STEP
 from reference.solver.phases.follow import MAX_VIBRATION_ANGLE, MIN_DRIFT_ANGLE, add_drift, vibration_angle
 from reference.solver.phases.yielding import (
     begin_yielding,
     commit_force,
     locate_event,
-    share_before_slowest,
     shift_to_event,
     solve_yielding_step,
+    step_share_to_slowest_point,
 )
 from reference.solver.record import record_stick
 from reference.solver.run import (
@@ -41,7 +41,7 @@ from reference.solver.step_control import (
     propose_plain_length,
     remaining_time,
 )
-from reference.solver.steps import load_step, step_error
+from reference.solver.steps import set_step_loads, step_error
 from reference.solver.system import (
     ELASTIC,
     PLASTIC,
@@ -63,20 +63,20 @@ from reference.solver.work import (
     system_by_reference,
 )
 
-# Share of a plain step that the first step of a phase has: what happens before its first stage is not seen
-BEGINNING = 0.1
+# Length of a phase's first step over that of an ordinary step. A short one misses no event before its first stage.
+FIRST_STEP_SHARE = 0.1
 # Error of the end of a step at yield and at unloading, as a share of the step, and the most steps that aim at an event.
 # An error of the instant of unloading has an effect of second order.
-YIELD_SHARE, UNLOADING_SHARE, MAX_AIMS = 1e-11, 1e-6, 8
-EVENT_TIME = 1e-12  # time before an event that is none, in units of RunSettings.period
+YIELD_SHARE, UNLOADING_SHARE, MAX_AIMED_STEPS = 1e-11, 1e-6, 8
+MIN_EVENT_TIME = 1e-12  # events closer to the start count as events at the start; in units of RunSettings.period
 
 
 @compiled
 def try_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float, held: bool) -> int:
-    """Solve the equations of one step; return their outcome, UNSOLVED for one that is too short."""
+    """Solve the equations of one step; return their outcome, UNSOLVED for a step that is too short."""
     if is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
         return UNSOLVED
-    load_step(system, work, h)
+    set_step_loads(system, work, h)
     guess_from_last_step(work, h)
     code: int = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
     return code
@@ -86,13 +86,13 @@ def try_step(system: System, work: Workspace, contact: int, settings: RunSetting
 def aim_at_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, aims: int, begun: bool
 ) -> tuple[float, bool]:
-    """Return the share of a step after which the phase ends, 0 at its start, 1 for the whole, and if it ends there."""
+    """Return the share of the step up to the end of the phase, 1 for all of it, and True if the phase ends in it."""
     if aims > 0:
         shift = shift_to_event(system, work, contact, h)
-        near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMS
-        return 1.0 if shift == NEVER or near else 1.0 + shift, shift != NEVER
+        near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMED_STEPS
+        return 1.0 if shift == NOT_IN_STEP or near else 1.0 + shift, shift != NOT_IN_STEP
     portion = locate_event(system, work, contact, h, begun)
-    reached = portion * h <= EVENT_TIME * settings.period
+    reached = portion * h <= MIN_EVENT_TIME * settings.period
     return 0.0 if reached else min(portion, 1.0), reached
 
 
@@ -100,7 +100,7 @@ def aim_at_event(
 def accept_step(
     system: System, work: Workspace, record: StepRecord, contact: int, h: float, angle: float, factor: float
 ) -> bool:
-    """Make the end of the step the new state; return whether the travel is reached in it."""
+    """Make the end of the step the new state; return True if the platform reaches its travel in the step."""
     work.edges[0], work.edges[1] = 0.0, 1.0
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
@@ -116,7 +116,7 @@ def accept_step(
 
 @compiled
 def change_contact(system: System, work: Workspace, record: StepRecord, contact: int, since: float) -> int:
-    """Begin the phase that follows a phase since an instant; return its contact."""
+    """Begin the phase after one that began at `since`, s; return its contact."""
     if contact == ELASTIC:
         record_stick(record, since, work.time)
     following = PLASTIC if contact == ELASTIC else ELASTIC
@@ -137,15 +137,20 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
         if not count_step(work, settings):
             return classify_failure(system, work, contact, settings, STEP_LIMIT)
         held, h = idle > MAX_IDLE_PHASES, propose_plain_length(system, work, settings)
-        aims = 0 if h < shorter else aims  # the event is beyond a kink of the loading
-        h = min(h, shorter, BEGINNING * work.length if begun else inf, HOLDING_TIME * settings.period if held else inf)
+        aims = 0 if h < shorter else aims  # the step ends at a kink of the loading, before the event
+        h = min(
+            h,
+            shorter,
+            FIRST_STEP_SHARE * work.length if begun else inf,
+            HOLDING_TIME * settings.period if held else inf,
+        )
         code = try_step(system, work, contact, settings, h, held)
         if code != SOLVED:
             if is_too_short(work, contact, settings, h, code):
                 return classify_failure(system, work, contact, settings, code)
             work.length, shorter, aims = FAILURE_SHORTENING * h, inf, 0
             continue
-        smooth = 1.0 if held or aims > 0 else share_before_slowest(system, work)
+        smooth = 1.0 if held or aims > 0 else step_share_to_slowest_point(system, work)
         if smooth < 1.0:
             shorter = h * smooth
             continue
@@ -177,7 +182,7 @@ def integrate_yielding_runs(
     system: System, phases: Array, x: Array, v: Array, settings: RunSettings, record: StepRecord,
     until: Array, peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
-    """Follow the motions under friction that yields and fill in what `integrate_runs` (run.py) does."""
+    """Follow the motions under friction that yields, and fill in the same results as `integrate_runs` (run.py)."""
     work = allocate_workspace(peaks.shape[1])
     system_reference, record_reference = system_by_reference(system), record_by_reference(record)
     for m in range(phases.shape[0]):

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from reference.solver.collocation import MONOMIALS, STAGES, A
 from reference.solver.system import STOPPING, Array, StepRecord
 
-BISECTIONS = 60  # bisections that locate an instant in a step near a stop, to rounding
-BLOCK = 1024  # instants at a time: their stages stay in the processor's cache
-FEWEST_PLACES, MOST_PLACES = 4, 48  # bounds on the instants per step that `step_instants` returns
+BISECTIONS = 60  # number of bisections that locate an instant in a step near a stop to rounding
+INSTANTS_PER_BLOCK = 1024  # number of instants at a time, whose stages fit into the processor's cache
+FEWEST_PLACES, MOST_PLACES = 4, 48  # bounds on the number of instants per step in `step_instants`
 
 
 class SampledMotion(NamedTuple):
@@ -32,7 +32,7 @@ def sample_motion(record: StepRecord, times: Array) -> SampledMotion:
     near = (record.contact[:steps] == STOPPING)[row]
     if near.any():
         theta[near] = _locate_in_steps(record.clock[row[near]], times[near])
-    blocks = [slice(first, first + BLOCK) for first in range(0, max(len(times), 1), BLOCK)]
+    blocks = [slice(first, first + INSTANTS_PER_BLOCK) for first in range(0, max(len(times), 1), INSTANTS_PER_BLOCK)]
     parts = [_sample_steps(record, row[block], theta[block], near[block]) for block in blocks]
     return SampledMotion(*map(np.concatenate, zip(*parts)))
 
@@ -56,14 +56,14 @@ def _sample_steps(record: StepRecord, row: NDArray[np.intp], theta: Array, near:
 
 
 def step_instants(record: StepRecord, count: int, most: int) -> Array:
-    """Return rising instants (T,), s, about `count`, at most `most`: some in every step, one just before its end."""
+    """Return about `count` rising instants (T,), s, at most `most`: some in every step, one just before its end."""
     steps = int(record.counts[0])
     start = record.start[:steps]
     places = int(np.clip(count // max(steps, 1), FEWEST_PLACES, MOST_PLACES))
     theta = np.arange(places) / places
     inside = start[:, None] + record.length[:steps, None] * theta
     near = record.contact[:steps] == STOPPING
-    weights = theta[:, None] ** np.arange(STAGES) @ MONOMIALS  # (P, S), those of the values at the stages
+    weights = theta[:, None] ** np.arange(STAGES) @ MONOMIALS  # (P, S) weights of the values at the stages
     inside[near] = np.maximum(record.clock[:steps][near] @ weights.T, start[near, None])
     before = np.nextafter(start[1:], -np.inf)
     instants: Array = np.unique(np.concatenate([inside.ravel(), before]))

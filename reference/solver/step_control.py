@@ -1,4 +1,4 @@
-"""Control of the steps in every phase of a run: their begin, their lengths, their end."""
+"""Control of the steps in every phase of a run: their start, their length, their end."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_in_state, moving_acceleration
 from reference.solver.ground import ground_at, next_knot
 from reference.solver.peaks import update_displacement, update_peaks
-from reference.solver.polynomial import NODES_ROW, expand
+from reference.solver.polynomial import NODES_ROW, set_coefficients
 from reference.solver.record import record_step
 from reference.solver.rows import broadcast_like, put, row
 from reference.solver.steps import vertical_acceleration
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Ground, RunSettings, StepRecord, System
 from reference.solver.work import CLOCK, Workspace
 
-MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85  # bounds and safety in `length_factor`
-MAX_SHORTENING = 0.7  # largest factor from the length of a step that misses the tolerance to the next
-FAILURE_SHORTENING = 0.3  # factor from the length of a step whose equations have no solution to the next
-ERROR_ORDER = 7.0  # order of the error estimate in the step length
+# Bounds on the factor between two step lengths, and its safety factor, in `length_factor`
+MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
+MAX_SHORTENING = 0.7  # largest factor on the step length after a step that misses the tolerance
+FAILURE_SHORTENING = 0.3  # factor on the step length after a step whose equations have no solution
+ERROR_ORDER = 7.0  # order in the step length of the error estimate
 # Lower bound on the acceleration that the error of a body is relative to, as a share of the loading
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
@@ -29,13 +30,13 @@ FATAL_STEP = 1e-9
 MIN_STEP = 1e-16
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
-NEWTON_FRACTION = 0.01  # share of the tolerance at which the change of the accelerations ends Newton's method
-MAX_EXTRAPOLATION = 1.1  # ratio of two step lengths up to which the last polynomial is a guess for the next step
+NEWTON_FRACTION = 0.01  # share of the tolerance: a smaller change of the accelerations ends Newton's method
+MAX_EXTRAPOLATION = 1.1  # largest ratio of two step lengths at which the last polynomial is a guess for the next step
 
 
 @compiled
 def begin_from_state(system: System, work: Workspace, contact: int) -> None:
-    """Set the accelerations at the start of a phase; those of a slide from rest follow in begin_sliding."""
+    """Set the accelerations at the start of a phase; `begin_sliding` sets those of a slide from rest later."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     ax = ay = 0.0
@@ -86,7 +87,7 @@ def remaining_time(system: System, work: Workspace, settings: RunSettings) -> fl
 
 @compiled
 def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the next kink of loading or k_T, or the end of the run, s: a step beyond it would lose its order."""
+    """Return the next kink of loading or k_T, or the end of the run, s; a step across a kink would lose its order."""
     after, end = work.time + negligible_time(system, settings), work.end
     for kinks in (system.record, system.kinks):
         k = next_knot(kinks, after)
@@ -97,13 +98,13 @@ def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
 
 @compiled
 def propose_plain_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the length of the next step in time, s: at most to the loading's next kink."""
+    """Return the length of the next step in time, s, which ends at the loading's next kink at the latest."""
     return min(min(work.length, remaining_time(system, work, settings)), next_kink(system, work, settings) - work.time)
 
 
 @compiled
 def guess_from_last_step(work: Workspace, h: float) -> None:
-    """Set the first guess of the platform's stage accelerations: the last step's polynomial, where it reaches."""
+    """Set the first guess of the platform's stage accelerations to the last step's polynomial, where that reaches."""
     old = work.last_length
     theta = row(NODES_ROW, ())
     near = 0.0 < h <= MAX_EXTRAPOLATION * old
@@ -119,7 +120,7 @@ def guess_from_last_step(work: Workspace, h: float) -> None:
 
 @compiled
 def length_factor(error: float, tolerance: float) -> float:
-    """Return the factor of the step length with which the next error meets the tolerance."""
+    """Return the factor on the step length with which the next error just meets the tolerance."""
     # The error falls like h^7, so the length that just meets the tolerance is the present one times
     # (tolerance / error)^(1/7) (Hairer and Wanner, IV.8). SAFETY_FACTOR makes the next step likely to pass, and the
     # bounds limit what a single estimate can change.
@@ -130,7 +131,7 @@ def length_factor(error: float, tolerance: float) -> float:
 
 @compiled
 def step_duration(work: Workspace, contact: int, h: float) -> float:
-    """Return about how long a step of length h lasts, s: near a stop h is a length in stretched time."""
+    """Return the approximate duration of a step of length h, s; near a stop h is a length in stretched time."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 
@@ -154,7 +155,7 @@ def set_length(work: Workspace, contact: int, h: float) -> None:
 
 @compiled
 def adapt_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the length after a step that met the tolerance; one cut short for another reason shortens nothing."""
+    """Set the next length after a step that met the tolerance; a step cut short by an event shortens nothing."""
     if h * factor > work.length or h == work.length:
         work.length = h * factor
 
@@ -170,7 +171,7 @@ def commit_step(system: System, work: Workspace, record: StepRecord, h: float, c
         peaking = update_peaks(system, work, contact, h, low, high) or peaking
     far = contact != REST and update_displacement(work, h, contact == STOPPING)
     for axis in range(2):
-        expand(row(work.a, (0, axis)), work.guess[axis])
+        set_coefficients(row(work.a, (0, axis)), work.guess[axis])
     for i in range(work.x.shape[0]):
         for axis in range(2):
             work.x[i, axis] = work.x1[i, axis]

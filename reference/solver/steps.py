@@ -11,16 +11,22 @@ from math import inf, sqrt
 
 import numpy as np
 
-from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, load_chain, move_chain, set_feedback
+from reference.solver.chain import (
+    CHANNEL_ROUNDING,
+    eliminate_chain,
+    recover_chain_motion,
+    set_chain_loads,
+    set_feedback,
+)
 from reference.solver.collocation import AT_START, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_at_stages, moving_acceleration
 from reference.solver.contact.slopes import set_slopes
 from reference.solver.equations import vertical_motion
-from reference.solver.ground import set_ground_at_stages, set_waves
+from reference.solver.ground import set_ground_at_stages, set_harmonics
 from reference.solver.linear_solve import IDENTITY, factorize, solve
 from reference.solver.polynomial import A2_COLUMNS, A_COLUMNS, NODES_ROW
-from reference.solver.rows import Number, broadcast_like, highest, is_finite, lowest, put, row
+from reference.solver.rows import Number, broadcast_like, is_finite, put, row, row_maximum, row_minimum
 from reference.solver.system import CREEPING, OPEN, PAINLEVE, REST, RIM, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     BY_DRIVE,
@@ -30,40 +36,40 @@ from reference.solver.work import (
     DRIVE,
     POSITION,
     REACTION,
-    SPEED2,
+    SQUARED_SPEED,
     VELOCITY,
     Workspace,
 )
 
-MAX_ITERATIONS = 14  # iterations of Newton's method before a step counts as unsolved
-SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed anew
-FORCE_ROUNDING = 1e-13  # part of the forces that rounding leaves in the defect at the start of a step
-ROUNDING_CHANGE = 4e-15  # relative change of the accelerations that rounding alone makes from iteration to iteration
-# Growth of the squared speed of a slide beyond which a derivative understates tenfold how far the direction turns
+MAX_ITERATIONS = 14  # iterations of Newton's method after which a step counts as unsolved
+SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed again
+FORCE_ROUNDING = 1e-13  # share of the forces: rounding leaves so much in the defect at the start of a step
+ROUNDING_CHANGE = 4e-15  # relative change of the accelerations from iteration to iteration that rounding alone makes
+# Growth of a slide's squared speed beyond which a derivative understates tenfold how far the direction turns
 MAX_SPEED2_GROWTH = 100.0
-RIM_SQUARED_FRACTION = 0.99  # share of rho^2 beyond which a step whose iteration leaves the cap has reached the rim
+RIM_SQUARED_FRACTION = 0.99  # share of rho^2: a step farther out whose iteration leaves the cap has reached the rim
 
 
 @compiled
-def load_step(system: System, work: Workspace, h: float) -> None:
+def set_step_loads(system: System, work: Workspace, h: float) -> None:
     """Set the ground at the stages and the load that it and the state put on the platform through the chain."""
     put(work.elapsed, (), h * row(NODES_ROW, ()))
-    set_waves(system, work, work.time)
+    set_harmonics(system, work, work.time)
     set_ground_at_stages(system, work)
     eliminate_chain(system, work, h)
-    load_chain(system, work, h)
+    set_chain_loads(system, work, h)
 
 
 @compiled
 def solve_rest_step(system: System, work: Workspace, h: float) -> None:
     """Solve a step in which the platform stays and the chain above it vibrates (4.4)."""
-    load_step(system, work, h)
+    set_step_loads(system, work, h)
     for axis in range(system.axes):
         put(work.a, (0, axis), 0.0)
         put(work.stage, POSITION + axis, work.x[0, axis])
         put(work.stage, VELOCITY + axis, 0.0)
         put(work.stage, DRIVE + axis, row(work.free, axis))
-    move_chain(system, work, h)
+    recover_chain_motion(system, work, h)
     set_absolute_accelerations(system, work, REST)
 
 
@@ -72,8 +78,8 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
     """
     Solve for the stage accelerations of the platform by Newton's method, the chain eliminated exactly.
 
-    `load_step` comes before; `a[0]` holds the first guess. The iteration ends when its change is below `tolerance`,
-    m/s^2, or at the level of rounding.
+    `set_step_loads` comes before; `a[0]` holds the first guess. The iteration ends when its change is below
+    `tolerance`, m/s^2, or at the level of rounding.
     """
     # A derivative serves several iterations while these converge fast. The error that remains is then far smaller than
     # the last change, which is what `tolerance` bounds.
@@ -83,15 +89,17 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
     # (MAX_SPEED2_GROWTH).
     set_feedback(system, work, h)
     pivots = work.pivots[: system.axes * STAGES]
-    known = row(work.stage, SPEED2)
+    known = row(work.stage, SQUARED_SPEED)
     fresh, before = True, 0.0
     for iteration in range(MAX_ITERATIONS):
-        place_platform(work, h, system.axes)
+        set_platform_motion(work, h, system.axes)
         code, size = set_residual(system, work, contact)
         if code != SOLVED:
             return code
-        if fresh or (contact == SLIDING and highest(row(work.stage, SPEED2) - MAX_SPEED2_GROWTH * known) > 0.0):
-            known = row(work.stage, SPEED2)
+        if fresh or (
+            contact == SLIDING and row_maximum(row(work.stage, SQUARED_SPEED) - MAX_SPEED2_GROWTH * known) > 0.0
+        ):
+            known = row(work.stage, SQUARED_SPEED)
             set_slopes(system, contact, work)
             set_matrix(work, h, system.axes)
             if not factorize(work.matrix, pivots):
@@ -102,10 +110,10 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
         if not np.isfinite(change) or (iteration > 1 and fresh and change > before and not settled):
             return UNSOLVED
         if settled:
-            place_platform(work, h, system.axes)
-            move_chain(system, work, h)
+            set_platform_motion(work, h, system.axes)
+            recover_chain_motion(system, work, h)
             set_absolute_accelerations(system, work, contact)
-            return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
+            return SOLVED if row_minimum(row(work.stage, REACTION)) > 0.0 else OPEN
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
@@ -116,20 +124,20 @@ def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, fl
     """Set the residual at the stages from the platform's equations; return the outcome and their size, m/s^2."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
-    if highest(load.px * load.px + load.py * load.py) >= system.radius**2:
-        return rim_or_unsolved(system, work), 0.0
-    ax, ay, reaction, determinant, speed2 = moving_acceleration(
+    if row_maximum(load.px * load.px + load.py * load.py) >= system.radius**2:
+        return classify_unsolved_step(system, work), 0.0
+    ax, ay, reaction, determinant, squared_speed = moving_acceleration(
         system, contact, load, row(stage, VELOCITY), row(stage, VELOCITY + 1)
     )
     put(stage, REACTION, reaction)
     put(stage, DETERMINANT, determinant)
-    put(stage, SPEED2, speed2)
+    put(stage, SQUARED_SPEED, squared_speed)
     put(residual, 0, ax - row(a, (0, 0)))
     put(residual, 1, ay - row(a, (0, 1)))
     # Painleve's paradox is located to FATAL_STEP (step_control.py). Creep may respond within a shorter time: there a
     # determinant that is not positive counts as UNSOLVED, so that the steps may become shorter still.
     code = UNSOLVED if contact == CREEPING else PAINLEVE
-    return (SOLVED if lowest(determinant) > 0.0 else code), highest(abs(ax) + abs(ay))
+    return (SOLVED if row_minimum(determinant) > 0.0 else code), row_maximum(abs(ax) + abs(ay))
 
 
 @compiled
@@ -139,12 +147,12 @@ def correct_accelerations(work: Workspace, axes: int) -> float:
     for axis in range(axes):
         correction = row(work.residual, axis)
         put(work.a, (0, axis), row(work.a, (0, axis)) + correction)
-        change = max(change, highest(abs(correction)) if is_finite(correction) else inf)
+        change = max(change, row_maximum(abs(correction)) if is_finite(correction) else inf)
     return change
 
 
 @compiled
-def place_platform(work: Workspace, h: float, axes: int) -> None:
+def set_platform_motion(work: Workspace, h: float, axes: int) -> None:
     """Set position, velocity and drive of the platform at the stages from its stage accelerations."""
     a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
@@ -177,8 +185,8 @@ def set_matrix(work: Workspace, h: float, axes: int) -> None:
 
 
 @compiled
-def rim_or_unsolved(system: System, work: Workspace) -> int:
-    """Return RIM (4.1) if the step began close to it, or UNSOLVED: the iteration strayed there."""
+def classify_unsolved_step(system: System, work: Workspace) -> int:
+    """Return RIM (4.1) for an unsolved step that began close to the rim, UNSOLVED for any other."""
     return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2 else UNSOLVED
 
 
@@ -212,7 +220,7 @@ def set_absolute_accelerations(system: System, work: Workspace, contact: int) ->
 @compiled
 def step_error(system: System, work: Workspace, tolerance: float, weight: float) -> float:
     """
-    Return the error of the absolute accelerations inside the step over `scale`, the largest of all bodies.
+    Return the largest error of the bodies' absolute accelerations inside the step, over `scale`.
 
     `weight` multiplies the error; `tolerance` is the error that the step may have.
     """
@@ -225,9 +233,9 @@ def step_error(system: System, work: Workspace, tolerance: float, weight: float)
     # acceleration shows an error of the position.
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
-    load = max(load, highest(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
+    load = max(load, row_maximum(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
     # Friction may decelerate a platform without any drive, so its own acceleration is a measure of the forces, too.
-    load = max(load, highest(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
+    load = max(load, row_maximum(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
     worst = 0.0

@@ -14,46 +14,47 @@ from reference.solver.rows import Number
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Friction laws (contact/friction.py)
+# Codes of friction laws (contact/friction.py)
 SET_VALUED, REGULARIZED, LUBRICATED, YIELDING = 0, 1, 2, 3
-# Conditions for rest: that of the friction cone, or (4.6) as printed in the paper
+# Codes of conditions for rest: that of the friction cone, or (4.6) as printed in the paper
 CONSISTENT, PRINTED = 0, 1
-# The integers below are numpy's: numba would compile a function once more for every literal that it is called with.
+# The integers below are NumPy's: numba would compile a function again for every literal that it is called with.
 PLATFORM = np.int64(0)  # index of the platform among the bodies
-# States of the contact
+# Codes of states of the contact
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING, ELASTIC, PLASTIC = cast(
     "tuple[int, ...]", tuple(map(np.int64, range(7)))
 )
-# Outcomes of the equations of one step, or of a whole run
+# Codes of outcomes of the equations of one step, or of a whole run
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
 
 class System(NamedTuple):
     """The paper's system in accelerations: link stiffness and damping over the mass of the body they act on."""
 
-    small: bool  # equations (4.3) instead of (3.9)
+    small: bool  # True for equations (4.3) instead of (3.9)
     law: int  # SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
     rest_condition: int  # CONSISTENT or PRINTED
-    friction: float  # mu at vanishing speed, or f_c in s/m of a lubricated contact: read by contact/friction.py alone
-    rise: float  # increase of mu from rest to high speed
-    rate: float  # s/m, rate of that increase with the speed; 0 where mu is constant
-    exponent: Any  # float, exponent n of N / W in mu (contact/load.py); None where mu has neither that nor heating
+    # Friction coefficient at vanishing speed, or f_c in s/m of a lubricated contact: read by contact/friction.py alone
+    friction: float
+    rise: float  # increase of the friction coefficient from rest to high speed
+    rate: float  # s/m, rate of that increase with the speed; 0 where the coefficient is constant
+    exponent: Any  # float, exponent n of N / W in mu (contact/load.py); None if mu depends on neither load nor heat
     stiffness: float  # 1/s^2, k / m1 of friction that yields (contact/yielding.py); infinite for any other
     v_reg: float  # m/s, speed below which friction is linear under the regularized law
-    mass_ratio: float  # m_sum / m1
-    radius: float  # m, rho
+    mass_ratio: float  # total mass m_sum over that of the platform, m1
+    radius: float  # m, pendulum radius rho
     travel: float  # m, largest displacement that the isolator permits; infinite without such a limit
     gravity: float  # m/s^2
-    below: Array  # (N, 2), k_{i,i-1} / m_i, zero for the platform
-    above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
-    damping_below: Array  # (N, 2), c_{i,i-1} / m_i, 1/s
-    damping_above: Array  # (N, 2), c_{i+1,i} / m_i, 1/s
-    amplitudes: Array  # (3, 2), m/s^2
-    exponents: Complex  # (2,), 1/s, s_i = -lambda_i + i nu_i of the harmonics
+    below: Array  # (N, 2), 1/s^2, stiffness of the link below over the mass, k_{i,i-1} / m_i; zero for the platform
+    above: Array  # (N, 2), 1/s^2, stiffness of the link above over the mass, k_{i+1,i} / m_i; zero for the last body
+    damping_below: Array  # (N, 2), 1/s, damping of the link below over the mass, c_{i,i-1} / m_i
+    damping_above: Array  # (N, 2), 1/s, damping of the link above over the mass, c_{i+1,i} / m_i
+    amplitudes: Array  # (3, 2), m/s^2, amplitudes of the two harmonics along x, y, z
+    exponents: Complex  # (2,), 1/s, exponents s_i = -lambda_i + i nu_i of the harmonics
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
-    heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) without
+    heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) if cold
     k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without heating
-    kinks: Array  # (J, 1) s, instants from which k_T changes like a root of time
+    kinks: Array  # (J, 1) s, instants from which the friction factor k_T changes like a root of time
     duration: float  # s
     axes: int  # 1 for a motion in the plane of x and z, where y stays exactly zero; otherwise 2
     fastest: float  # rad/s, upper bound on the chain's natural frequencies and rates of decay
@@ -112,7 +113,7 @@ class RunSettings(NamedTuple):
     damped_weight: float = 30.0  # factor of the error of a step that damps a vibration (docs/decisions/0002)
 
 
-def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
+def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
     """Return the scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
@@ -139,7 +140,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
-        # Gershgorin's bounds of the eigenvalues
+        # bounds of the eigenvalues by Gershgorin's circles
         fastest=float(np.sqrt(2.0 * (below + above).max() + shear)) + damping_rate,
         damping_rate=damping_rate,
     )
@@ -147,7 +148,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
 
 def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
     """Return the fields of the law of friction."""
-    # Without friction the lubricated law with f_c = 0 is the same, and has no corner.
+    # The lubricated law with f_c = 0 gives the same motion without friction, and has no corner.
     dry, mass = scene.dry_friction, scene.masses[0]
     smooth = dry.largest == 0.0
     heat = None if smooth else dry.heat
@@ -164,8 +165,8 @@ def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
     }
 
 
-def law_of(system: System) -> DryFriction:
-    """Return the law of dry friction of a system, cold."""
+def dry_friction_of(system: System) -> DryFriction:
+    """Return the law of dry friction of a system at k_T = 1."""
     return DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
 
 

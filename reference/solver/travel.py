@@ -1,4 +1,4 @@
-"""End of a motion in which the platform needs a larger displacement than the isolator permits."""
+"""End of a motion at the largest displacement that the isolator permits."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from math import inf
 from reference.solver.collocation import SEARCH_POINTS
 from reference.solver.compiled import compiled
 from reference.solver.peaks import IN_THE_PLANE, expand_position, largest_square, sum_of_squares
-from reference.solver.polynomial import expand, value_at
+from reference.solver.polynomial import evaluate_polynomial, set_coefficients
 from reference.solver.rows import row
 from reference.solver.system import REST, STOPPING, System
 from reference.solver.work import CLOCK, Workspace
 
-BISECTIONS = 50  # bisections that locate the displacement in a step, to rounding
+BISECTIONS = 50  # number of bisections that locate a displacement in a step to rounding
 
 
 @compiled
 def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return when the displacement passes the travel within the step just solved, s; infinity if it does not."""
+    """Return the instant when the displacement passes the travel in the step just solved, s; infinity if none."""
     if contact == REST or system.travel == inf:
         return inf
     for axis in range(2):
         if contact == STOPPING:
-            expand(row(work.positions, (0, axis)), work.powers[axis])
+            set_coefficients(row(work.positions, (0, axis)), work.powers[axis])
         else:
             expand_position(work, h, axis)
     limit = system.travel * system.travel
@@ -32,8 +32,8 @@ def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -
     theta = locate_displacement(work, limit, place)
     if contact != STOPPING:
         return work.time + h * theta
-    expand(row(work.turning, CLOCK), work.powers[2])
-    return value_at(work.powers[2], theta)
+    set_coefficients(row(work.turning, CLOCK), work.powers[2])
+    return evaluate_polynomial(work.powers[2], theta)
 
 
 @compiled

@@ -19,20 +19,20 @@ from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
 # Rows of Workspace.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
-POSITION, VELOCITY, DRIVE, REACTION, SPEED2, DETERMINANT = 0, 2, 4, 6, 7, 8
-# First rows of Workspace.slopes of the derivatives by px, vx, fx; two rows for each of x and y
+POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
+# First rows of Workspace.slopes with derivatives by position, velocity and drive; two rows for each of x and y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
-# Rows of Workspace.turning (near_stop.py)
+# Rows of Workspace.turning: direction, speed and time of a slide near its stop, and derivatives (near_stop.py)
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
 # Rows of Workspace.shear of friction that yields (contact/yielding.py), x and y. First what its motion depends on:
 # position, velocity, drive, friction force; then acceleration and rate of the force, each of which has four slopes in
-# Workspace.shear_slopes; at last the excess of the
-# square over that of the bound, the velocity along the force, m/s, and the bound
-ARGUMENTS, PUSHED, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
-MAX_PARTS = 3  # separate parts of one step that count for the peaks
-SERIES_TERMS = 32  # terms of the Taylor series of the ground's harmonics in a step: more than any step needs
+# Workspace.shear_slopes; at last the excess of the squared force over the squared bound, the velocity along the
+# force, m/s, and the bound
+ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
+MAX_PARTS = 3  # largest number of separate parts of one step that count for the peaks
+SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics in a step
 
 
 class _SystemType(ByReference):
@@ -63,7 +63,7 @@ class Workspace:
     total0: Array  # (N, 3) m/s^2, absolute accelerations
     angle: float  # rad, direction of a slide that begins or stops
     log_speed: float  # logarithm of the horizontal speed near a stop
-    log_ratio: float  # logarithm of the full speed over the horizontal one near a stop
+    log_ratio: float  # logarithm of full over horizontal speed near a stop
     squared_start_speed: float  # m^2/s^2, squared sliding speed
     # Proposal for the next step
     length: float  # s
@@ -71,7 +71,7 @@ class Workspace:
     fitting_length: float  # length with which the last step near a stop would have met the tolerance, in stretched time
     max_growth: float  # largest factor from one length to the next
     hold_time: float  # s, time for which the contact keeps rest or creep under any force; 0 if it need not
-    # Phase of the contact
+    # State of the contact in the present phase
     first_log_speed: float  # logarithm of the speed at which stretched time began
     early_rest: float  # s, time left of the slide when the phase of rest begins
     # Step that is being solved
@@ -89,7 +89,7 @@ class Workspace:
     stage: Array  # (9, L) state of the platform at the stages, in the rows above
     slopes: Array  # (12, L) derivatives of the platform's acceleration, in the rows above
     matrix: Array  # (2 S, 2, L) matrix of Newton's method, by columns (linear_solve.py)
-    residual: Array  # (2, L) its right side, then its correction
+    residual: Array  # (2, L) right side of its equations, then their correction
     turn_matrix: Array  # (S, 1, L) matrix of Newton's method for the directions near a stop
     pivots: Array  # (2 S,) row exchanges of the factorized matrix
     positions: Array  # (N, 2, L) m, positions of the bodies at the stages of a step near a stop
@@ -105,7 +105,7 @@ class Workspace:
     shear: Array  # (15, L) friction that yields at the stages, in the rows above
     shear_slopes: Array  # (9, 4, L) derivatives of acceleration and rate by every argument; before them both themselves
     shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method
-    shear_right: Array  # (4 S,) its right side, then its correction
+    shear_right: Array  # (4 S,) right side of its equations, then their correction
     shear_pivots: Array  # (4 S,) row exchanges of the factorized matrix
     # Last step
     last_length: float  # s; 0 where its polynomial is no guess for the next step
@@ -127,7 +127,7 @@ class Workspace:
 
 
 def _allocate_fields(work: Workspace, bodies: int) -> None:
-    """Set every field to zeros, for N = `bodies`."""
+    """Set every field to an array of zeros or to zero, for N = `bodies`."""
     n, s, c, length = bodies, STAGES, CHANNELS, ROW_LENGTH
     work.phase = np.zeros(2)
     work.x = np.zeros((n, 2))

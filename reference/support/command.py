@@ -172,6 +172,7 @@ def _write_details() -> str:
 
 
 def _print_line(line: str) -> None:
+    """Write one line to standard error, if anybody listens."""
     with suppress(Exception):  # nobody may be reading the terminal
         print(line, file=sys.stderr, flush=True)
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-COLORS = "cividis"  # readable alike with and without color vision deficiency, and in print
+COLOR_MAP = "cividis"  # readable alike with and without color vision deficiency, and in print
 MAX_TIME_POINTS = 20_000  # a drawn line has at most so many points
 
 
@@ -33,11 +33,11 @@ def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: st
     if axes.name == "3d":
         first, second = np.meshgrid(*grid, indexing="ij")
         ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # the colors of faces are means of their corners
-        image = axes.plot_surface(first, second, height, cmap=COLORS, rcount=200, ccount=200, linewidth=0.2, **ends)  # type: ignore[attr-defined]
+        image = axes.plot_surface(first, second, height, cmap=COLOR_MAP, rcount=200, ccount=200, linewidth=0.2, **ends)  # type: ignore[attr-defined]
         axes.set_zlabel(label)  # type: ignore[attr-defined]
         axes.figure.colorbar(image, ax=axes, label=label, shrink=0.6, pad=0.12)
     else:
-        image = axes.pcolormesh(*grid, height.T, cmap=COLORS, shading="nearest")
+        image = axes.pcolormesh(*grid, height.T, cmap=COLOR_MAP, shading="nearest")
         axes.figure.colorbar(image, ax=axes, label=label)
         axes.set_aspect("equal")
     pad = 10.0 if axes.name == "3d" else 4.0  # points: the tick labels of a surface are wide
@@ -90,6 +90,7 @@ def draw_motion(
 
 
 def _new_axes(projection: str | None) -> Axes:
+    """Return new axes of matplotlib with this projection."""
     import matplotlib.pyplot as plt  # matplotlib is loaded on first use
 
     axes: Axes = plt.figure(layout="constrained").add_subplot(projection=projection)

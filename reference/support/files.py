@@ -30,7 +30,7 @@ except ImportError:
 TEMPORARY_PREFIX = ".phase-resonance-"
 MARK_FILE = "staging.json"  # file in a staging directory that names the program and the path for which it was made
 CHUNK_BYTES = 2**20  # bytes read at once
-NEW = "new"  # directory in a staging directory for the files being written
+NEW_FILES_FOLDER = "new"  # directory in a staging directory for the files being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
@@ -113,7 +113,7 @@ def staging_directory(place: Path) -> Iterator[Path]:
     with hold_lock(folder, wait=False):
         try:
             write_atomically(folder / MARK_FILE, _content_of_mark(folder, place))
-            (folder / NEW).mkdir()
+            (folder / NEW_FILES_FOLDER).mkdir()
             yield folder
         finally:
             clear_staging(folder)
@@ -131,17 +131,19 @@ def find_abandoned_staging(place: Path) -> Iterator[Path]:
 
 def clear_staging(folder: Path) -> None:
     """Remove a staging directory of this program, without anything that somebody else has put into it."""
-    shutil.rmtree(folder / NEW, ignore_errors=True)
+    shutil.rmtree(folder / NEW_FILES_FOLDER, ignore_errors=True)
     _remove_file(folder / MARK_FILE)
     with suppress(OSError):
         folder.rmdir()
 
 
 def _content_of_mark(folder: Path, place: Path) -> bytes:
+    """Return the content of the mark in a staging directory of `place`."""
     return json.dumps({"what": "staging directory of phase-resonance", "name": folder.name, "for": place.name}).encode()
 
 
 def _is_marked(folder: Path, place: Path) -> bool:
+    """Return True if a directory has the mark of a staging directory of `place`."""
     try:
         return read_file(folder / MARK_FILE, CHUNK_BYTES) == _content_of_mark(folder, place)
     except OSError:

@@ -9,9 +9,8 @@ from typing import Any
 from reference.support.arguments import quote
 
 MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
-MIN_SPELLING_SIMILARITY = (
-    0.7  # spellings of one word share at least this ratio of their letters; words of other meanings share less
-)
+# Spellings of one word share at least this ratio of their letters; words of other meanings share less
+MIN_SPELLING_SIMILARITY = 0.7
 # Beginnings of rules about a missing key and a missing table
 IS_REQUIRED, IS_MISSING = "this key is required", "the table ["
 YIELDING_HINT = (
@@ -83,6 +82,7 @@ class SceneError(ValueError):
 
     @property
     def _sentence(self) -> str:
+        """Return key, value and rule as one sentence."""
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
         value = "" if absent else f" = {quote(self.value)}"
         return f"{one_line(self.key)}{value}: {self.rule}"

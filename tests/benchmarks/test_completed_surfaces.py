@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from comparison.runner.task import execute
+from comparison.runner.task import execute_task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch, import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
@@ -38,7 +38,7 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
     batches = study.batches()
     surfaces = label_surfaces(study, batches, [execute_batch(batch) for batch in batches])
     for task in analysis.tasks(study):
-        results.put(task, execute(task))
+        results.put(task, execute_task(task))
     listed = complete_surfaces(study, surfaces, scene, analysis.collect(study, surfaces, results))
     seconds = time.process_time() - begin
     held_out = choose_held_out(study, scene, model)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.evidence.tradeoff.outside import amplification_factors, integrate_motion
+from comparison.evidence.tradeoff.outside import compute_amplification_factors, integrate_motion
 from reference.solver.error_estimate import MAX_STEP_TOLERANCE, peaks_at, peaks_with_error
 from reference.surface import prepare_run
 
@@ -40,7 +40,7 @@ def test_the_reference_is_faster_than_scipys_lsoda_at_better_accuracy(their_tole
     def theirs(at):
         return np.array(
             [
-                amplification_factors(
+                compute_amplification_factors(
                     scene, each, *integrate_motion(scene, each, "LSODA", their_tolerance, V_REG), V_REG
                 )
                 for each in at

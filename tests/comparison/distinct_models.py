@@ -14,7 +14,7 @@ from fake_models import known_motions
 from numpy.typing import NDArray
 
 from comparison.analyses.motions.analysis import StoredMotion
-from comparison.study.models import MODEL_HIERARCHY, Model, no_scene
+from comparison.study.models import MODEL_HIERARCHY, Model, applies_to_no_scene
 from comparison.study.study import Study
 from reference.measures import Estimate
 from reference.measures.peak_demands import PER_BODY, QUANTITIES
@@ -126,7 +126,7 @@ def lacking_hierarchy() -> tuple[Model, ...]:
             amplification="distinct_models:lacking",
             refusal="distinct_models:why_lacking" if model.key == "translational" else None,
             settings={"key": model.key, **({"model": "spatial"} if model.key == "spatial" else {})},
-            symmetric=model.symmetric if model.key in ("small", "exact") else no_scene,
+            symmetric=model.symmetric if model.key in ("small", "exact") else applies_to_no_scene,
             most={"translational": GRID, "spatial": COARSE}.get(model.key),
             batch=4,
         )
@@ -189,7 +189,7 @@ def known_demand_surfaces(study: Study, surfaces: xr.Dataset) -> xr.Dataset:
 
 def distinct_hierarchy() -> tuple[Model, ...]:
     """The real hierarchy with these models, which leave no phase pair to a symmetry."""
-    every = {"amplification": "distinct_models:distinct", "symmetric": no_scene, "refusal": None}
+    every = {"amplification": "distinct_models:distinct", "symmetric": applies_to_no_scene, "refusal": None}
     return tuple(
         replace(model, **every, settings={"key": model.key}, most=MOST.get(model.key)) for model in MODEL_HIERARCHY
     )

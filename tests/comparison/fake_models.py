@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.analyses.motions.analysis import StoredMotion, choose_places, models_to_show
-from comparison.study.models import MODEL_HIERARCHY, Model, no_scene
+from comparison.study.models import MODEL_HIERARCHY, Model, applies_to_no_scene
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra
 from reference.measures.demand_reader import MOVING_AT_END
@@ -188,7 +188,7 @@ def planted(
 
 def errors_in(gaps: Mapping[str, float], error_estimates: Mapping[str, float] | None = None) -> tuple[Model, ...]:
     """The real hierarchy: the models named lie `gaps` above the others and state relative errors."""
-    every = {"amplification": "fake_models:planted", "symmetric": no_scene, "refusal": None}
+    every = {"amplification": "fake_models:planted", "symmetric": applies_to_no_scene, "refusal": None}
     models = []
     for model in MODEL_HIERARCHY:
         claimed = (error_estimates or {}).get(model.key, 1e-5)
@@ -214,7 +214,9 @@ def fake_hierarchy(engine: str = "smooth", gap: float = 0.01, batch: int = 4) ->
         functions |= {"refusal": "fake_models:never_refused"} if model.refusal else {}
         settings = {"gap": gap} if (model.side, name) == ("engine", "smooth") else {}
         most = MOST.get(model.key)
-        models.append(replace(model, **functions, settings=settings, batch=batch, symmetric=no_scene, most=most))
+        models.append(
+            replace(model, **functions, settings=settings, batch=batch, symmetric=applies_to_no_scene, most=most)
+        )
     return tuple(models)
 
 

@@ -10,7 +10,7 @@ from known_conditioning import known_curves
 
 import comparison.registry
 from comparison.evidence.claims.checks import StatementVerdict
-from comparison.evidence.claims.table import ClaimTable, table_of
+from comparison.evidence.claims.table import ClaimTable, make_claim_table
 from comparison.evidence.trends import fit_trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.runner import Runner
@@ -64,7 +64,9 @@ def known_claims() -> ClaimTable:
     """As integrated six statements are met and one is not compared; as literal supremum seven are met."""
     met, no = StatementVerdict(MET, "periodic 4 and 3"), StatementVerdict(NOT_MET, "|x_2 - y_2| up to 0")
     lacking = StatementVerdict(NOT_COMPARED, "fig3-I: rim reached")
-    return table_of({"as integrated": [met] * 6 + [no] * 9 + [lacking], "literal supremum": [met] * 7 + [no] * 9})
+    return make_claim_table(
+        {"as integrated": [met] * 6 + [no] * 9 + [lacking], "literal supremum": [met] * 7 + [no] * 9}
+    )
 
 
 def known_others() -> dict[str, Any]:

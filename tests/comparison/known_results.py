@@ -25,11 +25,11 @@ from comparison.evidence.extremes import matrix as extremes
 from comparison.evidence.extremes.columns import ModelColumn
 from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry
 from comparison.evidence.extremes.rows import ExtremeCase
-from comparison.evidence.extremes.scenes import scene
+from comparison.evidence.extremes.scenes import make_plain_scene
 from comparison.evidence.tradeoff import command as tradeoff
 from comparison.evidence.tradeoff import growth
-from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
 from comparison.evidence.tradeoff.trade import MeasuredSetting as Setting
+from comparison.evidence.tradeoff.trade import MeasuredTrade, SceneTrade, SolvedQuestion, mark_pareto_fronts
 from comparison.evidence.validation import table as validation
 from comparison.runner.output import publish_files
 from reference.problem import load_scene
@@ -37,7 +37,7 @@ from reference.problem.readings import AS_INTEGRATED
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
         "quick": True, "provenance": {"commit": "abc", "processor": "one"}}  # fmt: skip
-PLAIN = ExtremeCase("anything", "plain", scene(), ("fake",))
+PLAIN = ExtremeCase("anything", "plain", make_plain_scene(), ("fake",))
 FOUND = Matrix(
     {"small": "small equations", "spatial": "spatial engine"},
     [
@@ -95,22 +95,22 @@ def fake(model: str, finer: str = "") -> ModelColumn:
     return ModelColumn("fake", model, path, {}, 1e-3, ((f"extreme_models:{finer or model}", {}, 1e-5),))
 
 
-def known_trade(name: str) -> Trade:
+def known_trade(name: str) -> SceneTrade:
     """Two settings of one method, the second of which is dearer and worse."""
     scene, nothing = load_scene(name), (None, None)
     one = Setting("exact", "reference, one run", "tolerance inside a step", "", 1e-3, False, False, 3, 3, 0.002,
                 (1e-9, 2e-9), (3e-8, 4e-8), nothing, 0.1)  # fmt: skip
     entries = [one, replace(one, value=1e-2, seconds=0.003, most=(1e-3, 1e-3), error_message="<b>")]
-    question = Answered("exact", "exact equations", 3, "the reference", 1e-10, ["it agrees <with itself>"])
-    return Trade(scene.name, scene.title, scene.digest(), 2, [question], with_pareto_fronts(entries, 2), MADE)
+    question = SolvedQuestion("exact", "exact equations", 3, "the reference", 1e-10, ["it agrees <with itself>"])
+    return SceneTrade(scene.name, scene.title, scene.digest(), 2, [question], mark_pareto_fronts(entries, 2), MADE)
 
 
 def known_benchmarks() -> benchmarks.Benchmarks:
     """One number, which the engine does not answer."""
     numbers = {
-        "equations": benchmarks.Number(2.02423, 2e-8, "met"),
-        "smoothed": benchmarks.Number(2.02425, 3e-8, "met"),
-        "engine": benchmarks.Number(None, None, "not compared"),
+        "equations": benchmarks.SideNumber(2.02423, 2e-8, "met"),
+        "smoothed": benchmarks.SideNumber(2.02425, 3e-8, "met"),
+        "engine": benchmarks.SideNumber(None, None, "not compared"),
     }
     rows = [benchmarks.PublishedNumber("isolation period", "s", 2.0242, 5e-5, numbers)]
     about = "frame", "a <frame>", "a book", "links", 1e-4, "theirs is heated"
@@ -120,9 +120,9 @@ def known_benchmarks() -> benchmarks.Benchmarks:
 def known_growth() -> growth.MeasuredGrowth:
     """One series without a value."""
     series = [
-        growth.series_with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
-        growth.series_with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
-        growth.series_with_slope("workers", "", "equations", (1.0, 2.0), (2.0, 1.5)),
+        growth.make_cost_series("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
+        growth.make_cost_series("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
+        growth.make_cost_series("workers", "", "equations", (1.0, 2.0), (2.0, 1.5)),
     ]
     return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
 
@@ -163,7 +163,7 @@ def known_ensemble() -> ensemble.EnsembleResult:
 
 FILES: Mapping[str, bytes] = {
     extremes.FILE: extremes.STORED.as_json(FOUND),
-    benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
+    benchmarks.TABLE_FILE: benchmarks.STORED.as_json(known_benchmarks()),
     growth.FILE: growth.STORED.as_json(known_growth()),
     validation.STORED.name: validation.STORED.as_json(replace(validation.load_record(), facts=["a <fact>"])),
 }

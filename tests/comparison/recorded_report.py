@@ -36,7 +36,7 @@ import comparison.run
 from comparison.cli import reports, user_models
 from comparison.runner import progress
 from comparison.study import user_models as called
-from comparison.study.levels import StudyLevel, levels_of
+from comparison.study.levels import StudyLevel, make_levels
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
 HIDDEN = re.compile(r'<(script|style)\b.*?</\1>|<th scope="row">phase-resonance.*?</table>', re.DOTALL)
@@ -168,8 +168,10 @@ def recorded_lines(folder: Path) -> list[str]:
         known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED}
         known |= {"assumptions": known_assumptions(), "demands": known_demand_surfaces, **known_others()}
         analyses_are(patch, **known)
-        patch.setattr(reports, "PATIENCE", math.inf)  # no level before the last has a report, and no line tells the
-        patch.setattr(progress, "EVERY", math.inf)  # time left, however slow the machine
+        patch.setattr(
+            reports, "MIN_REPORT_INTERVAL", math.inf
+        )  # no level before the last has a report, and no line tells the
+        patch.setattr(progress, "LINE_INTERVAL", math.inf)  # time left, however slow the machine
         full = folder / "full" / "report"
         leave_beside(full, FILES, "fig3-I")
         (full.parent / "family.toml").write_text(scene_text().replace("friction = 0.1", FAMILY), encoding="utf-8")
@@ -182,8 +184,10 @@ def recorded_lines(folder: Path) -> list[str]:
         quick_figures(patch)
         analyses_are(patch, motions=distinct_motions)
         patch.setattr(user_models, "Workers", Here)
-        patch.setattr(called, "_processor_time", lambda: 0.0)
-        patch.setattr(comparison.run, "study_levels", lambda study: [Early(levels_of(study, {})[-1].study, 2, 3)])
+        patch.setattr(called, "_read_processor_time", lambda: 0.0)
+        patch.setattr(
+            comparison.run, "make_study_levels", lambda study: [Early(make_levels(study, {})[-1].study, 2, 3)]
+        )
         lacking = folder / "lacking" / "report"
         lacking.parent.mkdir()
         for name, text in {"limited": scene_text().split("[acceptance]")[0] + LIMITS, "flat": FLAT}.items():

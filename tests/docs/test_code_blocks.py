@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from pages import PAGES, ROOT, Block, blocks
 
-from comparison.cli.start import commands
+from comparison.cli.start import list_commands
 
 FILE = re.compile(r"# ([\w./-]+\.[a-z]+)\n")
 COMMENTS = ("long", "with ", "not run: ")
 WITH_CODE = [page for page in PAGES if blocks(page)]
-MODULES = {f"phase-resonance {name}": command.module for name, command in commands().items()}
+MODULES = {f"phase-resonance {name}": command.module for name, command in list_commands().items()}
 MODULES["python -m comparison.run"] = "comparison.run"
 MODULES["python -m multibody.animate"] = "multibody.animate"
 

@@ -64,8 +64,10 @@ def test_a_passage_is_that_of_its_name_and_the_rest_of_the_page_stays() -> None:
 
 
 def test_the_table_of_answers_has_the_cells_of_the_first_screen(monkeypatch: pytest.MonkeyPatch) -> None:
-    cells = {name: (lambda line, name=name: f"{name} of {line.name}") for name in vars(default_study.CELLS)}
-    monkeypatch.setattr(default_study, "CELLS", type("Cells", (), {name: staticmethod(f) for name, f in cells.items()}))
+    cells = {name: (lambda line, name=name: f"{name} of {line.name}") for name in vars(default_study.CELL_WORDINGS)}
+    monkeypatch.setattr(
+        default_study, "CELL_WORDINGS", type("Cells", (), {name: staticmethod(f) for name, f in cells.items()})
+    )
     line = type("Line", (), {"scene": "tower", "name": "body 2"})
     monkeypatch.setattr(default_study, "headlines", lambda known: [line])
     head, _, row = PASSAGES["answers"](KNOWN).splitlines()

@@ -303,7 +303,7 @@ MISTAKES = (
     Mistake(INTEGRATION + "step_control.py", "(bent & (size[rows] > CANDIDATE_FRACTION * largest)).any(axis=1)",
             "(bent & (size[rows] > CANDIDATE_FRACTION * largest)).all(axis=1)", "Kinks count only where all bodies are near their peaks.",
             (PEAK + "test_a_step_behind_a_kink_is_short_where_a_body_is_near_its_peak_and_a_contact_creeps",)),
-    Mistake("multibody/integration/refine.py", "LEAST_LEVELS_OF_SPRINGS = 3", "LEAST_LEVELS_OF_SPRINGS = 2",
+    Mistake("multibody/integration/refine.py", "MIN_LEVELS_OF_YIELDING = 3", "MIN_LEVELS_OF_YIELDING = 2",
             "Two levels that agree by chance show the error of friction that yields.",
             (YIELDING + "test_two_levels_that_agree_show_no_error",)),
 )

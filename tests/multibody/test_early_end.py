@@ -133,7 +133,7 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize(
-    "changes", [{}, {"peak": 1.61}, {"max_displacement": 0.41}, {"opened": True}, {"min_load": 0.19}], ids=str
+    "changes", [{}, {"peak": 1.61}, {"max_displacement": 0.41}, {"has_opened": True}, {"min_load": 0.19}], ids=str
 )
 def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> None:
     """Beyond 0.8 of a largest value, or with less than 0.2 of the weight on the contact."""

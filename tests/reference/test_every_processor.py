@@ -21,7 +21,7 @@ CONSTANTS = """
 from reference.solver import chain, collocation
 names = "NODES A A2 AT_START MONOMIALS EIGENVALUES TO_CHANNELS FROM_CHANNELS".split()
 result = [getattr(collocation, name).tobytes().hex() for name in names]
-names = "ONES_IN_CHANNELS NODES_IN_CHANNELS THROUGH_REAL THROUGH_IMAGINARY".split()
+names = "ONES_IN_CHANNELS NODES_IN_CHANNELS CHANNEL_RESPONSES_REAL CHANNEL_RESPONSES_IMAGINARY".split()
 result += [getattr(chain, name).tobytes().hex() for name in names]
 """
 FACTORS = """

@@ -17,42 +17,42 @@ from comparison.analyses.assumptions.statements import (
     describe_verdict,
     largest_change,
 )
-from comparison.analyses.assumptions.trials import CLOSE_ENOUGH, DURATION
+from comparison.analyses.assumptions.trials import DURATION, SUFFICIENT_ERROR
 from comparison.analyses.assumptions.validity import MORE_PHASES, MORE_SIZES, Assumptions, Validity
 from comparison.analyses.assumptions.variations import DIRECTED, MANY, Variation
-from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, number_of_jobs
+from comparison.cli.arguments import STORED_RESULTS_HELP, CommandParser, command, read_number_of_jobs
 from comparison.cli.computing import compute_tasks
-from comparison.cli.terminal import new_table
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.cli.terminal import make_table
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
-ENGINE = "multibody:amplification"  # what the workers ask
+ENGINE = "multibody:amplification"  # function that the workers call
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
-    """Vary the scenes the command line names and print what that does; the exit code."""
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
+    """Vary the scenes of the command line and print the changes of mu; return the exit code."""
     parser = CommandParser(
         "assumptions",
         "How far mu_i of the spatial model is from the translational one, over rings, heights, ovals, offsets, angles.",
     )
     parser.add_scenes("the paper's")
-    parser.add_out(STORED_RESULTS)
+    parser.add_out(STORED_RESULTS_HELP)
     parser.add_computing()
     options = parser.parse_args(argv)
-    number_of_jobs(options)  # refused before anything else is looked at
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
     names = options.scenes or builtin_scenes()
     scenes = [_load_spatial_scene(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
-    console = wide_console()
+    console = make_wide_console()
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
     about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")
     assumptions = Assumptions(MANY, MORE_PHASES, MORE_SIZES, tuple((key,) for key in DIRECTED))
-    study = Study(tuple(scenes), 1, CLOSE_ENOUGH)
+    study = Study(tuple(scenes), 1, SUFFICIENT_ERROR)
     results = compute_tasks("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
     found = assumptions.collect(study, None, results)
     assert found is not None, "every scene has both models of the engine"
@@ -77,7 +77,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
     cells = [cell for cell in found.cells if cell.scene == scene.name]
     about = f"largest change of mu_i, {found.reading}, against the translational model, per body"
     console.print(f"{scene.title} ({scene.name}): {about}")
-    table = new_table("ring, m", "heights x", "supports", "uneven", "change, %", "u_D, %", "outcomes")
+    table = make_table("ring, m", "heights x", "supports", "uneven", "change, %", "u_D, %", "outcomes")
     bodies, radius = range(1, len(scene.bodies) + 1), scene.support_radius or 0.0
     for cell in cells:
         each = cell.variation

@@ -10,11 +10,11 @@ from comparison.analyses.assumptions.statements import (
     largest_change,
     range_cell,
 )
-from comparison.analyses.assumptions.trials import WITHIN
+from comparison.analyses.assumptions.trials import CHANGE_LIMITS
 from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
 from comparison.analyses.assumptions.variations import Axis
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import Panel, json_numbers, make_panel
+from comparison.report.panels import Panel, make_panel, replace_nan
 from comparison.report.results import Results
 from comparison.report.section import Report, Section
 from reference.problem import Scene
@@ -26,7 +26,9 @@ AXES: dict[Axis, str] = {
     "offset": "offset of bodies in the worst direction, m",
     "yaw": "angle of bodies and links in the worse sense, rad",
 }
-BANDS = [{"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in WITHIN]
+BANDS = [
+    {"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in CHANGE_LIMITS
+]
 
 
 def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
@@ -40,7 +42,7 @@ def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
         for body in range(1, len(scene.bodies) + 1):
             changes = [largest_change(found, cell, body) for _, cell in line]
             low, middle, high = (
-                json_numbers([100.0 * (change.size + side * change.error) for change in changes])
+                replace_nan([100.0 * (change.size + side * change.error) for change in changes])
                 for side in (-1.0, 0.0, 1.0)
             )
             bars = {"x": places, "y": middle, "low": low, "high": high, "color": body - 1, "marks": True}
@@ -56,7 +58,7 @@ FOUND = ResultField(Assumptions.key, Validity, "how far the paper's assumptions 
 
 def section_context(report: Report) -> Mapping[str, Any]:
     """Return what the template reads, for every scene whose assumptions were tried."""
-    found = FOUND.of(report.results)
+    found = FOUND.read_from(report.results)
     shown = []
     for scene in report.study.scenes:
         if any(cell.scene == scene.name for cell in found.cells):
@@ -70,12 +72,12 @@ def section_context(report: Report) -> Mapping[str, Any]:
                     "directions": tried,
                 }
             )
-    return {"assumption_scenes": shown, "range_cell": range_cell, "within": WITHIN}
+    return {"assumption_scenes": shown, "range_cell": range_cell, "within": CHANGE_LIMITS}
 
 
 def assumption_verdict(results: Results) -> str:
     """Return the line next to the title of the section."""
-    return describe_verdict(FOUND.of(results))
+    return describe_verdict(FOUND.read_from(results))
 
 
 FEATURE = Feature(

@@ -7,17 +7,17 @@ from typing import Literal
 
 import numpy as np
 
-from comparison.analyses.assumptions.trials import WITHIN, DirectionTrial
+from comparison.analyses.assumptions.trials import CHANGE_LIMITS, DirectionTrial
 from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, line_of
 from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UNDER_LOAD, Axis, Variation
-from comparison.wording import difference_with_error, percent
+from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
 NO_EFFECT = "no effect by symmetry"
 Base = Literal["the translational model", "the stated spatial model"]
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
-SHARE = WITHIN[0]  # change of mu_i: a larger change shows an assumption false
+SHARE = CHANGE_LIMITS[0]  # change of mu_i: a larger change shows an assumption false
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def describe_change(change: Change) -> str:
     if not math.isfinite(change.size):
         return f"mu_{change.body}: not compared, a phase pair has no value"
     first, second = change.phases
-    size = difference_with_error(change.size, change.error)
+    size = word_difference(change.size, change.error)
     return (
         f"mu_{change.body} ({change.reading}) changes by {size} against {change.base}, at ({first:g}, {second:g}) rad"
     )
@@ -139,7 +139,7 @@ def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
     changes = (
-        f"mu_{body} {difference_with_error(size, error)}"
+        f"mu_{body} {word_difference(size, error)}"
         for body, (size, error) in enumerate(zip(trial.change, trial.uncertainty), start=1)
     )
     return f"{what}: {', '.join(changes)}{' (the worst)' if trial.worst else ''}"
@@ -200,7 +200,7 @@ def describe_verdict(found: Validity) -> str:
         worst = max(changes, key=lambda change: np.nan_to_num(abs(change.size) + change.error, nan=np.inf))
         reason = NO_EFFECT if worst.no_effect else "no value"
         if math.isfinite(worst.size) and not worst.no_effect:
-            reason = f"mu_{worst.body} {difference_with_error(worst.size, worst.error)}"
+            reason = f"mu_{worst.body} {word_difference(worst.size, worst.error)}"
         parts.append(f"{scene} {worst.verdict}: {reason}")
     about = f"Bodies that turn leave mu_i ({found.reading}) within {percent(SHARE)} of {TRANSLATIONAL}"
     return f"{about}: {'; '.join(parts)}." if parts else ""

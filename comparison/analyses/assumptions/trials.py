@@ -26,17 +26,18 @@ from comparison.study.models import Model
 from reference.problem import Scene, SceneError
 from reference.problem.reductions import body_cannot_tilt
 
-DURATION = 6.0  # s: the loading is strongest in its first seconds
-WITHIN = (0.01, 0.05)  # limits on the change of mu_i
-CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
-DIRECTION_PHASES = ((2.0, 0.7),)  # rad: directions are told apart at one phase pair
-DIRECTION_V_REG = 1e-2  # m/s: ten times that of the study, at a third of its cost; which direction is worst is the same
-CLOSE = 1.25  # ratio of the first size that fails to the last that holds: between closer ones none is tried
+DURATION = 6.0  # s, duration of motion: the loading is strongest in its first seconds
+CHANGE_LIMITS = (0.01, 0.05)  # limits on the relative change of mu_i within which an assumption holds
+SUFFICIENT_ERROR = 0.2 * CHANGE_LIMITS[0]  # relative error of mu_i that suffices to compare it with these limits
+DIRECTION_PHASES = ((2.0, 0.7),)  # rad, phase pair at which the directions are compared
+DIRECTION_V_REG = 1e-2  # m/s, ten times that of the study at a third of its cost: the worst direction is the same
+# The search stops when the smallest failing size is within this factor of the largest passing one.
+BISECTION_RATIO = 1.25
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A variation, None for the translational model: mu (M, N), errors, statuses and cost, s."""
+    """Values of one variation, or with None of the translational model: mu (M, N), errors, statuses and cost, s."""
 
     variation: Variation | None
     mu: Array
@@ -72,19 +73,20 @@ class TaskTrials:
     error_message: str = ""
 
 
-# scene, translational and spatial model, what is tried, relative tolerance, phase pairs, number of sizes along an axis
+# arguments of a task: scene, both models, what is tried, relative tolerance, phase pairs, number of sizes along an axis
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
-    """Try one variation, or sizes of some axes in their worst directions. Runs inside a worker process."""
+    """Return the trials of a variation, or of sizes along the worst directions. Runs inside a worker process."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
     short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # found again by name
     pairs = np.array(phases)
     if what is None:
         return TaskTrials((amplification_of(short, translational, None, tolerance, pairs),))
     if isinstance(what, Variation):
-        checked = pairs[:1] if blind_by_symmetry(short, what) else pairs  # one pair controls what symmetry says
+        # One phase pair verifies that symmetry leaves mu unchanged.
+        checked = pairs[:1] if blind_by_symmetry(short, what) else pairs
         return TaskTrials((amplification_of(short, spatial, what, tolerance, checked),))
     plain = amplification_of(short, translational, None, tolerance, pairs)
     directions = find_worst_directions(short, spatial, what)
@@ -101,7 +103,7 @@ def amplification_of(
 ) -> Trial:
     """Return mu of a model for a variation of a scene."""
     varied = scene if variation is None else variation.of(scene)
-    whole = {"full": True} if body_cannot_tilt(varied) else {}  # a check of assumption (vi) must not make use of it
+    whole = {"full": True} if body_cannot_tilt(varied) else {}  # A check of assumption (vi) must not make use of it.
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
@@ -109,11 +111,11 @@ def amplification_of(
 
 def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
     """
-    Try one size of every axis in every direction; the worst is that of the largest change of any body.
+    Return a trial of every direction of each axis; the worst has the largest change of any body.
 
     A direction that symmetry makes blind is listed and not computed.
     """
-    ask = partial(amplification_of, scene, spatial, tolerance=CLOSE_ENOUGH, phases=np.array(DIRECTION_PHASES),
+    ask = partial(amplification_of, scene, spatial, tolerance=SUFFICIENT_ERROR, phases=np.array(DIRECTION_PHASES),
                   regularization=DIRECTION_V_REG)  # fmt: skip
     stated, found = None, []
     for key in keys:
@@ -137,7 +139,7 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
 def follow_direction(
     scene: Scene, spatial: Model, key: Axis, worst: Variation, plain: Trial, tolerance: float, phases: Array, sizes: int
 ) -> Iterator[Trial]:
-    """Try sizes in one direction: after the first where a limit is still wide."""
+    """Yield trials of sizes in one direction until the limits are located."""
     tried: list[tuple[float, Array]] = []
     size: float | None = FIRST_SIZE[key]
     while size is not None and len(tried) < sizes:
@@ -147,7 +149,7 @@ def follow_direction(
         except SceneError:
             if not tried:
                 raise
-            return  # the scene can be no more uneven: a support would carry nothing
+            return  # At a larger size a support would carry nothing.
         change, uncertainty = name_change(trial, plain)
         tried.append((size, (np.abs(change) + uncertainty).max(axis=0)))
         yield trial
@@ -156,19 +158,19 @@ def follow_direction(
 
 def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
     """
-    Return the size that is tried next: smaller while one limit is not reached, then between, then larger; None if none.
+    Return the next size to try: smaller until a limit is met, then between, then larger; None at the end.
 
     tried: sizes, each with the largest change of mu of every body, uncertainty included, NaN for no value.
     """
     between, smaller, larger = [], [], []
-    for body, share in product(range(len(tried[0][1])), WITHIN):
+    for body, share in product(range(len(tried[0][1])), CHANGE_LIMITS):
         fails = min((size for size, change in tried if not change[body] <= share), default=math.inf)
         holds = max((size for size, change in tried if change[body] <= share and size < fails), default=0.0)
         if fails == math.inf:
             larger.append(min(2.0 * holds, largest))
         elif holds == 0.0:
             smaller.append(0.5 * fails)
-        elif fails > CLOSE * holds:
+        elif fails > BISECTION_RATIO * holds:
             between.append((fails / holds, math.sqrt(fails * holds)))
     if smaller and max(smaller) >= smallest:
         return max(smaller)
@@ -184,7 +186,7 @@ def name_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
 
 
 def without_answer(task: Arguments, failed: TaskResult) -> TaskTrials:
-    """Return a trial without values that says why."""
+    """Return a trial without values, with the reason."""
     scene, _, what, _, phases, _ = task
     tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
     nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)

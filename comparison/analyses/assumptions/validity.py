@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from comparison.analyses.assumptions.trials import (
-    CLOSE_ENOUGH,
+    CHANGE_LIMITS,
     DURATION,
-    WITHIN,
+    SUFFICIENT_ERROR,
     Arguments,
     DirectionTrial,
     TaskTrials,
@@ -36,9 +36,10 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
-PHASES = ((0.0, 0.0), (2.0, 0.7))  # rad; the first is where turning tells most in fig3-I, the second in fig3-II
-MORE_PHASES = (*PHASES, (0.3, 1.1))  # phase pairs of the command
-SIZES, MORE_SIZES = 2, 8  # along the worst direction of one assumption: of a study, of the command
+# rad; rotation changes mu most at the first phase pair in fig3-I, at the second in fig3-II
+PHASES = ((0.0, 0.0), (2.0, 0.7))
+MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command
+SIZES, MORE_SIZES = 2, 8  # number of sizes along the worst direction of an assumption: in a study, in the command
 
 
 @result
@@ -56,11 +57,11 @@ class AssumptionCell:
     """why symmetry leaves the variation without effect: computed at the first phase pair as a control, no evidence"""
 
     def largest(self, body: int) -> float:
-        """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
+        """Return the largest |change| of mu_i over the phase pairs; NaN if one has no value."""
         return float(np.abs([row[body - 1] for row in self.change]).max())
 
     def error_estimate(self, body: int) -> float:
-        """Largest uncertainty of mu_i over the phase pairs; NaN if one has no value."""
+        """Return the largest uncertainty of mu_i over the phase pairs; NaN if one has no value."""
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:
@@ -106,7 +107,7 @@ def find_validity_ranges(
         unit = scene.support_radius or float("nan") if key in ("ring", "offset") else 1.0
         telling = [(value * unit, cell) for value, cell in line if key in DIRECTED or not cell.no_effect]
         direction = direction_of(tried[0].variation, key) if tried and not reason else None
-        for body, share in itertools.product(bodies, WITHIN):
+        for body, share in itertools.product(bodies, CHANGE_LIMITS):
             holds, fails = (None, None) if reason else _bracket_share(telling, body, share)
             found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason))
     return found
@@ -128,7 +129,7 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
 
 
 def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
-    """The last value up to which all hold, and the first that does not; None without."""
+    """Return the last size up to which all hold, and the first that does not; None without."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     return next(reversed(held), None), next((value for value, _ in line[len(held) :]), None)
 
@@ -218,7 +219,7 @@ class Validity:
 
 @dataclass(frozen=True)
 class Assumptions(MappedAnalysis[Validity]):
-    """Evidence on the assumptions in the scenes of a study: a few variations, or as many as a command asks for."""
+    """Analysis of the assumptions in the scenes of a study: a few variations, or as many as a command asks for."""
 
     key, stage, needs_compiled_reference = "assumptions", "assumptions", False
     function, without_value = staticmethod(answer_trials), staticmethod(without_answer)
@@ -242,7 +243,7 @@ class Assumptions(MappedAnalysis[Validity]):
             loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
             directed = [tuple(key for key in keys if key == "oval" or len(scene.bodies) > 1) for keys in self.directed]
             translational, spatial = engines
-            tolerance = max(spatial.tolerance(study.tolerance), CLOSE_ENOUGH)
+            tolerance = max(spatial.tolerance(study.tolerance), SUFFICIENT_ERROR)
             for what in (None, *self.variations, *loaded, *filter(None, directed)):
                 yield scene, (translational, spatial), what, tolerance, self.phases, self.sizes
 
@@ -252,7 +253,7 @@ class Assumptions(MappedAnalysis[Validity]):
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)
         for (scene, _, what, *_), answer in zip(self.task_arguments(study), answers):
-            if what is None:  # before the variations of its scene
+            if what is None:  # This task comes before the variations of its scene.
                 (plain,) = answer.trials
                 continue
             cells += [_make_cell(scene, trial, plain) for trial in answer.trials]

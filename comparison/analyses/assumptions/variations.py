@@ -1,4 +1,4 @@
-"""What is varied to try the paper's assumptions, in which directions, and where symmetry makes a trial blind."""
+"""Variations that test the paper's assumptions, their directions, and cases in which symmetry hides the effect."""
 
 import itertools
 import math
@@ -16,14 +16,14 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-ROUNDING = 1e-9  # share of the radius of the ring, or of a right angle: what is that close is in the plane
+ROUNDING = 1e-9  # share of the ring's radius, or of a right angle, within which something lies in the plane
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
 ONE_PLANE = "loading and bodies are their own mirror images about the plane of the motion: nothing turns out of it"
 
 
 @result
 class Variation:
-    """The scene with another ring of supports and other heights, uneven, or on loaded bars."""
+    """Change of a scene: another ring of supports, other heights, unevenness, or loaded bars."""
 
     ring: Annotated[float, "radius of the ring, as a multiple of the stated one"] = 1.0
     height: Annotated[float, "heights of the bodies, as multiples of the stated ones"] = 1.0
@@ -64,23 +64,23 @@ FEW = (
 )
 MANY = (
     *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
-    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
+    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring the scenes would overturn.
     Variation(supports=3),
 )
-UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # variations of scenes whose bars give way
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # variations of scenes with compliant bars
 
 Axis = Literal["ring", "height", "oval", "offset", "yaw"]
-DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # tried in several directions first
+DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # variations that are first tried in several directions
 FIRST_SIZE = {
-    "oval": 0.5,  # share of the radius of the ring
-    "offset": 0.1,  # share of the radius of the ring, a twentieth of the width: what codes take for accidental
+    "oval": 0.5,  # share of the ring's radius
+    "offset": 0.1,  # share of the ring's radius, a twentieth of the width: codes assume it as accidental
     "yaw": 0.2,  # rad
 }
-# Smallest size that is tried of each variation, even where no assumption holds there
+# Smallest size tried of each variation, even if no assumption holds there
 SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}
-# Largest size of each: beyond it the building is another one, or supports lift off
+# Largest size tried of each variation: beyond it the building is another one, or supports lift off
 LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}
-DIRECTIONS = 4  # directions in half a turn, no two of which a symmetry of the scene makes equivalent
+DIRECTIONS = 4  # number of directions in half a turn, no two of which a symmetry of the scene makes equivalent
 
 
 def with_size(variation: Variation, key: Axis, size: float) -> Variation:
@@ -91,7 +91,7 @@ def with_size(variation: Variation, key: Axis, size: float) -> Variation:
 
 def trials_of(scene: Scene, key: Axis) -> list[Variation]:
     """
-    Variations of one assumption in directions that the scene's symmetries leave different, of which one is the worst.
+    Return the variations of one assumption in all directions that the scene's symmetries leave different.
 
     An offset has a full turn of directions and an oval half a one. A half turn of the loading makes opposite offsets
     equivalent, mirror images about both axes or about the plane of the motion make a quarter of a turn enough. An angle
@@ -101,7 +101,7 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
     if key == "yaw":
         return [Variation(yaw=part * size) for part in (1.0, -1.0, 0.5, -0.5)]
     plane = plane_of_symmetry(scene)
-    if plane is not None:  # an offset along the plane is blind
+    if plane is not None:  # An offset along the plane has no effect by symmetry.
         start, turn, count = plane, math.pi / 2.0, DIRECTIONS + 1
     elif has_one_axis_per_harmonic(scene) and is_mirror_symmetric(scene):
         start, turn, count = 0.0, math.pi / 2.0, DIRECTIONS
@@ -117,11 +117,11 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
 def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
     """Return why symmetry leaves mu of the spatial model as that of the translational one; "" where it does not."""
     if variation.bars is not None or any(link is not None for link in scene.bar_links):
-        return ""  # bars that bend tilt what stands on them, in a plane as well
+        return ""  # Bars that bend tilt what stands on them, even in a plane.
     if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):
         return TURNED_LINK
     if scene.isolator.support_stiffness is not None or scene.dry_friction.depends_on_load:
-        return ""  # unequal loads of the supports tilt the platform, or change the friction
+        return ""  # Unequal loads of the supports tilt the platform or change the friction.
     return "" if plane_of_symmetry(variation.of(scene)) is None else ONE_PLANE
 
 

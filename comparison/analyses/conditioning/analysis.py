@@ -33,19 +33,20 @@ from comparison.study.models import (
 )
 from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study, nested_grids
-from comparison.surfaces.sampling import sampling_error
+from comparison.surfaces.sampling import estimate_sampling_error
 from reference.problem import Outcome, Scene, phase_grid
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 from reference.problem.symmetry import distinct_pairs
 
-MAX_GRID = 16  # phases per axis of the small equations
-SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
-REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # v_reg, m/s
-YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # yield displacements beside the scene's own, m
-MAX_YIELDING_GRID = 8  # phases per axis of the exact equations of friction that yields
-OTHER_DAMPING = 0.05  # ratio of critical of all links, where a scene has another; 0 where it has that
-FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no two related by a symmetry
-FEW_PERIODS = 3.0  # periods of the slower harmonic: the loading is strongest in them
+MAX_GRID = 16  # largest number of phases per axis for the small equations
+SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # m/s, values of v_c
+REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, values of v_reg
+YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
+MAX_YIELDING_GRID = 8  # largest number of phases per axis for the exact equations with friction that yields
+OTHER_DAMPING = 0.05  # second damping ratio of all links, or 0 where the scene has this one
+# rad, phase pairs of the engine: no two related by a symmetry
+ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
+ENGINE_PERIODS = 3.0  # duration in periods of the slower harmonic: the loading is strongest in them
 
 
 @result
@@ -98,7 +99,7 @@ class Question(NamedTuple):
     """
 
     model: str
-    base: Mapping[str, Any]  # settings of the equations whose literal supremum the curve is relative to
+    base: Mapping[str, Any]  # settings of the equations whose literal supremum is the curve's reference
     side: ModuleType
     settings: Mapping[str, Any]
     argument: Literal["cutoff", "regularization", "yield_displacement"]
@@ -149,7 +150,7 @@ SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
     "yield_displacement": "u_y",
 }
 
-Arguments = tuple[Scene, int, int]  # number of the question, phases per axis; 0 for FEW
+Arguments = tuple[Scene, int, int]  # scene, number of the question, phases per axis; 0 for ENGINE_PHASES
 
 
 class _Answers(NamedTuple):
@@ -181,10 +182,10 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return the curves of every body for one question; with set-valued friction the literal supremum, too."""
+    """Return the curves of every body for one question, with the literal supremum for set-valued friction."""
     scene, number, grid = task
     question = QUESTIONS[number]
-    speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, FEW_PERIODS)
+    speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
     damping = question.damping_of(scene)
     if damping is not None:
         links = {f"bodies.{number}.damping": damping for number in range(1, len(scene.bodies))}
@@ -199,7 +200,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
     """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
-    phases, taken = distinct_pairs(moving, grid) if grid else (FEW, np.arange(len(FEW)))
+    phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
     mu, error = (np.stack([getattr(each, part) for each in listed]) for part in ("mu", "error"))
@@ -210,7 +211,7 @@ def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], g
     places = taken.ravel()
     return _Answers(
         mu[:, places], error[:, places], supremum.mu[places], supremum.error[places],
-        phase_grid(grid) if grid else FEW, int(complete.sum()),
+        phase_grid(grid) if grid else ENGINE_PHASES, int(complete.sum()),
         next((status for status in statuses if not status.startswith(Outcome.OK)), ""),
     )  # fmt: skip
 
@@ -235,7 +236,7 @@ def _statistics_at_speed(
     if not known.any():
         return _SpeedStatistics()
     place = int(np.nanargmax(mu))
-    sampling = sampling_error(over_supremum.reshape(grid, grid), answers.independent) if grid else 0.0
+    sampling = estimate_sampling_error(over_supremum.reshape(grid, grid), answers.independent) if grid else 0.0
     alpha1, alpha2 = answers.phases[place].tolist()
     return _SpeedStatistics(
         mean=float(mu[known].mean()),
@@ -269,7 +270,7 @@ def _fill_curve(
         speed=SYMBOLS[question.argument],
         grid=grid,
         pairs=pairs,
-        duration=(scene if grid else shorten_scene(scene, FEW_PERIODS)).duration,
+        duration=(scene if grid else shorten_scene(scene, ENGINE_PERIODS)).duration,
         v=speeds,
         base=question.base["equations"],
         reason=reason,
@@ -286,7 +287,7 @@ def _grid_of(study: Study, question: Question) -> int:
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Every question of every scene with phases and dry friction, rigid or not."""
+    """Analysis of every conditioning question in every scene with phases and dry friction."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0

@@ -6,7 +6,7 @@ from typing import Any
 from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, ConditioningCurve
 from comparison.analyses.conditioning.statement import conditioning_line, name_damping, speed_text, yielding_line
 from comparison.report.feature import Feature, ResultField
-from comparison.report.panels import Panel, json_numbers, make_panel
+from comparison.report.panels import Panel, make_panel, replace_nan
 from comparison.report.section import Report, Section
 from comparison.wording import scientific, signed, significant
 from reference.problem.readings import LITERAL_SUPREMUM
@@ -59,7 +59,7 @@ def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
     ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]
     for curve in curves:
         for number, quantity in enumerate(("mean", "largest")):
-            values, color = json_numbers(getattr(curve, quantity)), 2 * dampings.index(curve.damping) + number
+            values, color = replace_nan(getattr(curve, quantity)), 2 * dampings.index(curve.damping) + number
             name = f"{quantity}, {name_damping(curve)}"
             if curve.reading == LITERAL_SUPREMUM:
                 name = f"{name}, rigid, {LITERAL_SUPREMUM}"
@@ -73,7 +73,7 @@ def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
 
 def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) -> dict[str, Any]:
     """One curve over the speeds; the literal supremum, which has none, as a broken level line."""
-    values = json_numbers(getattr(curve, quantity))
+    values = replace_nan(getattr(curve, quantity))
     named = {"name": f"{name}, {_name_reading(curve)}", "color": color}
     if curve.reading == LITERAL_SUPREMUM:
         return {**named, "x": [SPEEDS[-1], SPEEDS[0]], "y": values * 2, "dash": "5 3"}
@@ -130,7 +130,7 @@ FOUND = ResultField(
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
-    curves = FOUND.of(report.results)
+    curves = FOUND.read_from(report.results)
     return {
         "conditioning_panels": conditioning_panels(curves),
         "conditioning_tables": conditioning_tables(curves),
@@ -145,6 +145,8 @@ FEATURE = Feature(
         "Conditioning of the literal supremum",
         "phase-resonance run makes it, of scenes with phases and dry friction",
         _section_context,
-        lead=lambda results: f"{conditioning_line(FOUND.of(results))} {yielding_line(FOUND.of(results))}".strip(),
+        lead=lambda results: (
+            f"{conditioning_line(FOUND.read_from(results))} {yielding_line(FOUND.read_from(results))}".strip()
+        ),
     ),
 )

@@ -4,12 +4,13 @@ import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
-from comparison.wording import difference_with_error
+from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
-DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
-ILL = 1e-3  # change of mu below DEEP: more than the engine's tolerance
-IN_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}
+# m/s, speeds below which no instrument, and no computation, resolves sliding
+LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
+ILL_CONDITIONED_CHANGE = 1e-3  # change of mu below LOW_V_C that exceeds the engine's tolerance
+MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}
 
 
 def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
@@ -22,18 +23,18 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _reaches_deepest_speed(curve)]
     if not found:
         return ""
-    curve = max(found, key=lambda each: abs(_relative_mean_at(each, DEEP)[0]))
-    size, error = _relative_mean_at(curve, DEEP)
+    curve = max(found, key=lambda each: abs(_relative_mean_at(each, LOW_V_C)[0]))
+    size, error = _relative_mean_at(curve, LOW_V_C)
     pairs = f"{curve.grid} × {curve.grid} phases"
-    integrated, deep, deepest = (_write_size(*_relative_mean_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+    integrated, deep, deepest = (_write_size(*_relative_mean_at(curve, v)) for v in (DEFAULT_V_C, LOW_V_C, LOWEST_V_C))
     values = (
         f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds "
-        f"above {speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
-        f"{deepest} above {speed_text(DEEPEST)} m/s (mean of {pairs})"
+        f"above {speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(LOW_V_C)} m/s, "
+        f"{deepest} above {speed_text(LOWEST_V_C)} m/s (mean of {pairs})"
     )
-    if abs(size) >= ILL and abs(size) > error:
+    if abs(size) >= ILL_CONDITIONED_CHANGE and abs(size) > error:
         return f"The literal supremum is ill-conditioned: {values}{_of_engine(curve, result or ())}."
-    if abs(size) + error < ILL:
+    if abs(size) + error < ILL_CONDITIONED_CHANGE:
         return f"The literal supremum is well-conditioned: {values}."
     return f"Whether the literal supremum is ill-conditioned, {pairs} do not tell: {values}."
 
@@ -107,7 +108,7 @@ def speed_text(speed: float) -> str:
 
 def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
     return curve.reading == AS_INTEGRATED and all(
-        math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST)
+        math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, LOW_V_C, LOWEST_V_C)
     )
 
 
@@ -123,11 +124,12 @@ def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) ->
         each
         for each in result
         if (each.scene, each.body) == (curve.scene, curve.body)
-        and each.model in IN_WORDS
+        and each.model in MODEL_WORDS
         and all(map(math.isfinite, each.mean[-2:]))
     ]
     pairs = max((each.pairs for each in engines), default=0)
-    changes = [f"{_write_size(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
+    compared = [each for each in engines if each.pairs == pairs]
+    changes = [f"{_write_size(*_last_change(each))} {MODEL_WORDS[each.model]}" for each in compared]
     if not changes:
         return ""
     before, after = engines[0].v[-2:]
@@ -142,4 +144,4 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
 
 
 def _write_size(size: float, error: float) -> str:
-    return difference_with_error(size, error) + ("" if math.isfinite(error) else " (error unknown)")
+    return word_difference(size, error) + ("" if math.isfinite(error) else " (error unknown)")

@@ -16,10 +16,10 @@ from comparison.result_types import Array, Number, Phases, UncertainNumber, resu
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
-from comparison.study.costs import seconds_per_motion
+from comparison.study.costs import estimate_motion_seconds
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.distribution import CURVE, Fractile
+from comparison.surfaces.distribution import CURVE_PROBABILITIES, Fractile
 from comparison.surfaces.surfaces import NOT_ASKED, copy_to_mirror_images
 from reference.measures import Estimates, phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
@@ -82,7 +82,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
     def estimate_seconds(self, study: Study) -> float:
         """Return the rough processor time of all motions, s."""
         return sum(
-            seconds_per_motion(scene, model) * len(study.solved(scene, model))
+            estimate_motion_seconds(scene, model) * len(study.solved(scene, model))
             for scene in study.scenes
             for model in _models_with_own_motions(study, scene)
         )
@@ -200,5 +200,5 @@ def _statistics_of_demand(
         fractiles=tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles)),
         lowest=extreme(int(np.nanargmin(value))),
         highest=extreme(int(np.nanargmax(value))),
-        curve=tuple(fractile(value[known], p) for p in CURVE),
+        curve=tuple(fractile(value[known], p) for p in CURVE_PROBABILITIES),
     )

@@ -5,7 +5,7 @@ from typing import Any
 
 from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, demand_statistics, with_demands
 from comparison.report.feature import Feature, SceneField
-from comparison.report.panels import DEMANDS, Panel, distribution_panels
+from comparison.report.panels import PLOTTED_DEMANDS, Panel, make_distribution_panels
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
@@ -22,13 +22,13 @@ STATISTICS = SceneField(
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
     """Return one panel per demand: the share of all phases where it stays below a value, by model."""
     panels = []
-    for quantity, body, title, unit, scale in DEMANDS if not scene.recorded else ():
+    for quantity, body, title, unit, scale in PLOTTED_DEMANDS if not scene.recorded else ():
         curves = [
             (row.model, [scale * value for value in row.curve])
-            for row in STATISTICS.of(scene)
+            for row in STATISTICS.read_from(scene)
             if (row.quantity, row.body) == (quantity, body)
         ]
-        panels += distribution_panels(results, scene.name, title, unit, curves)
+        panels += make_distribution_panels(results, scene.name, title, unit, curves)
     return panels
 
 
@@ -36,7 +36,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
     """Return the rows of the table of demands, each with the names of its scene, demand and model."""
     lines = []
     for scene in results.scenes:
-        for row in STATISTICS.of(scene):
+        for row in STATISTICS.read_from(scene):
             meaning, _ = QUANTITIES[row.quantity]
             name = f"{meaning} of body {row.body}" if row.body else meaning
             name = f"{name}, {unit_of(row.quantity)}".removesuffix(", ")

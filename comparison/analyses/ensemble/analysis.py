@@ -10,7 +10,7 @@ from comparison.analyses.ensemble.quantities import Quantity, collect_demand_val
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
-from comparison.study.costs import seconds_per_motion
+from comparison.study.costs import estimate_motion_seconds
 from comparison.study.models import (
     EXACT,
     REGULARIZED,
@@ -132,7 +132,7 @@ class Ensemble:
 
     def _task(self, member: EnsembleMember, model: Model) -> Task:
         scene = member.scene
-        seconds = seconds_per_motion(scene, model) * (SPECTRA_COST_RATIO if model == EXACT else 1.0)
+        seconds = estimate_motion_seconds(scene, model) * (SPECTRA_COST_RATIO if model == EXACT else 1.0)
         arguments: MotionTaskArguments = scene, model, model.tolerance(self.tolerance)
         return Task(
             compute_demands, arguments, STAGE, seconds, scene, model.side == "reference", timeout=MOTION_TIME_LIMIT

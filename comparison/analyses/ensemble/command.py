@@ -55,24 +55,24 @@ from comparison.analyses.ensemble.terminal import print_engine, print_equations
 from comparison.cli.arguments import (
     CommandParser,
     command,
-    number_of_jobs,
     read_bounds,
     read_number,
+    read_number_of_jobs,
     read_whole_number,
     report_write_errors,
     write_and_show,
 )
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.start import command_start
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.start import find_command_start
 from comparison.cli.terminal import print_buildings, print_records
-from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
-from comparison.runner.attempts import attempt, publish_made
+from comparison.report.junit import JUnitCase, JUnitSuite, format_junit
+from comparison.runner.attempts import attempt, publish_attempted
 from comparison.runner.output import publish_files, refuse_foreign_files, refuse_other_page, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import Display, wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import Display, make_wide_console
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.costs import STARTING, WRITING, wall_seconds
+from comparison.study.costs import STARTING_SECONDS, WRITING_SECONDS, estimate_wall_seconds
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
 from comparison.verdicts import MET
 from reference.problem import Family, SceneError
@@ -94,10 +94,10 @@ MAX_SCALES = 100
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Compute the ensemble that the command line names and write its files; return the exit code."""
     options = _parser().parse_args(argv)
-    jobs = number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    jobs = read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
     members = list_members([make_suite_family(options, scene) for scene in options.scenes])
     asked = parse_engine_option(options.engine, members)
     target = None
@@ -111,7 +111,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     out = resolve_destination(options.out)
     refuse_other_page(out, COMMAND)
     refuse_foreign_files(out, WRITTEN_FILES)
-    console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
+    console, ensemble = make_wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
     named = [(member.motion, member.scene) for member in members]
@@ -123,20 +123,20 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin = command_start().wall
+    begin = find_command_start().wall
     build = partial(build_result, tolerance=ensemble.tolerance, target=target, listed=read_listed_motions(options))
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
-        further = results.missing(ensemble.make_engine_tasks(chosen))
+        further = results.find_missing(ensemble.make_engine_tasks(chosen))
         if further:
             write(results, ensemble.collect_points(results), print_equations, pending=len(chosen))
             display.extend(sum(task.seconds for task in further))
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
             count = f"{len(chosen)} of {len(members)} motions"
-            wall = wall_seconds([task.seconds for task in further], jobs) + WRITING
+            wall = estimate_wall_seconds([task.seconds for task in further], jobs) + WRITING_SECONDS
             console.print(f"Next: {count} by the {engine.title}, about {wall:.0f} s on idle cores.")
         shown.append((chosen, bool(further)))
         return further
@@ -157,10 +157,10 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
     members = ensemble.members
     first = list_expected_choices(members, asked)
     later = ensemble.make_engine_tasks([ChosenMember(member, ()) for member in first])
-    seconds = sum(wall_seconds([task.seconds for task in each], jobs) for each in (tasks, later))
+    seconds = sum(estimate_wall_seconds([task.seconds for task in each], jobs) for each in (tasks, later))
     engine = f"at most {most}" if (most := bound_engine_motion_count(members, asked)) > len(first) else f"{len(first)}"
     workers = f"{jobs} worker{'' if jobs == 1 else 's'}"
-    wall = f"about {STARTING + seconds + WRITING:.0f} s on idle cores with {workers}"
+    wall = f"about {STARTING_SECONDS + seconds + WRITING_SECONDS:.0f} s on idle cores with {workers}"
     console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
     if ensemble.spatial and asked != 0:
         for scene, name in {m.structure: (m.scene, m.structure) for m in first if why_not_spatial(m.scene)}.values():
@@ -222,7 +222,7 @@ def write_ensemble(
     """Write the files of the ensemble, print its tables, write its page; return the result."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     scenes = {source: hashlib.sha256(scene_text(source)).hexdigest() for source in options.scenes}
-    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1), "scenes": scenes}
+    run = {**collect_run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1), "scenes": scenes}
     result = build(points, run)
     result = replace(result, engine=replace(result.engine, pending=pending))
     checks = check(result)
@@ -233,7 +233,7 @@ def write_ensemble(
         files[TABLE_FILE] = table
     written = write_and_show(options.out, partial(publish_files, out, files, COMMAND), partial(show, console, result))
     with report_write_errors(options.out):
-        written += publish_made(out, PAGE_FILE, lambda: render_ensemble_page(result).encode(), COMMAND)
+        written += publish_attempted(out, PAGE_FILE, lambda: render_ensemble_page(result).encode(), COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
     return result
 
@@ -253,7 +253,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
         )
         for bound in dict.fromkeys(each.bound for each in checks)
     ]
-    return junit_text(suites).encode()
+    return format_junit(suites).encode()
 
 
 def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineRequest) -> list[EnsembleMember]:

@@ -10,7 +10,7 @@ from comparison.analyses.ensemble.governing import choose_motions
 from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, read_demand_limits, word_checks
 from comparison.analyses.ensemble.members import list_members, with_suite
 from comparison.analyses.ensemble.result import STORED, EnsembleResult
-from comparison.runner.task import Task, execute
+from comparison.runner.task import Task, execute_task
 from comparison.runner.task_results import TaskResults
 from comparison.verdicts import MET
 from reference.problem.acceptance import DemandLimits
@@ -56,5 +56,5 @@ def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
 
 
 def _compute_tasks(results: TaskResults, tasks: Sequence[Task]) -> None:
-    for task in results.missing(tasks):
-        results.put(task, execute(task))
+    for task in results.find_missing(tasks):
+        results.put(task, execute_task(task))

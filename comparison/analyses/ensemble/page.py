@@ -36,7 +36,7 @@ from comparison.analyses.ensemble.trust import (
     make_trust_rows,
     trust_sentence,
 )
-from comparison.report.page import lost_line, render_page, render_template
+from comparison.report.page import render_lost_line, render_page, render_template
 from comparison.report.page_data import compress_to_text
 from comparison.report.panels import Panel
 from comparison.report.section import Section
@@ -236,7 +236,7 @@ def render_ensemble_page(ensemble: EnsembleResult) -> str:
             continue
         body = lost.attempt(what, partial(_render_part, part, ensemble, lost))
         section = Section(part.title, folded=False, name=part.name)
-        parts.append((section, lost_line(lost.last) if body is None else body, ""))
+        parts.append((section, render_lost_line(lost.last) if body is None else body, ""))
     heading = lost.attempt("heading", partial(sentences.word_heading, ensemble)) or "Demands under many motions"
     began = str(ensemble.run.get("began", ""))  # date and time in UTC
     context = {

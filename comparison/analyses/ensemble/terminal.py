@@ -23,7 +23,7 @@ from comparison.analyses.ensemble.sentences import (
     word_motion_count,
 )
 from comparison.analyses.ensemble.trust import MODEL_TITLES, make_trust_rows, trust_sentence
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import make_table
 from comparison.runner.attempts import attempt
 from comparison.study.models import EXACT
 
@@ -60,7 +60,7 @@ def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
     if ensemble.target is None:
         return
     print_lines(console, [target_sentence(ensemble.target)])
-    table = new_table("motion", "factor")
+    table = make_table("motion", "factor")
     for one in ensemble.target.motions:
         table.add_row(one.motion, f"{one.factor:.4g}")
     console.print(table)
@@ -71,7 +71,7 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
     shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
     for bound, rows in group_rows_by(make_demand_rows(ensemble, ensemble.largest_scale), "bound").items():
         print_lines(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
-        table = new_table("quantity", "unit", "mean", *shares, "largest", "motion")
+        table = make_table("quantity", "unit", "mean", *shares, "largest", "motion")
         for row in rows:
             table.add_row(*_cells_of_row(row))
         console.print(table)
@@ -104,7 +104,7 @@ def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
             console,
             [f"{bound}, mean difference from the exact equations on {word_motion_count(len(rows[0].motions))}:"],
         )
-        table = new_table("quantity", "exact", *(title.partition(" ")[0] for title in models.values()))
+        table = make_table("quantity", "exact", *(title.partition(" ")[0] for title in models.values()))
         for row in rows:
             table.add_row(row.name, row.text, *(row.ratios[key].brief if key in row.ratios else "" for key in models))
         console.print(table)

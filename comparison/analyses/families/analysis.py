@@ -14,7 +14,7 @@ from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.model_difference import usable_mu
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.surfaces import select_values
 from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.measures.peak_demands import list_demands
 from reference.problem import Family, Scene
@@ -132,5 +132,5 @@ def _numbers_of_body(surfaces: xr.Dataset, scene: Scene, model: Model, body: int
     known = np.isfinite(mu)
     if not known.any():
         return NAN, NAN, NAN, NAN
-    error = values_of(surfaces, "error", scene.name, model)[body - 1][known]
+    error = select_values(surfaces, "error", scene.name, model)[body - 1][known]
     return float(mu[known].mean()), float(mu[known].min()), float(mu[known].max()), float(error.mean())

@@ -13,14 +13,14 @@ from comparison.analyses.families.analysis import (
     list_family_steps,
 )
 from comparison.report.feature import Feature, Findings, ResultField
-from comparison.report.panels import DEMANDS, Panel, json_numbers, make_panel
+from comparison.report.panels import PLOTTED_DEMANDS, Panel, make_panel, replace_nan
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
-from comparison.surfaces.waterfall import PHASES
-from comparison.wording import MAX_NAMES
+from comparison.surfaces.waterfall import UNEQUAL_PHASES
+from comparison.wording import MAX_AXIS_NAMES
 
 MOTION_KEY = "excitation.record.motion"  # key whose values name motions, so that no axis can have them as numbers
 LOG_AXIS_RATIO = 30.0  # Largest over smallest value of the varied key: beyond this ratio the axis is logarithmic.
@@ -85,7 +85,7 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
-        panels += filter(None, (_family_demand_panel(results, family, *shown) for shown in DEMANDS))
+        panels += filter(None, (_family_demand_panel(results, family, *shown) for shown in PLOTTED_DEMANDS))
         listed.append({"title": first.title, "family": family, "panels": panels})
     return listed
 
@@ -95,7 +95,7 @@ def _value_axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
-        every = -(-len(names) // MAX_NAMES)
+        every = -(-len(names) // MAX_AXIS_NAMES)
         return places, {"title": family.key, "ticks": names[::every], "range": [-0.3, len(places) - 0.7]}
     values = [float(value) for value in family.values]
     if min(values) > 0.0 and max(values) >= LOG_AXIS_RATIO * min(values):
@@ -113,9 +113,9 @@ def _panel_over_values(
     places, axis = _value_axis(family)
     series = []
     for number, (name, color, middle, *band) in enumerate(lines):
-        line = {"name": name, "x": places, "y": json_numbers(middle), "color": color, "marks": True}
+        line = {"name": name, "x": places, "y": replace_nan(middle), "color": color, "marks": True}
         if number in (0, len(lines) - 1) and any(low < high for low, high in zip(*band)):
-            line |= {**dict(zip(("low", "high"), map(json_numbers, band))), "band": True}
+            line |= {**dict(zip(("low", "high"), map(replace_nan, band))), "band": True}
         series.append(line)
     return make_panel(title, f"{label} over {family.key}", axis, {"title": unit}, series)
 
@@ -128,7 +128,7 @@ def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
     effects = {model.key: model.effect or model.title for model in results.models}
-    effects |= {TOTAL: "total", PHASES: "other phases"}
+    effects |= {TOTAL: "total", UNEQUAL_PHASES: "other phases"}
     lines = [
         (effects[step.model], "ink" if step.model == TOTAL else number, [100.0 * size for size in step.size])
         for number, step in enumerate((step for step in family.steps if step.body == body), start=1)

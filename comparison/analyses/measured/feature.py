@@ -3,7 +3,7 @@
 from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks, verdict_line, word_measured
 from comparison.report.feature import Feature, ResultField
 from comparison.report.section import Section
-from comparison.verdicts import CLASSES
+from comparison.verdicts import STYLE_CLASSES
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
 FOUND = ResultField(
@@ -22,9 +22,9 @@ FEATURE = Feature(
         lambda report: {
             "measured_titles": {"mu": "amplification factor"} | {key: text for key, (text, _) in QUANTITIES.items()},
             "measured_units": {"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
-            "measured_classes": CLASSES,
+            "measured_classes": STYLE_CLASSES,
         },
-        verdict=lambda results: verdict_line(FOUND.of(results)),
+        verdict=lambda results: verdict_line(FOUND.read_from(results)),
         folded=False,
     ),
 )

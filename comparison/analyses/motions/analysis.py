@@ -12,8 +12,8 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.model_difference import difference_of
-from comparison.wording import exception_line
+from comparison.surfaces.model_difference import compute_difference
+from comparison.wording import word_exception
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Outcome, Scene, Trajectory
@@ -144,7 +144,7 @@ def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Moti
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):
         for body in range(1, len(scene.bodies) + 1):
-            if pair.key in largest and (place := difference_of(surfaces, scene.name, pair, body).place):
+            if pair.key in largest and (place := compute_difference(surfaces, scene.name, pair, body).largest_place):
                 places.setdefault(place, (largest[pair.key].format(body), set()))[1].add(pair.second.key)
     for k in range(EVENLY_SPREAD_PAIRS):
         row, column = (
@@ -174,7 +174,7 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
             )
         return _store_motion(place, model, motion)
     except Exception as error:
-        return _motion_without_values(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
+        return _motion_without_values(place, model.key, Outcome.SOLVER_FAILED, word_exception(error))
 
 
 def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> StoredMotion:

@@ -68,7 +68,7 @@ FEATURE = Feature(
         "Records as read",
         "phase-resonance run makes it, of scenes with a recorded motion",
         context=lambda report: {"gravity": GRAVITY},
-        verdict=lambda results: word_warnings(FOUND.of(results)),
+        verdict=lambda results: word_warnings(FOUND.read_from(results)),
     ),
     selectable=False,
 )

@@ -24,9 +24,9 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
 from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of
 from comparison.study.study import Study
-from comparison.surfaces.distribution import GridMaximum, grid_maxima
+from comparison.surfaces.distribution import GridMaximum, find_grid_maxima
 from comparison.surfaces.model_difference import usable_mu
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.surfaces import select_values
 from reference.measures.local_maxima import GRID, find_local_maxima
 from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, make_square_nodes, predict_best
 from reference.problem import Scene
@@ -102,7 +102,9 @@ def _starting_phases(
     if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
-    values = values_of(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
+    values = (
+        select_values(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
+    )
     starts = find_local_maxima(values if of_platform else values[body - 1], scene)
     return starts if len(starts) else None
 
@@ -175,7 +177,7 @@ def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, bo
     model = study.compared(scene)[-1]
     if surfaces is None or not model.is_spatial:
         return None
-    largest = grid_maxima(surfaces, scene, [model])[body - 1]
+    largest = find_grid_maxima(surfaces, scene, [model])[body - 1]
     return (model, largest) if math.isfinite(largest.mu) else None
 
 

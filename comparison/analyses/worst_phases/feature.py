@@ -6,8 +6,8 @@ from typing import Any
 
 from comparison.analyses.worst_phases.analysis import LargestOverPhases, WorstPhases, find_nearest_search
 from comparison.report.feature import Feature, ResultField
-from comparison.report.page_data import DIGITS
-from comparison.report.panels import distribution_panels, fractile_heads
+from comparison.report.page_data import MU_DIGITS
+from comparison.report.panels import fractile_heads, make_distribution_panels
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
 from comparison.study.models import SMALL, SMALL_RESOLVED, has_smooth_friction, models_of
@@ -66,7 +66,7 @@ def _list_marks(report: Report, scene: Scene) -> Mapping[str, Any]:
 
 
 def _make_mark(worst: LargestOverPhases) -> list[float | str]:
-    return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
+    return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{MU_DIGITS}g}"), worst.model]
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
@@ -77,7 +77,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
             for scene in results.scenes_with("worst_phases")
             for body in range(1, scene.bodies + 1)
             for curves in [_distribution_curves(scene, body)]
-            for panel in distribution_panels(results, scene.name, f"μ_{body}", "", curves)
+            for panel in make_distribution_panels(results, scene.name, f"μ_{body}", "", curves)
         ],
         "worst_lines": [
             {
@@ -86,7 +86,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
                 "kind": _word_kind(worst),
                 "reading": _name_reading(report, worst),
             }
-            for worst in FOUND.of(results)
+            for worst in FOUND.read_from(results)
         ],
         "fractiles": fractile_heads(),
     }

@@ -1,4 +1,4 @@
-"""Published numbers as an analysis: a task for every benchmark and side."""
+"""Benchmarks of published numbers as tasks: one for every benchmark and side."""
 
 import math
 import time
@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from comparison.evidence.benchmarks.cases import BenchmarkCase, MotionReading
-from comparison.evidence.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, PublishedNumber
+from comparison.evidence.benchmarks.table import (
+    FRICTION_EXPLANATION,
+    MODEL_EXPLANATION,
+    Benchmark,
+    Benchmarks,
+    PublishedNumber,
+    SideNumber,
+)
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
 from comparison.runner.task import Task, TaskResult
@@ -19,16 +26,16 @@ from comparison.verdicts import MET, NOT_MET
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import State, Trajectory
 
-MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
-TOLERANCES = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
-SAMPLES = 100_001  # instants at which the equations are read
-SECONDS = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # predicted cost
-LIMIT = 300.0  # s of processor time of one task
+MODEL_OF_SIDE = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
+TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
+READ_SAMPLES = 100_001  # number of instants at which a motion by the equations is read
+SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by side
+TASK_TIME_LIMIT = 300.0  # s, largest processor time of one task
 
 
 @dataclass(frozen=True)
 class SideNumbers:
-    """The numbers of one side with their errors, and how the motion ended."""
+    """The numbers that one side computes with their errors, and how its motion ended."""
 
     values: list[float]
     errors: list[float]
@@ -38,57 +45,61 @@ class SideNumbers:
 
 @dataclass(frozen=True)
 class BenchmarkTable:
-    """Every benchmark by the equations, by the equations with the engine's friction law, and by the engine."""
+    """Task list of the benchmarks: equations, equations with the engine's friction law, and engine."""
 
     cases: Sequence[BenchmarkCase]
 
     def tasks(self) -> list[Task]:
-        """One task for each benchmark and side."""
-        return [self._task(case, side) for case in self.cases for side in MODELS]
+        """Return one task for each benchmark and side."""
+        return [self._task(case, side) for case in self.cases for side in MODEL_OF_SIDE]
 
     def collect(self, results: TaskResults) -> Benchmarks:
-        """The table, without what the command knows of the run."""
+        """Return the table of results without the facts of the run, which the command adds."""
         answers = [
-            {side: results.value(self._task(case, side), _answer_of_failure) for side in MODELS} for case in self.cases
+            {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
+            for case in self.cases
         ]
         return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
-        seconds = SECONDS[side] * max(1.0, case.scene.duration / 12.0)
-        return Task(solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=LIMIT)
+        seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
+        return Task(
+            solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
+        )
 
 
-def solve_side(question: tuple[BenchmarkCase, str]) -> SideNumbers:
-    """The numbers of one side. Runs inside a worker process."""
-    case, side = question
-    settings = dict(MODELS[side].settings)
+def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
+    """Return the numbers that one side computes. Runs inside a worker process."""
+    case, side = benchmark_and_side
+    settings = dict(MODEL_OF_SIDE[side].settings)
     if side != EQUATIONS:
         settings["regularization"] = case.regularization
     if side != ENGINE:
-        settings["times"] = np.linspace(0.0, case.scene.duration, SAMPLES)
+        settings["times"] = np.linspace(0.0, case.scene.duration, READ_SAMPLES)
     if case.start:
         place = np.array(case.start)
         settings["initial"] = State(place, np.zeros_like(place))
     clock = time.process_time()
-    trajectory = import_function(MODELS[side].trajectory)
-    motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCES[side], **settings)
+    trajectory = import_function(MODEL_OF_SIDE[side].trajectory)
+    motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCE_OF_SIDE[side], **settings)
     return SideNumbers(*_read_numbers(case.reading, motion), str(motion.status), time.process_time() - clock)
 
 
 def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
-    """The numbers and their estimated absolute errors; none of a motion that ended early."""
+    """Return the numbers and their estimated absolute errors; none for a motion that ended early."""
     if motion.status not in FULL_LENGTH_OUTCOMES or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.read(motion), motion.accuracy
     others = [] if accuracy is None else [reading.read(each) for each in (halve_samples(motion), *accuracy.coarser)]
-    if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
+    # A coarser reading finds another number of swings, so its difference is no error estimate.
+    if accuracy is None or any(len(other) != len(values) for other in others):
         return values, [math.nan] * len(values)
     rows = zip(values, *others)
     return values, [accuracy.error_of(value, rest) + abs(value - halved) / 3.0 for value, halved, *rest in rows]
 
 
 def halve_samples(motion: Trajectory) -> Trajectory:
-    """Every second sample of a motion: what is read of it is four times as wrong, at kinks, and more elsewhere."""
+    """Return every second sample of a motion: numbers read from it have four times the error, at kinks even more."""
     kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
     arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}
     return replace(motion, **arrays)
@@ -109,27 +120,27 @@ def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> 
 
 
 def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
-    """A published number with that of every side, NaN where a side has not as many values as are published."""
+    """Return a published number with that of every side; NaN if a side has fewer values than are published."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
     for side, answer in answers.items():
         if len(answer.values) == len(case.published):
             numbers[side] = answer.values[place], answer.errors[place]
 
-    def read_number(side: str) -> Number:
+    def read_number(side: str) -> SideNumber:
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
-        return Number(value, error, verdict, explain(side) if verdict == NOT_MET else "")
+        return SideNumber(value, error, verdict, explain(side) if verdict == NOT_MET else "")
 
     def explain(side: str) -> str:
         if case.difference:
-            return MODEL
+            return MODEL_EXPLANATION
         (value, error), (smoothed, its_error) = numbers[side], numbers[SMOOTHED]
         same = replace(row, published=smoothed, uncertainty=its_error, numbers={})
-        return FRICTION if side != EQUATIONS and same.judge(value, error) == MET else ""
+        return FRICTION_EXPLANATION if side != EQUATIONS and same.judge(value, error) == MET else ""
 
     return replace(row, numbers={side: read_number(side) for side in numbers})
 
 
-def _answer_of_failure(question: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
+def _answer_of_failure(benchmark_and_side: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
     return SideNumbers([], [], failed.reason, 0.0)

@@ -1,5 +1,5 @@
 """
-The benchmarks: published numbers, what the scenes that state them are, and how a motion is read for them.
+Benchmark cases: published numbers, the scenes that state their problems, and how a motion is read for them.
 
 Only facts are taken from the sources: parameters and numbers. A closed form was evaluated again and gives the printed
 digits.
@@ -24,21 +24,21 @@ from reference.records.samples import MAX_FILE_BYTES, RecordError
 from reference.support.files import read_file
 
 SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"
-INCH = 0.0254  # m
-WEIGHT = 10.0  # N, of code_aster's blocks
-RAMP = 2e-7  # m, what it changes that Newmark's pulse ends within 1 ms
+INCH = 0.0254  # m in an inch
+BLOCK_WEIGHT = 10.0  # N, weight of the blocks in code_aster's benchmarks
+RAMP_EFFECT = 2e-7  # m, change of the displacement because Newmark's pulse ends within 1 ms instead of at once
 
 
 @dataclass(frozen=True)
 class MotionReading:
-    """Number read off a motion: `factor` times `function(motion, **arguments)`, one number or several."""
+    """How a number is read from a motion: `factor` times `function(motion, **arguments)`, one number or several."""
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)
-    factor: float = 1.0  # from SI units to those of the published number
+    factor: float = 1.0  # from SI units to the unit of the published number
 
     def read(self, motion: Trajectory) -> list[float]:
-        """The numbers, in the published units."""
+        """Return the numbers in the published units."""
         values = np.atleast_1d(self.function(motion, **self.arguments))
         return [self.factor * float(value) for value in values]
 
@@ -46,7 +46,7 @@ class MotionReading:
 @dataclass(frozen=True)
 class BenchmarkCase:
     """
-    One benchmark.
+    One benchmark: published numbers, scene, and how its motion is read.
 
     source: where the numbers are published. evidence: for what it is evidence. reading: gives a value for each of
     `published`. phases: rad. start: m, where the bodies are released from rest; at the equilibrium if empty.
@@ -67,24 +67,24 @@ class BenchmarkCase:
 
 
 def load_shipped_scene(name: str, values: Mapping[str, Any] | None = None) -> Scene:
-    """A scene of this package, with other values."""
+    """Return a scene of this package with some values replaced."""
     return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values({"name": name, **(values or {})})
 
 
 def list_cases() -> list[BenchmarkCase]:
-    """The benchmarks whose inputs are shipped."""
+    """Return the benchmarks whose inputs are shipped with the package."""
     return [
-        *_wear_power(),
+        *_wear_power_cases(),
         _release_case(),
-        _coulomb_damping(),
-        _den_hartog(),
-        _harmonic_block(),
+        _coulomb_damping_case(),
+        _den_hartog_case(),
+        _harmonic_block_case(),
         _pulse_case(),
         *_linear_cases(),
     ]
 
 
-def _wear_power() -> list[BenchmarkCase]:
+def _wear_power_cases() -> list[BenchmarkCase]:
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
@@ -93,7 +93,7 @@ def _wear_power() -> list[BenchmarkCase]:
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
             published=[PublishedNumber("power of friction", "W", power, digits)],
-            reading=MotionReading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
+            reading=MotionReading(readings.compute_path_length, {"begin": 4.0, "end": 12.0}, BLOCK_WEIGHT / 8.0),
             scene=load_shipped_scene("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
             phases=(-0.5 * math.pi, 0.0),
         )
@@ -110,15 +110,15 @@ def _release_case() -> BenchmarkCase:
             PublishedNumber(f"turning point {number}", "mm", place, 0.0)
             for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
         ],
-        reading=MotionReading(readings.turning_points, factor=1e3),
+        reading=MotionReading(readings.find_turning_points, factor=1e3),
         scene=load_shipped_scene("sdnd100"),
         start=((0.85e-3, 0.0),),
         regularization=1e-7,
     )
 
 
-def _coulomb_damping() -> BenchmarkCase:
-    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor: from 386 in/s^2 and 10 lb to a radius of 981 m
+def _coulomb_damping_case() -> BenchmarkCase:
+    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor from 386 in/s^2 and 10 lb to a radius of 981 m
     times = (0.09, 0.102, 0.183)
     return BenchmarkCase(
         title="ANSYS VM73: free vibration with Coulomb damping",
@@ -128,14 +128,16 @@ def _coulomb_damping() -> BenchmarkCase:
             PublishedNumber(f"place at {time:g} s", "in", value, 5e-6)
             for time, value in zip(times, (0.87208, 0.83132, -0.74874))
         ],
-        reading=MotionReading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
+        reading=MotionReading(
+            readings.interpolate_positions, {"times": [stretch * time for time in times]}, 1.0 / INCH
+        ),
         scene=load_shipped_scene("vm73"),
         start=((-INCH, 0.0),),
         regularization=1e-7,
     )
 
 
-def _den_hartog() -> BenchmarkCase:
+def _den_hartog_case() -> BenchmarkCase:
     scene = load_shipped_scene("den-hartog")
     unit = 1e-3 * scene.radius / GRAVITY  # m: static displacement under the force
     return BenchmarkCase(
@@ -143,7 +145,7 @@ def _den_hartog() -> BenchmarkCase:
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
         published=[PublishedNumber("amplitude over static one", "", 1.535602, 5e-7)],
-        reading=MotionReading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
+        reading=MotionReading(readings.compute_half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
         scene=scene,
         phases=(0.18581959993316782, 0.0),
         start=((1.5356018092808652 * unit, 0.0),),
@@ -151,15 +153,15 @@ def _den_hartog() -> BenchmarkCase:
     )
 
 
-def _harmonic_block() -> BenchmarkCase:
-    share = 1.0 / 2.5  # friction limit over the ground's acceleration
+def _harmonic_block_case() -> BenchmarkCase:
+    share = 1.0 / 2.5  # friction limit over the amplitude of the ground acceleration
     amplitude = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
     return BenchmarkCase(
         title="Rigid block on a harmonically shaken plane",
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
         published=[PublishedNumber("amplitude over ground's", "", round(amplitude, 6), 5e-7)],
-        reading=MotionReading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
+        reading=MotionReading(readings.compute_half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
         scene=load_shipped_scene("harmonic"),
         phases=(-0.5 * math.pi, 0.0),
     )
@@ -170,8 +172,8 @@ def _pulse_case() -> BenchmarkCase:
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
-        published=[PublishedNumber("displacement", "m", 0.75, RAMP)],
-        reading=MotionReading(readings.positions_at, {"times": [3.0]}),
+        published=[PublishedNumber("displacement", "m", 0.75, RAMP_EFFECT)],
+        reading=MotionReading(readings.interpolate_positions, {"times": [3.0]}),
         scene=load_shipped_scene("newmark"),
     )
 
@@ -187,7 +189,7 @@ def _linear_cases() -> list[BenchmarkCase]:
                 PublishedNumber("isolation period", "s", 2.0242, 5e-5),
                 PublishedNumber("structural period", "s", 0.2500, 5e-5),
             ],
-            reading=MotionReading(readings.natural_periods),
+            reading=MotionReading(readings.compute_natural_periods),
             scene=load_shipped_scene("frame"),
             start=((1e-4, 0.0), (0.0, 0.0)),
         ),
@@ -199,7 +201,7 @@ def _linear_cases() -> list[BenchmarkCase]:
                 PublishedNumber(f"natural period {number}", "s", period, 5e-5)
                 for number, period in enumerate(stories, start=1)
             ],
-            reading=MotionReading(readings.natural_periods),
+            reading=MotionReading(readings.compute_natural_periods),
             scene=load_shipped_scene("stories"),
             start=(*((0.0, 0.0),) * 5, (1e-4, 0.0)),
             regularization=DEFAULT_V_REG,
@@ -209,23 +211,25 @@ def _linear_cases() -> list[BenchmarkCase]:
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
             published=[PublishedNumber("period over small one's", "", 1.073182, 5e-7)],
-            reading=MotionReading(readings.mean_period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
+            reading=MotionReading(readings.compute_mean_period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
             scene=load_shipped_scene("pendulum"),
             start=((math.sin(math.pi / 3.0), 0.0),),
         ),
     ]
 
 
-OPTION = "--mastodon"
-READ_TO = 3.0  # mm, from the published loops
-RADIUS = 2.2352  # m
-HEAVY = 6285710.0  # N, of the pendulum
-LASTING = 8.0  # s of 50: later displacements are smaller
-SAMPLES, STEP = 5002, 0.01  # samples of the MASTODON input motion; their step, s, from the second sample on
-PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
-ROUNDED = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
-LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
-FRICTION = {
+MASTODON_OPTION = "--mastodon"
+READING_ERROR = 3.0  # mm, error of reading the published loops
+MASTODON_RADIUS = 2.2352  # m, radius of the friction pendulum
+MASTODON_WEIGHT = 6285710.0  # N, weight on the friction pendulum
+MASTODON_DURATION = 8.0  # s that are computed of 50 s: later displacements are smaller
+# Samples of the MASTODON input motion; their step, s, from the second sample on
+MASTODON_SAMPLES, MASTODON_STEP = 5002, 0.01
+MASTODON_PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, peaks of the MASTODON input along x, y and z
+INPUT_TOLERANCE = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
+# mm, published displacements: smallest and largest along x, then along y
+MASTODON_EXTREMES = -432.0, 330.0, -197.0, 152.0
+MASTODON_FRICTION = {
     "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)
     "fast": 0.06 * 0.789 / 0.79,
     "rate": 100.0,
@@ -234,23 +238,23 @@ FRICTION = {
 }
 
 
-def mastodon_case(path: Path) -> BenchmarkCase:
-    """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
+def load_mastodon_case(path: Path) -> BenchmarkCase:
+    """Return the benchmark whose input motion is a CSV file: time, s, ax, ay and vertical az. Raises SceneError."""
     try:
         samples = read_csv_samples(read_file(path, MAX_FILE_BYTES).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "must be text in UTF-8"
-        raise SceneError("command line", OPTION, str(path), reason) from None
+        raise SceneError("command line", MASTODON_OPTION, str(path), reason) from None
     except RecordError as error:
-        raise SceneError("command line", OPTION, str(path), str(error)) from None
+        raise SceneError("command line", MASTODON_OPTION, str(path), str(error)) from None
     _refuse_other_input(path, samples)
     scene = Scene.model_validate(
         {
             "title": "MASTODON: friction pendulum under three-directional shaking",
             "name": "mastodon",
-            "duration": LASTING,
-            "isolator": {"radius": RADIUS, "friction": FRICTION},
-            "bodies": [{"mass": HEAVY / GRAVITY}],
+            "duration": MASTODON_DURATION,
+            "isolator": {"radius": MASTODON_RADIUS, "friction": MASTODON_FRICTION},
+            "bodies": [{"mass": MASTODON_WEIGHT / GRAVITY}],
             "excitation": {"record": {"time": samples[:, 0], "acceleration": samples[:, 1:]}},
         }
     )
@@ -260,8 +264,8 @@ def mastodon_case(path: Path) -> BenchmarkCase:
         source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
         "loops of both programs",
         evidence="a recorded motion in three directions with friction that depends on velocity, pressure and heat",
-        published=[PublishedNumber(name, "mm", value, READ_TO) for name, value in zip(names, LIMITS)],
-        reading=MotionReading(readings.position_ranges, factor=1e3),
+        published=[PublishedNumber(name, "mm", value, READING_ERROR) for name, value in zip(names, MASTODON_EXTREMES)],
+        reading=MotionReading(readings.find_position_ranges, factor=1e3),
         scene=scene,
         regularization=DEFAULT_V_REG,
         difference="their bearing is elastic up to 1 mm, and its restoring force N y / sqrt(R² - y²) lies between "
@@ -270,18 +274,20 @@ def mastodon_case(path: Path) -> BenchmarkCase:
 
 
 def _refuse_other_input(path: Path, samples: Array) -> None:
-    """Raise SceneError unless the samples are those of MASTODON's test, of which alone the published numbers are."""
+    """Raise SceneError unless the samples are the input of MASTODON's test, for which the numbers are published."""
     if not samples[:, 1:].any(axis=0).all():
         rule = "must have accelerations along x, y and z: columns ax, ay and az"
-        raise SceneError("command line", OPTION, str(path), rule)
+        raise SceneError("command line", MASTODON_OPTION, str(path), rule)
 
     def words(count: int, step: float, peaks: Sequence[float] | Array) -> str:
         return f"{count} samples every {step:.4g} s with peaks of " + ", ".join(f"{peak:.4g}" for peak in peaks)
 
     step, peaks = float(np.median(np.diff(samples[:, 0]))), np.abs(samples[:, 1:]).max(axis=0)
-    if len(samples) != SAMPLES or not np.allclose([step, *peaks], [STEP, *PEAKS], rtol=ROUNDED, atol=0.0):
+    if len(samples) != MASTODON_SAMPLES or not np.allclose(
+        [step, *peaks], [MASTODON_STEP, *MASTODON_PEAKS], rtol=INPUT_TOLERANCE, atol=0.0
+    ):
         rule = (
-            f"must be the input of MASTODON's test fp_isolator_seismic_PTV, {words(SAMPLES, STEP, PEAKS)} m/s^2; "
-            f"it has {words(len(samples), step, peaks)}"
+            "must be the input of MASTODON's test fp_isolator_seismic_PTV, "
+            f"{words(MASTODON_SAMPLES, MASTODON_STEP, MASTODON_PEAKS)} m/s^2; it has {words(len(samples), step, peaks)}"
         )
-        raise SceneError("command line", OPTION, str(path), rule)
+        raise SceneError("command line", MASTODON_OPTION, str(path), rule)

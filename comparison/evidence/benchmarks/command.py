@@ -13,30 +13,37 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table
-from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
-from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, mastodon_case
-from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, with_error, word_explanations, word_page
+from comparison.cli.arguments import CommandParser, command, read_number_of_jobs, write_and_show
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.terminal import make_table
+from comparison.evidence.benchmarks.analysis import MODEL_OF_SIDE, BenchmarkTable
+from comparison.evidence.benchmarks.cases import BenchmarkCase, list_cases, load_mastodon_case
+from comparison.evidence.benchmarks.table import (
+    STORED,
+    TABLE_PAGE,
+    Benchmarks,
+    word_explanations,
+    word_page,
+    word_with_error,
+)
 from comparison.evidence.sides import ENGINE, EQUATIONS
-from comparison.runner.attempts import publish_made
+from comparison.runner.attempts import publish_attempted
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.verdicts import NOT_COMPARED
 from reference.problem import SceneError
 
-DIGITS = 6  # digits of a number on the terminal
-SOLVERS = {model.trajectory for model in MODELS.values()}  # what the workers ask
+TERMINAL_DIGITS = 6  # largest number of digits of a number on the terminal
+WORKER_FUNCTIONS = {model.trajectory for model in MODEL_OF_SIDE.values()}  # functions that the workers call
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
-    """Solve the benchmarks that the command line asks for; the exit code."""
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
+    """Solve the benchmarks that the command line names; return the exit code."""
     begin = time.monotonic()
     parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
-    parser.add_out(f"where {STORED.name} and {PAGE} go")
+    parser.add_out(f"where {STORED.name} and {TABLE_PAGE} go")
     parser.add_computing()
     parser.add_argument("--only", default="", metavar="TEXT", help="the benchmarks whose name contains this")
     parser.add_argument(
@@ -46,18 +53,18 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
     )
     options = parser.parse_args(argv)
-    number_of_jobs(options)  # refused before anything else is looked at
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the benchmarks are read
     analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
     out = resolve_destination(options.out)
-    refuse_foreign_files(out, [STORED.name, PAGE])
-    console = wide_console()
-    results = compute_tasks("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
+    refuse_foreign_files(out, [STORED.name, TABLE_PAGE])
+    console = make_wide_console()
+    results = compute_tasks("benchmarks", options, argv, analysis.tasks(), WORKER_FUNCTIONS, console, executor)
     solved = analysis.collect(results)
-    table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
+    table = replace(solved, run=collect_run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
-        return files + publish_made(out, PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
+        return files + publish_attempted(out, TABLE_PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
 
     files = write_and_show(out, write, partial(print_benchmarks, console, table))
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
@@ -66,13 +73,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
 
 def print_benchmarks(console: Console, table: Benchmarks) -> None:
-    """A row for every published number, the differences of the models, the counts and the explanations."""
-    lines = new_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
+    """Print a row for every published number, the differences of the models, the counts and the explanations."""
+    lines = make_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
     for each in table.benchmarks:
         for row in each.rows:
             cells = [f"{row.published:g}"]
             for side in (EQUATIONS, ENGINE):
-                cells += [with_error(row.numbers[side], DIGITS), row.word(side)]
+                cells += [word_with_error(row.numbers[side], TERMINAL_DIGITS), row.word(side)]
             lines.add_row(each.name, ", ".join(filter(None, (row.quantity, row.unit))), *cells)
     console.print(lines)
     for each in table.benchmarks:
@@ -83,8 +90,8 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
 
 
 def _choose_cases(only: str, mastodon_input: Path | None) -> list[BenchmarkCase]:
-    """The benchmarks that the options leave. Raises SceneError."""
-    known = list_cases() + ([] if mastodon_input is None else [mastodon_case(mastodon_input)])
+    """Return the benchmarks that the options select. Raises SceneError."""
+    known = list_cases() + ([] if mastodon_input is None else [load_mastodon_case(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]
     if not chosen:
         names = ", ".join(case.scene.name for case in known)

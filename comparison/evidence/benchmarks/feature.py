@@ -1,17 +1,17 @@
-"""External benchmarks: in the report."""
+"""Report section of the external benchmarks."""
 
 from comparison.evidence.benchmarks.table import (
     STORED,
     verdict_line,
-    with_error,
     word_explanations,
     word_published_number,
+    word_with_error,
 )
-from comparison.report.feature import Feature, stored_field
+from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
-from comparison.verdicts import CLASSES
+from comparison.verdicts import STYLE_CLASSES
 
-FOUND = stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
+FOUND = make_stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
 FEATURE = Feature(
     "benchmarks",
     (FOUND,),
@@ -20,11 +20,11 @@ FEATURE = Feature(
         STORED.word_how_to_make(),
         lambda report: {
             "benchmark_sentences": word_explanations,
-            "benchmark_colors": CLASSES,
+            "benchmark_colors": STYLE_CLASSES,
             "stated": word_published_number,
-            "with_error": with_error,
+            "word_with_error": word_with_error,
         },
-        verdict=lambda results: verdict_line(FOUND.of(results)),
+        verdict=lambda results: verdict_line(FOUND.read_from(results)),
         verifies=True,
     ),
 )

@@ -1,5 +1,5 @@
 """
-What a benchmark publishes, read from a motion.
+Functions that read from a motion the numbers that a benchmark publishes.
 
 Between its instants a motion is the cubic with its positions and velocities, so that a reading does not depend on where
 the instants are.
@@ -8,29 +8,29 @@ the instants are.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from comparison.evidence.sides import spline_along
+from comparison.evidence.sides import interpolate_platform
 from comparison.result_types import Array
 from reference.problem import Trajectory
 
-PARTS = 16  # parts into which the time between two instants is cut, to read extremes and lengths of the path
-ROUNDING = 1e-12  # relative, of the last instant
-STILL = 1e-3  # share of the largest speed: slower turns are creep, not swings
+READING_PARTS = 16  # number of parts of an interval between two instants, where extremes and path lengths are read
+TIME_ROUNDING = 1e-12  # relative rounding error of the last instant of a motion
+CREEP_SPEED_SHARE = 1e-3  # share of the largest speed: a turn with slower motion after it is creep, not a swing
 
 
-def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
-    """Position of the platform along x at some instants, s; NaN behind the end of the motion."""
+def interpolate_positions(motion: Trajectory, times: ArrayLike) -> Array:
+    """Return the position of the platform along x at some instants, s; NaN after the end of the motion."""
     instants = np.asarray(times, dtype=float)
-    values: Array = spline_along(motion, 0)(instants)
-    return np.where(instants <= motion.time[-1] * (1.0 + ROUNDING), values, np.nan)
+    values: Array = interpolate_platform(motion, 0)(instants)
+    return np.where(instants <= motion.time[-1] * (1.0 + TIME_ROUNDING), values, np.nan)
 
 
-def turning_points(motion: Trajectory) -> Array:
-    """Return where the platform's velocity along x changes sign, m; at last where a swing ends in rest or creep."""
+def find_turning_points(motion: Trajectory) -> Array:
+    """Return where the platform's velocity along x changes sign, m, and where its last swing ends."""
     speed = motion.velocity[:, 0, 0]
-    moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
+    moving = np.flatnonzero(np.abs(speed) > CREEP_SPEED_SHARE * np.abs(speed).max())
     sign = np.sign(speed[moving])
-    last = np.flatnonzero(np.diff(sign))  # last sample of every swing but the last one, among the moving samples
-    place = spline_along(motion, 0)
+    last = np.flatnonzero(np.diff(sign))  # index of the last moving sample of every swing but the final one
+    place = interpolate_platform(motion, 0)
     turns = []
     for end, begin in [*zip(moving[last], moving[last + 1]), (moving[-1], len(speed) - 1)]:
         dense = place(_dense_instants(motion, float(motion.time[end]), float(motion.time[begin])))
@@ -38,39 +38,39 @@ def turning_points(motion: Trajectory) -> Array:
     return np.array(turns)
 
 
-def path_length(motion: Trajectory, begin: float, end: float) -> float:
-    """Way that the platform slides between two instants."""
-    dense = np.stack([spline_along(motion, axis)(_dense_instants(motion, begin, end)) for axis in (0, 1)])
+def compute_path_length(motion: Trajectory, begin: float, end: float) -> float:
+    """Return the length of the path that the platform slides between two instants, m."""
+    dense = np.stack([interpolate_platform(motion, axis)(_dense_instants(motion, begin, end)) for axis in (0, 1)])
     return float(np.hypot(*np.diff(dense)).sum())
 
 
-def extreme_positions(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
-    """Smallest and largest position of the platform along x (0) or y (1) from an instant on."""
-    dense = spline_along(motion, axis)(_dense_instants(motion, begin, float(motion.time[-1])))
+def find_extreme_positions(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
+    """Return the smallest and largest position of the platform along x (0) or y (1) from an instant on."""
+    dense = interpolate_platform(motion, axis)(_dense_instants(motion, begin, float(motion.time[-1])))
     return float(dense.min()), float(dense.max())
 
 
-def position_ranges(motion: Trajectory) -> list[float]:
-    """Smallest and largest position of the platform along x, then along y."""
-    return [*extreme_positions(motion, 0), *extreme_positions(motion, 1)]
+def find_position_ranges(motion: Trajectory) -> list[float]:
+    """Return the smallest and largest position of the platform along x, then along y."""
+    return [*find_extreme_positions(motion, 0), *find_extreme_positions(motion, 1)]
 
 
-def half_range(motion: Trajectory, begin: float) -> float:
-    """Amplitude of the platform's oscillation along x from an instant on: a whole period."""
-    lowest, highest = extreme_positions(motion, 0, begin)
+def compute_half_range(motion: Trajectory, begin: float) -> float:
+    """Return half the range of the platform's position along x from an instant on: its amplitude."""
+    lowest, highest = find_extreme_positions(motion, 0, begin)
     return 0.5 * (highest - lowest)
 
 
-def mean_period(motion: Trajectory) -> float:
-    """Mean time between two passages of the platform through x = 0 in the same direction."""
-    passages = spline_along(motion, 0).roots(extrapolate=False)
+def compute_mean_period(motion: Trajectory) -> float:
+    """Return the mean time between two passages of the platform through x = 0 in the same direction."""
+    passages = interpolate_platform(motion, 0).roots(extrapolate=False)
     return float(np.diff(passages[::2]).mean())
 
 
-def natural_periods(motion: Trajectory) -> Array:
-    """Natural periods, s, longest first, of a chain that moves freely along x: accelerations are -A x with one A."""
+def compute_natural_periods(motion: Trajectory) -> Array:
+    """Return the natural periods, s, longest first, of a chain that vibrates freely along x: acceleration = -A x."""
     place, acceleration = motion.position[:, :, 0], motion.absolute_acceleration[:, :, 0]
-    moving = np.abs(place).max(axis=0) > STILL * np.abs(place).max()
+    moving = np.abs(place).max(axis=0) > CREEP_SPEED_SHARE * np.abs(place).max()
     fitted = np.linalg.lstsq(place[:, moving], -acceleration[:, moving], rcond=None)[0]
     squared = np.sort(np.linalg.eigvals(fitted.T).real)
     periods: Array = 2.0 * np.pi / np.sqrt(np.where(squared > 0.0, squared, np.nan))
@@ -78,9 +78,9 @@ def natural_periods(motion: Trajectory) -> Array:
 
 
 def _dense_instants(motion: Trajectory, begin: float, end: float) -> Array:
-    """Instants from `begin` to `end`: those of the motion, and PARTS between any two of them."""
+    """Return instants from `begin` to `end`: those of the motion, and parts of the intervals between them."""
     inner = motion.time[(motion.time > begin) & (motion.time < end)]
     knots = np.concatenate([[begin], inner, [end]])
-    parts = np.arange(PARTS) / PARTS
+    parts = np.arange(READING_PARTS) / READING_PARTS
     dense: Array = np.append((knots[:-1, None] + np.diff(knots)[:, None] * parts).ravel(), end)
     return dense

@@ -1,4 +1,4 @@
-"""Published numbers compared with what both sides compute, as data: a file, and what the report needs of it."""
+"""Table of published numbers compared with those of both sides, as the data of a file and of the report."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,17 +20,17 @@ from comparison.verdicts import (
     word_verdict,
 )
 
-FILE, PAGE = "benchmarks.json", "benchmarks.md"
+TABLE_FILE, TABLE_PAGE = "benchmarks.json", "benchmarks.md"
 
 
-ROUNDING = 1e-12  # relative rounding of a computed value
-FRICTION = "the engine's friction law, linear below v_reg: the equations with it give the same"
-MODEL = "the source models something else, which its benchmark names"
+VALUE_ROUNDING = 1e-12  # relative rounding error of a computed value
+FRICTION_EXPLANATION = "the engine's friction law, linear below v_reg: the equations with it give the same"
+MODEL_EXPLANATION = "the source models something else, which its benchmark names"
 
 
 @result
-class Number:
-    """Number that one side computes for a published one."""
+class SideNumber:
+    """Number that one side computes for a published one, with its error and verdict."""
 
     value: Annotated[float | None, "in the unit of the published number; null without an answer"]
     error: Annotated[float | None, "estimated absolute error; null where it is not known"]
@@ -40,13 +40,13 @@ class Number:
 
 @result
 class PublishedNumber:
-    """One published number."""
+    """One published number with its uncertainty and the numbers of every side."""
 
     quantity: Annotated[str, "what it is"]
     unit: Annotated[str, "its unit; empty for a pure number"]
     published: Annotated[float, "the number"]
     uncertainty: Annotated[float, "absolute, as published or half of the last digit; 0 for an exact number"]
-    numbers: Mapping[str, Number] = field(default_factory=dict)
+    numbers: Mapping[str, SideNumber] = field(default_factory=dict)
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
     def __post_init__(self) -> None:
@@ -57,10 +57,10 @@ class PublishedNumber:
                 )
 
     def judge(self, value: float | None, error: float | None) -> Verdict:
-        """Return the verdict on a value with its error, but for rounding of the value."""
+        """Return the verdict on a value with its error; rounding of the value is no deviation."""
         if value is None or error is None:
             return judge_error(value, error)
-        return judge_error(value - self.published, error + self.uncertainty + ROUNDING * abs(value))
+        return judge_error(value - self.published, error + self.uncertainty + VALUE_ROUNDING * abs(value))
 
     def error_of(self, side: str) -> float | None:
         """Return the comparison error of a side, None without a value."""
@@ -95,22 +95,22 @@ class Benchmark:
 
 @result
 class Benchmarks:
-    """All benchmarks."""
+    """Every benchmark with its results."""
 
     benchmarks: Annotated[Sequence[Benchmark], "one per scene"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def counts(self) -> dict[Verdict, int]:
-        """Numbers of the equations and of the engine by verdict."""
+        """Return how many numbers of the equations and of the engine have each verdict."""
         return count_verdicts(number.verdict for _, _, _, number in self.iterate_numbers())
 
     def count_explanations(self) -> dict[str, int]:
-        """Return how many of the numbers that are not met each explanation has, "" for those that have none."""
+        """Return how many numbers that are not met have each explanation, "" for those without one."""
         found = [number.explanation for _, _, _, number in self.iterate_numbers() if number.verdict == NOT_MET]
-        return {why: found.count(why) for why in (FRICTION, MODEL, "")}
+        return {why: found.count(why) for why in (FRICTION_EXPLANATION, MODEL_EXPLANATION, "")}
 
-    def iterate_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, Number]]:
-        """Every number that has a verdict: of the equations and of the engine."""
+    def iterate_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, SideNumber]]:
+        """Yield every number that has a verdict: those of the equations and of the engine."""
         for each in self.benchmarks:
             for row in each.rows:
                 for side in (EQUATIONS, ENGINE):
@@ -127,18 +127,25 @@ def verdict_line(table: Benchmarks) -> str:
     return word_counts_and_largest(table.counts(), off, "published number")
 
 
-STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
+STORED = StoredFile(TABLE_FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
 
 
-MOST_DIGITS = 7  # digits of a value
-SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
+MAX_DIGITS = 7  # largest number of digits of a value
+# Name of the benchmark and row of its number, for the short table
+SHORT_TABLE_ROWS = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))
 
 
 def word_page(table: Benchmarks) -> str:
-    """benchmarks.md: five numbers, one of each kind, the counts, and every number by its benchmark."""
+    """Return benchmarks.md: five numbers, one of each kind, the counts, and every number by its benchmark."""
     text = (resources.files("comparison.evidence.benchmarks") / "page.md.j2").read_text(encoding="utf-8")
-    short = [(each, each.rows[place]) for name, place in SHORT for each in table.benchmarks if each.name == name]
-    shown = {"word_explanations": word_explanations, "stated": word_published_number, "with_error": with_error}
+    short = [
+        (each, each.rows[place]) for name, place in SHORT_TABLE_ROWS for each in table.benchmarks if each.name == name
+    ]
+    shown = {
+        "word_explanations": word_explanations,
+        "stated": word_published_number,
+        "word_with_error": word_with_error,
+    }
     made: str = jinja2.Template(text, trim_blocks=True).render(table=table, short=short, **shown)
     return made
 
@@ -150,8 +157,8 @@ def word_explanations(table: Benchmarks) -> list[str]:
     return [*sentences, f"{found['']} not met and not explained"]
 
 
-def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
-    """Value and error of a number, the value to the digits that the error leaves, and not more than `digits`."""
+def word_with_error(number: SideNumber, digits: int = MAX_DIGITS) -> str:
+    """Return value and error of a number, the value with the digits that the error leaves, at most `digits`."""
     if number.value is None:
         return "none"
     if not number.error:
@@ -161,5 +168,5 @@ def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
 
 
 def word_published_number(row: PublishedNumber) -> str:
-    """The published number with its unit and uncertainty."""
+    """Return the published number with its unit and uncertainty."""
     return f"{row.published:.7g} {row.unit}".rstrip() + (f" ± {row.uncertainty:g}" if row.uncertainty else "")

@@ -1,44 +1,44 @@
-"""The statements of the paper in both readings of (5.1): `phase-resonance claims [--grid N]`."""
+"""Statements of the paper in both readings of (5.1): `phase-resonance claims [--grid N]`."""
 
 from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
 
-from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, read_whole_number
+from comparison.cli.arguments import STORED_RESULTS_HELP, CommandParser, command, read_whole_number
 from comparison.cli.computing import compute_tasks
-from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
-from comparison.evidence.forced_ratios import forced_ratios
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.evidence.claims.table import CLAIMS_GRID, Claims, ClaimTable, word_claims
+from comparison.evidence.forced_ratios import compute_forced_ratios
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.study.models import SMALL
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import builtin_scenes, load_scene
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Print the table of statements; return the exit code."""
     parser = CommandParser("claims", "The statements of section 5 of the paper in both readings of (5.1).")
-    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
-    parser.add_out(STORED_RESULTS)
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {CLAIMS_GRID})")
+    parser.add_out(STORED_RESULTS_HELP)
     parser.add_computing()
     options = parser.parse_args(argv)
-    grid = GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)
+    grid = CLAIMS_GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, STUDY_TOLERANCE)
-    console = wide_console()
+    console = make_wide_console()
     claims = Claims(grid)
     results = compute_tasks("claims", options, argv, claims.tasks(study), {SMALL.amplification}, console, executor)
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     print_claims(console, table)
     print_ratios(console, study)
-    console.print(claims_line(table), soft_wrap=True)
+    console.print(word_claims(table), soft_wrap=True)
     return 0
 
 
 def print_claims(console: Console, table: ClaimTable) -> None:
-    """Print the verdicts in both readings, then what decides each statement and which cannot hold."""
+    """Print the verdicts in both readings, then the reason of each verdict and the statements that cannot hold."""
     grid = Table("about", "statement", *table.counts, box=None, pad_edge=False)
     for each in table.statements:
         grid.add_row(each.figure, each.says, *(each.verdicts[name].verdict for name in table.counts))
@@ -50,11 +50,11 @@ def print_claims(console: Console, table: ClaimTable) -> None:
 
 
 def print_ratios(console: Console, study: Study) -> None:
-    """Print how intensively the bodies above the platform are forced, by (4.4) alone."""
+    """Print the amplitude ratios of the bodies above the platform, which follow from (4.4) alone."""
     console.print("Amplitude of a body over that of the platform under each harmonic, by (4.4) alone:")
     grid = Table("scene", "axis", "period, s", "body", "ratio", "without decay", box=None, pad_edge=False)
     for scene in study.scenes:
-        for each in forced_ratios(scene):
+        for each in compute_forced_ratios(scene):
             numbers = f"{each.period:.3g}", str(each.body), f"{each.ratio:.2f}", f"{each.steady:.2f}"
             grid.add_row(scene.name, each.axis, *numbers)
     console.print(grid)

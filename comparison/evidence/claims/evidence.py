@@ -1,43 +1,44 @@
-"""What one case shows in one reading of (5.1): its surfaces, how smooth they are, and facts about its motion."""
+"""Evidence of one case in one reading of (5.1): its surfaces, their smoothness, and facts about its motion."""
 
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 import reference
-from comparison.evidence.claims.readings import CASES, PeakReading
-from comparison.evidence.claims.smoothness import Bend, find_bends
+from comparison.evidence.claims.readings import STATEMENT_CASES, PeakReading
+from comparison.evidence.claims.smoothness import SharpestCurvature, find_sharpest_curvatures
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.symmetry import complete_surface
 
-# Relative error of surfaces that the study does not have: enough to count peaks in parts of their range
+# Relative error of surfaces that the study lacks: small enough to count peaks by their prominence
 SURFACE_TOLERANCE = 1e-3
-SHARP = 1e-6  # relative error of the values that tell a fold from a curvature
-FLAT = 0.05  # range of a surface over its mean, below which it has no peaks to speak of
-MOTIONS = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, whose motion is looked at
+CURVATURE_TOLERANCE = 1e-6  # relative error of values whose second differences distinguish a fold from a curvature
+FLAT_RANGE_RATIO = 0.05  # range of a surface over its mean, below which it shows no resonance
+MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase pairs whose motions are computed
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """One case in one reading, by the printed equations (4.3)-(4.4)."""
+    """Evidence of one case in one reading, by the printed equations (4.3)-(4.4)."""
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
     error: float = float("nan")  # largest absolute error estimate
-    statuses: tuple[str, ...] = ()  # the outcomes met
-    bends: tuple[Bend, ...] = ()  # sharpest bend of each body's surface
-    apart: tuple[float, ...] = ()  # max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTIONS
-    swing: float = float("nan")  # max (x_1^2 + y_1^2) / rho^2 over MOTIONS
+    statuses: tuple[str, ...] = ()  # distinct outcomes of the phase pairs
+    bends: tuple[SharpestCurvature, ...] = ()  # sharpest curvature of each body's surface
+    # max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTION_PHASES
+    apart: tuple[float, ...] = ()
+    swing: float = float("nan")  # max (x_1^2 + y_1^2) / rho^2 over MOTION_PHASES
     resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s
-    ground: Bend | None = None  # sharpest bend of the denominator of (5.1)
-    error_message: str = ""  # why there is nothing
-    case: str = ""  # its name
+    ground: SharpestCurvature | None = None  # sharpest curvature of the denominator of (5.1)
+    error_message: str = ""  # why there is no evidence, or ""
+    case: str = ""  # name of the case
 
     def flat(self, body: int) -> bool:
         """Return whether a surface varies by less than its errors, or so little that it shows no resonance."""
         mu = self.mu[..., body - 1]
-        return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT * abs(float(mu.mean()))))
+        return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT_RANGE_RATIO * abs(float(mu.mean()))))
 
     @property
     def complete(self) -> bool:
@@ -60,8 +61,8 @@ class CaseInReading:
 
 
 def gather_evidence(question: CaseInReading) -> Evidence:
-    """Return surfaces, bends and facts of the motions of one case in one reading. Runs inside a worker process."""
-    scene, cutoff = CASES[question.case](), question.reading.cutoff
+    """Return surfaces, curvatures and facts of motions of a case in a reading. Runs inside a worker process."""
+    scene, cutoff = STATEMENT_CASES[question.case](), question.reading.cutoff
 
     def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
@@ -78,26 +79,26 @@ def gather_evidence(question: CaseInReading) -> Evidence:
 
     grid, natural = len(surfaces.mu), reference.modes(scene).period.ravel()
     periods = 2.0 * np.pi / exponents(scene).imag
-    apart, swing = _motion_facts(scene)
+    apart, swing = _measure_motions(scene)
     return replace(
         surfaces,
-        bends=find_bends(surfaces.mu, lambda phases: solve(scene, phases, SHARP).mu),
+        bends=find_sharpest_curvatures(surfaces.mu, lambda phases: solve(scene, phases, CURVATURE_TOLERANCE).mu),
         apart=apart,
         swing=swing,
         resonance=tuple((float(each), float(natural[np.abs(each / natural - 1.0).argmin()])) for each in periods),
-        ground=find_bends(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
+        ground=find_sharpest_curvatures(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
     )
 
 
-def evidence_of_failure(question: CaseInReading, failed: TaskResult) -> Evidence:
-    """Return what stands in place of the evidence that a task did not return."""
+def make_failed_evidence(question: CaseInReading, failed: TaskResult) -> Evidence:
+    """Return evidence without values, for a task that ended without a result."""
     return Evidence(error_message=failed.reason, case=question.case)
 
 
-def _motion_facts(scene: Scene) -> tuple[tuple[float, ...], float]:
-    """Return `apart` and `swing` of the motions from MOTIONS."""
+def _measure_motions(scene: Scene) -> tuple[tuple[float, ...], float]:
+    """Return `apart` and `swing` of the motions at MOTION_PHASES."""
     apart, swing = np.zeros(len(scene.bodies)), 0.0
-    for phase in MOTIONS:
+    for phase in MOTION_PHASES:
         place = reference.trajectory(scene, phase, equations="small").position[..., :2]
         reach = np.abs(place).max(axis=(0, 2))
         apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))

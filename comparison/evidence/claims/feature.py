@@ -1,7 +1,7 @@
-"""The statements of the paper: in the report."""
+"""Report section of the statements of the paper."""
 
-from comparison.evidence.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.evidence.claims.table import Claims, ClaimTable, claims_line, count_met
+from comparison.evidence.claims.peaks_and_valleys import MAX_SHARE, MIN_SHARE, SHARE
+from comparison.evidence.claims.table import Claims, ClaimTable, count_met, word_claims
 from comparison.report.feature import Feature, ResultField
 from comparison.report.section import Section
 
@@ -16,9 +16,11 @@ FEATURE = Feature(
     section=Section(
         "The paper's claims",
         "phase-resonance run with every scene of the paper makes it, and phase-resonance claims alone",
-        lambda report: {"peak_share": SHARE, "peak_shares": (LEAST_SHARE, MOST_SHARE)},
+        lambda report: {"peak_share": SHARE, "peak_shares": (MIN_SHARE, MAX_SHARE)},
         verifies=True,
-        verdict=lambda results: f"of {len(FOUND.of(results).statements)} statements, {count_met(FOUND.of(results))}",
-        lead=lambda results: claims_line(FOUND.of(results)),
+        verdict=lambda results: (
+            f"of {len(FOUND.read_from(results).statements)} statements, {count_met(FOUND.read_from(results))}"
+        ),
+        lead=lambda results: word_claims(FOUND.read_from(results)),
     ),
 )

@@ -19,60 +19,61 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-SHARE = 0.3  # share of the range
-LEAST_SHARE, MOST_SHARE = 0.2, 0.4  # a count that changes between these depends on the definition
+SHARE = 0.3  # smallest prominence of a peak over the range of the surface
+# A count that changes between these prominences depends on the definition of a peak.
+MIN_SHARE, MAX_SHARE = 0.2, 0.4
 
 
 @dataclass(frozen=True)
-class Relief:
-    """Peaks (row, column), highest first; and at each point the number of the peak that steepest ascent leads to."""
+class PeakBasins:
+    """Peaks (row, column), highest first; and for each point the number of the peak to which steepest ascent leads."""
 
     tops: Sequence[tuple[int, int]]
     regions: NDArray[np.int_]
 
 
-class Counts(NamedTuple):
-    """Peaks and valleys of one surface."""
+class PeakCounts(NamedTuple):
+    """Numbers of peaks and of valleys of one surface."""
 
     peaks: int
     valleys: int
 
 
-def count_periodic_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_periodic_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
     """
-    Peaks and valleys on the square that closes at 2 pi.
+    Return the numbers of peaks and valleys on the square that closes at 2 pi.
 
     mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
     """
-    return Counts(len(find_relief(mu, error, share).tops), len(find_relief(-mu, error, share).tops))
+    return PeakCounts(len(find_peak_basins(mu, error, share).tops), len(find_peak_basins(-mu, error, share).tops))
 
 
-def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
-    """Peaks, and valleys between two peaks, on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges."""
+def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
+    """Return the numbers of peaks, and of valleys between two peaks, on the closed square [0, 2 pi]^2 as drawn."""
     return _count_bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
 
-def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
-    """Peaks and valleys of the mean along the diagonals alpha1 - alpha2 as the drawn square shows it, -2 pi to 2 pi."""
+def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
+    """Return the numbers of peaks and valleys of the mean along diagonals alpha1 - alpha2, from -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
     along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
     if np.ptp(along) < share * np.ptp(mu):
-        return Counts(0, 0)
+        return PeakCounts(0, 0)
     return _count_bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
 
 
-def _count_bounded(mu: Array, error: float, share: float) -> Counts:
-    peaks, valleys = (find_relief(side * mu, error, share, closed=False) for side in (1.0, -1.0))
+def _count_bounded(mu: Array, error: float, share: float) -> PeakCounts:
+    peaks, valleys = (find_peak_basins(side * mu, error, share, closed=False) for side in (1.0, -1.0))
     between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
-    return Counts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
+    return PeakCounts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
 
 
-def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
-    """The peaks of a surface (n, m), `closed` if periodic; none where its range is within its errors."""
+def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> PeakBasins:
+    """Return the peaks of a surface (n, m), `closed` if periodic; none where its range is within its errors."""
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
-        return Relief([], np.full(mu.shape, -1))
+        return PeakBasins([], np.full(mu.shape, -1))
     least = max(share * span, 2.0 * error)
     around = _neighbors(*mu.shape, closed)
     height = mu.ravel().tolist()
@@ -80,12 +81,13 @@ def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: boo
     rank = [0] * len(height)
     for place, node in enumerate(order):
         rank[node] = place
-    parent = [-1] * len(height)  # islands above the falling water: every island's root is its highest node
-    top_of = [-1] * len(height)  # the maximum that steepest ascent leads to
-    into = list(range(len(height)))  # for lesser maxima, the one across their saddle
+    # Union-find forest of the islands above a falling water level: every root is the island's highest node
+    parent = [-1] * len(height)
+    top_of = [-1] * len(height)  # maximum to which steepest ascent leads
+    into = list(range(len(height)))  # for maxima of small prominence, the maximum across their saddle
     tops = []
     for node in order:
-        islands: dict[int, int] = {}  # islands adjacent to this node, with their highest node
+        islands: dict[int, int] = {}  # islands adjacent to this node, with their highest nodes
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
                 islands.setdefault(_root_of_node(parent, other), other)
@@ -103,7 +105,7 @@ def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: boo
     peaks = [top for top in tops if into[top] == top]
     number = {top: peaks.index(_root_of_node(into, top)) for top in tops}
     regions = np.array([number[top] for top in top_of]).reshape(mu.shape)
-    return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
+    return PeakBasins([divmod(top, mu.shape[1]) for top in peaks], regions)
 
 
 def _root_of_node(parent: list[int], node: int) -> int:
@@ -115,7 +117,7 @@ def _root_of_node(parent: list[int], node: int) -> int:
 
 @cache
 def _neighbors(rows: int, columns: int, closed: bool) -> list[list[int]]:
-    """The nodes in the square around each: a ridge may run along the diagonal of the grid."""
+    """Return the nodes in the square around each node: a ridge may run along the diagonal of the grid."""
     numbers = np.arange(rows * columns).reshape(rows, columns)
     padded = np.pad(numbers, 1, mode="wrap") if closed else np.pad(numbers, 1, constant_values=-1)
     squares = np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).reshape(-1, 9).tolist()

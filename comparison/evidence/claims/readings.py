@@ -1,4 +1,4 @@
-"""The two readings of (5.1), and the scenes that the paper's statements are about, with the parameters as printed."""
+"""The two readings of (5.1), and the scenes of the paper's statements with the parameters as printed."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from reference.problem import Scene, load_scene, readings
 
 @dataclass(frozen=True)
 class PeakReading:
-    """Reading of the maximum of (5.1). model: key of the study's model; cutoff: v_c, m/s, None for the supremum."""
+    """Reading of the maximum in (5.1). model: key of the study's model; cutoff: v_c, m/s, None for the supremum."""
 
     name: str
     model: str
@@ -24,14 +24,14 @@ READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
 
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
-    """Return the supremum where friction cannot hold the platform: both readings are the same there."""
+    """Return the supremum if friction cannot hold the platform, because both readings are equal then."""
     return reading if models.has_dry_friction(scene) else LITERAL_SUPREMUM
 
 
 @cache
-def _platform_alone(name: str, oscillator: bool) -> Scene:
+def _make_platform_scene(name: str, oscillator: bool) -> Scene:
     """
-    Return a scene of the paper without what stands on its platform, which the loading meets close to its period T_c.
+    Return a scene of the paper with its platform alone, whose period T_c is close to the loading's periods.
 
     oscillator: instead without friction, of the period T_3x of the second body on its springs: far from both harmonics.
     """
@@ -44,8 +44,8 @@ def _platform_alone(name: str, oscillator: bool) -> Scene:
     return scene.with_values({"name": f"{name} {kind}", "bodies": [platform], **values})
 
 
-CASES: Mapping[str, Callable[[], Scene]] = {
+STATEMENT_CASES: Mapping[str, Callable[[], Scene]] = {
     **{name: partial(load_scene, name) for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")},
-    **{f"{name} alone": partial(_platform_alone, name, False) for name in ("fig3-I", "fig3-II")},
-    "fig3-II oscillator": partial(_platform_alone, "fig3-II", True),
+    **{f"{name} alone": partial(_make_platform_scene, name, False) for name in ("fig3-I", "fig3-II")},
+    "fig3-II oscillator": partial(_make_platform_scene, "fig3-II", True),
 }

@@ -1,5 +1,5 @@
 """
-Whether a surface is smooth: zoom into where it bends most and see how its second difference falls with the step.
+Smoothness of a surface: how its second difference falls with the step where its curvature is sharpest.
 
 In every direction the second difference f(p - h) - 2 f(p) + f(p + h) of a surface with a curvature falls like h^2, of
 one with a fold like h, and of one with a jump not at all. The zoom starts at the places of the grid that bend most and
@@ -14,17 +14,18 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
-PLACES = 2  # places of the grid that are looked at
-HALVINGS = 5
-JUDGED = 3  # the last halvings, from which the exponent is taken: the first still see the shape of the peak
-FOLD, JUMP = 1.5, 0.5  # exponents below these are a fold, a jump
+DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
+SEARCHED_PLACES = 2  # number of grid points from which a zoom starts on each surface
+STEP_HALVINGS = 5
+FITTED_HALVINGS = 3  # The exponent is fitted to the last halvings: earlier steps still show the shape of the peak.
+# A surface with an exponent of its second difference below 1.5 has a fold, below 0.5 a jump.
+MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5
 
 
 @dataclass(frozen=True)
-class Bend:
+class SharpestCurvature:
     """
-    Place where a surface bends most: phases (alpha1, alpha2), rad; exponent of its second difference, NaN unless a
+    Sharpest curvature of a surface: phases (alpha1, alpha2), rad; exponent of its second difference, NaN unless a
     value is missing; the lowest of the places looked at.
     """
 
@@ -34,18 +35,18 @@ class Bend:
     @property
     def smooth(self) -> bool:
         """Return whether the surface is smooth there."""
-        return self.exponent > FOLD
+        return self.exponent > MAX_FOLD_EXPONENT
 
     @property
     def kind(self) -> str:
-        """ "smooth", "fold", "jump" or "no answer"."""
+        """Return "smooth", "fold", "jump" or "no answer"."""
         if not np.isfinite(self.exponent):
             return "no answer"
-        return "smooth" if self.smooth else "fold" if self.exponent > JUMP else "jump"
+        return "smooth" if self.smooth else "fold" if self.exponent > MAX_JUMP_EXPONENT else "jump"
 
 
-def find_bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
-    """The sharpest bend of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad, to 1e-4."""
+def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tuple[SharpestCurvature, ...]:
+    """Return the sharpest curvature of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad."""
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest_places(mu[..., body])]
@@ -54,7 +55,7 @@ def find_bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
     values = np.array([[mu[*((at + side * go) % n), i] for side in (-1, 0, 1)] for i, at, go in starts])
     every = np.arange(len(starts))
     sizes = [np.abs(_second_differences(values))]
-    for _ in range(HALVINGS):
+    for _ in range(STEP_HALVINGS):
         way = way / 2.0
         new = solve(np.concatenate([center - way, center + way])).reshape(2, len(starts), bodies)[:, every, body]
         row = np.stack([values[:, 0], new[0], values[:, 1], new[1], values[:, 2]], axis=1)
@@ -63,11 +64,13 @@ def find_bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
         center = center + (best - 1)[:, None] * way
         sizes.append(np.abs(_second_differences(values)))
     tiny = np.finfo(float).tiny
-    exponents = np.log2(np.maximum(sizes[-1 - JUDGED], tiny) / np.maximum(sizes[-1], tiny)) / JUDGED
+    exponents = np.log2(np.maximum(sizes[-1 - FITTED_HALVINGS], tiny) / np.maximum(sizes[-1], tiny)) / FITTED_HALVINGS
     of_bodies = (np.flatnonzero(body == number) for number in range(bodies))
-    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # NaN is the least
+    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # argmin takes NaN for the smallest
     phases = np.mod(center, 2.0 * np.pi)
-    return tuple(Bend(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest)
+    return tuple(
+        SharpestCurvature(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest
+    )
 
 
 def _second_differences(values: Array) -> Array:
@@ -76,9 +79,12 @@ def _second_differences(values: Array) -> Array:
 
 
 def _sharpest_places(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
-    """The PLACES of largest second difference, no two of them adjacent: index pair and direction."""
+    """Return the grid points of largest second difference, no two of them adjacent: index pair and direction."""
     size = np.array(
-        [np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way) for way in DIRECTIONS]
+        [
+            np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way)
+            for way in DIFFERENCE_DIRECTIONS
+        ]
     )
     best, direction = size.max(axis=0), size.argmax(axis=0)
     n = len(mu)
@@ -87,7 +93,7 @@ def _sharpest_places(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]
         place = np.array(divmod(int(at), n))
         apart = [np.abs((place - other + n // 2) % n - n // 2).max() for other, _ in places]
         if all(distance > 1 for distance in apart):
-            places.append((place, DIRECTIONS[direction[*place]]))
-        if len(places) == PLACES:
+            places.append((place, DIFFERENCE_DIRECTIONS[direction[*place]]))
+        if len(places) == SEARCHED_PLACES:
             break
     return places

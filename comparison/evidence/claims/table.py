@@ -1,4 +1,4 @@
-"""The statements of section 5 in the two readings of (5.1), with the parameters as printed."""
+"""Table of the paper's statements of section 5 in both readings of (5.1), with the parameters as printed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from pydantic import computed_field
 
 from comparison.evidence.claims.checks import StatementVerdict
 from comparison.evidence.claims.claims import CLAIMS
-from comparison.evidence.claims.evidence import CaseInReading, Evidence, evidence_of_failure, gather_evidence
+from comparison.evidence.claims.evidence import CaseInReading, Evidence, gather_evidence, make_failed_evidence
 from comparison.evidence.claims.readings import (
     AS_INTEGRATED,
-    CASES,
     LITERAL_SUPREMUM,
     READINGS,
+    STATEMENT_CASES,
     PeakReading,
     effective_reading,
 )
@@ -24,17 +24,17 @@ from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import values_of
+from comparison.surfaces.surfaces import select_values
 from comparison.verdicts import MET, NOT_COMPARED, Verdict, count_verdicts
 from reference.problem import builtin_scenes
 
-GRID = 24  # phases per axis: on 16, 32, 48 and 64 the same statements are met
-COARSE = 2  # every which phase of surfaces that are only correlated with another
+CLAIMS_GRID = 24  # phases per axis; on 16, 32, 48 and 64 the same statements are met
+CORRELATION_STRIDE = 2  # stride of the phases of surfaces that are only correlated with others
 
 
 @result
 class Statement:
-    """One statement of the paper about its figures."""
+    """One statement of the paper about its figures, with its verdicts."""
 
     figure: Annotated[str, "figure of the paper"]
     says: Annotated[str, "what the paper says"]
@@ -45,7 +45,7 @@ class Statement:
     @property
     def reasons(self) -> list[str]:
         """
-        Return what decides: one text where both readings say the same, else one for each that begins with its name.
+        Return the reasons of the verdicts: one text if both readings give the same, else one for each reading.
         """
         texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
         same = len({*texts.values()}) == 1
@@ -69,7 +69,7 @@ class ClaimTable:
         }
 
 
-def claims_line(table: ClaimTable) -> str:
+def word_claims(table: ClaimTable) -> str:
     """
     Return how many of the paper's statements are met in each reading of (5.1), in one sentence.
 
@@ -84,7 +84,7 @@ def claims_line(table: ClaimTable) -> str:
 
     Examples
     --------
-    >>> claims_line(ClaimTable(16, ())).partition(", with")[0]
+    >>> word_claims(ClaimTable(16, ())).partition(", with")[0]
     "Of the paper's 0 statements about its figures"
     """
     return (
@@ -103,11 +103,11 @@ def count_met(table: ClaimTable) -> str:
 
 @dataclass(frozen=True)
 class Claims(Analysis[ClaimTable]):
-    """Every statement in both readings, on `grid` phases per axis, from the study's surfaces where it has these."""
+    """Analysis of every statement in both readings on `grid` phases per axis, if possible from the study's surfaces."""
 
     key, stage, needs_surfaces = "claims", "claims", True
     seconds = 0.3
-    grid: int = GRID
+    grid: int = CLAIMS_GRID
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Return one task for each case and reading; none unless the study has every scene of the paper."""
@@ -120,34 +120,36 @@ class Claims(Analysis[ClaimTable]):
             return None
         evidence: Mapping[str, Mapping[str, Evidence]] = {
             reading.name: {
-                case: results.value(tasks[case, effective_reading(reading, make())], evidence_of_failure)
-                for case, make in CASES.items()
+                case: results.value(tasks[case, effective_reading(reading, make())], make_failed_evidence)
+                for case, make in STATEMENT_CASES.items()
             }
             for reading in READINGS
         }
-        return table_of(
+        return make_claim_table(
             {name: [claim.verdict(cases) for claim in CLAIMS] for name, cases in evidence.items()}, self.grid
         )
 
     def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
-        """Return the tasks by case and effective reading: where friction cannot hold the platform both have one."""
-        if not paper_complete(study):
+        """Return the tasks by case and effective reading: one task where both readings are equal."""
+        if not has_every_paper_scene(study):
             return {}
         tasks = {}
-        for case, make in CASES.items():
-            nested = len(make().bodies) == 1 and self.grid % COARSE == 0
-            grid = self.grid // COARSE if nested else self.grid
+        for case, make in STATEMENT_CASES.items():
+            nested = len(make().bodies) == 1 and self.grid % CORRELATION_STRIDE == 0
+            grid = self.grid // CORRELATION_STRIDE if nested else self.grid
             for reading in dict.fromkeys(effective_reading(each, make()) for each in READINGS):
-                question = CaseInReading(case, reading, grid, surfaces_of_study(study, surfaces, case, reading, grid))
+                question = CaseInReading(
+                    case, reading, grid, select_study_surfaces(study, surfaces, case, reading, grid)
+                )
                 tasks[case, reading] = Task(gather_evidence, question, self.stage)
         return tasks
 
 
-def surfaces_of_study(
+def select_study_surfaces(
     study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
 ) -> Evidence | None:
     """
-    Return the surfaces of a case in a reading that the study has on a grid that holds `grid` phases per axis.
+    Return the study's surfaces of a case in a reading if its grid contains one of `grid` phases per axis.
 
     None where it has not: without that model, on another grid, or for a scene that is not as printed.
     """
@@ -156,24 +158,24 @@ def surfaces_of_study(
     if surfaces is None or scene is None or model is None or not model.applies(scene):
         return None
     stride = study.stride(model, scene)
-    if scene.digest() != CASES[case]().digest() or study.grid % (stride * grid):
+    if scene.digest() != STATEMENT_CASES[case]().digest() or study.grid % (stride * grid):
         return None
     every = slice(None, None, study.grid // (stride * grid))
     mu, error = (
-        np.moveaxis(values_of(surfaces, name, case, model)[: len(scene.bodies), every, every], 0, -1)
+        np.moveaxis(select_values(surfaces, name, case, model)[: len(scene.bodies), every, every], 0, -1)
         for name in ("mu", "error")
     )
-    statuses = np.unique(values_of(surfaces, "status", case, model)[every, every].astype(str)).tolist()
+    statuses = np.unique(select_values(surfaces, "status", case, model)[every, every].astype(str)).tolist()
     return Evidence(mu.copy(), float(np.nanmax(error, initial=0.0)), tuple(statuses), case=case)
 
 
-def paper_complete(study: Study) -> bool:
-    """Return whether a study has every scene of the paper: the statements are about all of them."""
+def has_every_paper_scene(study: Study) -> bool:
+    """Return whether a study has every scene of the paper, as the statements need."""
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
-def table_of(verdicts: Mapping[str, list[StatementVerdict]], grid: int = GRID) -> ClaimTable:
-    """Return the table from the verdicts of CLAIMS by name of the reading."""
+def make_claim_table(verdicts: Mapping[str, list[StatementVerdict]], grid: int = CLAIMS_GRID) -> ClaimTable:
+    """Return the table made of the verdicts on all statements by name of the reading."""
     rows = [dict(zip(verdicts, row)) for row in zip(*verdicts.values(), strict=True)]
     return ClaimTable(
         grid,

@@ -1,5 +1,5 @@
 """
-What the steps of friction law and contact tend to: regularization to nothing, contact stiffness to infinity.
+Limits of the friction law and the contact: regularization to zero, contact stiffness to infinity.
 
 Friction linear below v_reg against the set-valued law read at rest and above v_c = v_reg: the same motion but for what
 happens below that speed, so that the difference must vanish with it. The supremum also holds what lies below every
@@ -18,7 +18,7 @@ import numpy as np
 
 import multibody
 import reference
-from comparison.evidence.trends import NONE, Trend, fit_trend
+from comparison.evidence.trends import NO_VALUES, Trend, fit_trend
 from comparison.result_types import Array
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
@@ -27,125 +27,137 @@ from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Amplification, Outcome, Scene, ground_peak, loading_period
 
-Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
+RelativeDifferences = tuple[Array, Array]  # relative differences and their errors, (P, S, N)
 
-PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
-FEW = PHASES[[0, 3]]  # rad, phase pairs that the engine computes
-PERIODS = 6.0  # periods of the slower harmonic: the loading is strongest in the first of them
-FEW_PERIODS = 3.0  # periods of the slower harmonic that the engine is run for
-FEWEST_PERIODS = 2.5  # periods of the slower harmonic that the engine is run for at a constant step
-REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
-ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s
-PENETRATIONS = (3e-3, 1e-3, 3e-4)  # shares of rho, under the weight
-V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
-STEPS_PER_PERIOD = 2250  # steps per period of the faster harmonic, and twice as many
-MOST_STEPS = 20_000
-REFERENCE_TOLERANCE = 1e-7  # relative error of mu by the equations
-NEWTON, RESIDUAL = 1e-8, 1e-12  # tolerances of the engine's steps
-SAFETY = 1.5  # on the difference of two steps, which is half to once the error of the coarser one
+# rad, phase pairs that the equations compute
+EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
+ENGINE_PHASES = EQUATION_PHASES[[0, 3]]  # rad, phase pairs that the engine computes
+EQUATION_PERIODS = 6.0  # duration in periods of the slower harmonic: the loading is strongest in the first of them
+ENGINE_PERIODS = 3.0  # duration of the engine's motions in periods of the slower harmonic
+CONSTANT_STEP_PERIODS = 2.5  # duration of the engine's motions at a constant step in periods of the slower harmonic
+REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s, v_reg of the equations
+ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s, v_reg of the engine
+PENETRATIONS = (3e-3, 1e-3, 3e-4)  # penetration of the contact under the weight, over rho
+STIFFNESS_V_REG = 1e-2  # m/s, v_reg while the contact stiffness varies: a constant step resolves it
+STEPS_PER_PERIOD = 2250  # constant steps per period of the faster harmonic; a second run takes twice as many
+MAX_STEPS = 20_000
+EQUATION_TOLERANCE = 1e-7  # relative error of mu by the equations
+# Tolerances of the Newton iteration and of its residual in the engine's steps
+NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
+STEP_ERROR_FACTOR = 1.5  # factor on the difference of two steps, which is half to once the error of the coarser one
 
 
 def _compare_at_speeds(
     side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float], resolved: bool,
     scene: Scene,
-) -> Values:  # fmt: skip
-    """The motion at each v_reg against the set-valued one, resolved at the same speed or the supremum."""
+) -> RelativeDifferences:  # fmt: skip
+    """Return mu at each v_reg relative to that with set-valued friction, resolved at the same speed or supremum."""
     short = shorten_scene(scene, periods)
     return _relative_differences(
         (
             side.amplification(short, phases, regularization=v, tolerance=tolerance),
-            reference.amplification(short, phases, tolerance=REFERENCE_TOLERANCE, cutoff=v if resolved else None),
+            reference.amplification(short, phases, tolerance=EQUATION_TOLERANCE, cutoff=v if resolved else None),
         )
         for v in speeds
     )
 
 
-def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> Values:
+def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> RelativeDifferences:
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
 
 
-def _compare_stiff_contacts(scene: Scene) -> Values:
-    """The engine with ever stiffer contacts against the rigid contact of the exact equations."""
-    short = shorten_scene(scene, FEWEST_PERIODS)
-    v_reg = None if scene.lubricated else V_REG
-    exact = reference.amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
+def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
+    """Return mu of the engine with ever stiffer contacts relative to the exact equations, whose contact is rigid."""
+    short = shorten_scene(scene, CONSTANT_STEP_PERIODS)
+    v_reg = None if scene.lubricated else STIFFNESS_V_REG
+    exact = reference.amplification(short, ENGINE_PHASES, tolerance=EQUATION_TOLERANCE, regularization=v_reg)
     coarse, fine = (
         np.stack([_solve_at_constant_step(short, v_reg, penetration, factor) for penetration in PENETRATIONS], axis=1)
         for factor in (1, 2)
     )
     scale = exact.mu[:, None]
-    errors = np.hypot(SAFETY * np.abs(fine - coarse), exact.error[:, None]) / scale
+    errors = np.hypot(STEP_ERROR_FACTOR * np.abs(fine - coarse), exact.error[:, None]) / scale
     return fine / scale - 1.0, errors
 
 
 def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
-    """mu of the translational model at FEW, (P, N), with `factor` times the steps; NaN where the engine gives up."""
-    mu = np.full((len(FEW), len(scene.bodies)), np.nan)
-    count = factor * min(MOST_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
+    """Return mu of the translational model, (P, N), with `factor` times the steps; NaN where the engine gives up."""
+    mu = np.full((len(ENGINE_PHASES), len(scene.bodies)), np.nan)
+    count = factor * min(MAX_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
     step = scene.duration / count
-    for row, phase in enumerate(FEW):
+    for row, phase in enumerate(ENGINE_PHASES):
         run = multibody.single_run(
-            scene, phase, regularization=v_reg, step=step, penetration=penetration, newton=NEWTON, residual=RESIDUAL
+            scene,
+            phase,
+            regularization=v_reg,
+            step=step,
+            penetration=penetration,
+            newton=NEWTON_TOLERANCE,
+            residual=RESIDUAL_TOLERANCE,
         )
         if run.status == Outcome.OK:
             mu[row] = run.peak / ground_peak(scene, [phase])[0]
     return mu
 
 
-class LimitCase(NamedTuple):
-    """One row for each body of the table: what tends to what, with which parameter, like which power of it."""
+class ConvergenceCase(NamedTuple):
+    """One limit: what converges to what, with which parameter, and with which power of it."""
 
     what: str
     parameter: tuple[float, ...]
     expected: float | None
-    measure: Callable[[Scene], Values]
+    measure: Callable[[Scene], RelativeDifferences]
     applies: Callable[[Scene], bool]
 
 
-_by_equations = partial(_compare_at_speeds, reference, PHASES, PERIODS, REFERENCE_TOLERANCE, REGULARIZATIONS)
-_by_engine = partial(_compare_at_speeds, multibody, FEW, FEW_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True)
+_by_equations = partial(
+    _compare_at_speeds, reference, EQUATION_PHASES, EQUATION_PERIODS, EQUATION_TOLERANCE, REGULARIZATIONS
+)
+_by_engine = partial(
+    _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
+)
 
-LIMITS = (
-    LimitCase(
+CONVERGENCE_CASES = (
+    ConvergenceCase(
         "exact equations: regularized against resolved",
         REGULARIZATIONS,
         1.0,
         partial(_by_equations, True),
         has_dry_friction,
     ),
-    LimitCase(
+    ConvergenceCase(
         "exact equations: regularized against supremum",
         REGULARIZATIONS,
         None,
         partial(_by_equations, False),
         has_dry_friction,
     ),
-    LimitCase("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, has_dry_friction),
-    LimitCase("elastic contact against rigid", PENETRATIONS, 1.0, _compare_stiff_contacts, lambda scene: True),
+    ConvergenceCase("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, has_dry_friction),
+    ConvergenceCase("elastic contact against rigid", PENETRATIONS, 1.0, _compare_stiff_contacts, lambda scene: True),
 )
 
-Arguments = tuple[Scene, int]  # and the number of the limit
+CaseArguments = tuple[Scene, int]  # scene, and index of the limit in LIMITS
 
 
-def limit_trends(task: Arguments) -> list[Trend]:
-    """One limit in one scene. Runs inside a worker process."""
+def fit_limit_trends(task: CaseArguments) -> list[Trend]:
+    """Return the trend of every body in one limit of one scene. Runs inside a worker process."""
     scene, number = task
-    sizes, errors = LIMITS[number].measure(scene)
+    sizes, errors = CONVERGENCE_CASES[number].measure(scene)
     return _fit_trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))
 
 
-def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
-    nothing = [NONE] * len(task[0].bodies)
+def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
+    nothing = [NO_VALUES] * len(task[0].bodies)
     return _fit_trends(task, nothing, nothing, failed.reason)
 
 
 def _fit_trends(
-    task: Arguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
+    task: CaseArguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
 ) -> list[Trend]:
     scene, number = task
-    what, parameter, expected, *_ = LIMITS[number]
+    what, parameter, expected, *_ = CONVERGENCE_CASES[number]
     return [
         fit_trend(scene.name, body, what, parameter, *numbers, expected, error_message)
         for body, numbers in enumerate(zip(sizes, errors), start=1)
@@ -153,14 +165,17 @@ def _fit_trends(
 
 
 class Convergence(MappedAnalysis[list[Trend]]):
-    """Every limit in every scene that has it, for each body."""
+    """Analysis of every limit in every scene that has it, for each body."""
 
     key, stage = "convergence", "convergence"
     seconds = 1.5
-    function, without_value = staticmethod(limit_trends), staticmethod(_without_value)
+    function, without_value = staticmethod(fit_limit_trends), staticmethod(_without_value)
 
-    def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Every scene with phases, and the numbers of its limits."""
+    def task_arguments(self, study: Study, surfaces: Any = None) -> list[CaseArguments]:
+        """Return every scene with phases, with the indices of its limits."""
         return [
-            (scene, number) for scene in study.phased for number, limit in enumerate(LIMITS) if limit.applies(scene)
+            (scene, number)
+            for scene in study.phased
+            for number, limit in enumerate(CONVERGENCE_CASES)
+            if limit.applies(scene)
         ]

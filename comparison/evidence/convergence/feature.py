@@ -1,4 +1,4 @@
-"""Convergence of friction law and contact: in the report."""
+"""Report section of the convergence of friction law and contact."""
 
 from comparison.evidence.convergence.analysis import Convergence
 from comparison.evidence.trend_feature import make_trend_feature

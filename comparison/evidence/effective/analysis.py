@@ -1,4 +1,4 @@
-"""What each model really computed with, read back from one of its motions and not from its inputs."""
+"""Effective values of each model, read back from one of its motions and not from its inputs."""
 
 import math
 from collections.abc import Sequence
@@ -14,20 +14,21 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
-from comparison.wording import exception_line, percent
+from comparison.wording import percent, word_exception
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
-PHASES = (0.3, 1.1)  # rad, of the motion that is measured
-DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
-LEAST_SHARE = 0.1  # share of the change from slow to fast: motions that see less of it do not tell the fast one
-LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none: what contacts give way by
-FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
+PHASES = (0.3, 1.1)  # rad, phases of the motion that is measured
+DURATION = 6.0  # s: two harmonics are strongest in their first seconds; a record is followed to its end
+# Motions that reach less than this share of the change from slow to fast friction do not determine the fast value.
+MIN_FRICTION_CHANGE_SHARE = 0.1
+MAX_FLAT_SLOPE = 1e-5  # rise of a flat slider over its displacement that counts as zero: contacts yield by so much
+MEASURED_SPEED_SHARE = 0.9  # share of the platform's largest speed above which friction is measured
 
 
 @result
-class Effective:
-    """Values read back from one motion of a model, or as the scene states them; null where the motion does not tell."""
+class EffectiveModelValues:
+    """Values read back from one motion of a model, or stated by the scene; null if the motion cannot tell."""
 
     scene: Annotated[Text, "name of the scene"]
     model: Annotated[str, "key of the model, or scene"]
@@ -42,8 +43,8 @@ class Effective:
     error_message: Annotated[Text, "why there are no values, or empty"] = ""
 
 
-def word_effective(values: Sequence[Effective]) -> str:
-    """Return how far the values read back lie at most from those that the scenes state."""
+def word_effective(values: Sequence[EffectiveModelValues]) -> str:
+    """Return the largest deviation of the values read back from those that the scenes state."""
     known = {each.scene: each for each in values if each.model == "scene"}
     parts = []
     for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
@@ -55,10 +56,10 @@ def word_effective(values: Sequence[Effective]) -> str:
     return f"largest departures from what the scenes state: {', '.join(parts)}"
 
 
-def values_of_scene(scene: Scene) -> Effective:
-    """Return the values as the scene states them; the platform begins at rest on the plate and moves with it."""
+def read_scene_values(scene: Scene) -> EffectiveModelValues:
+    """Return the values that the scene states; the platform starts at rest relative to the plate."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
-    return Effective(
+    return EffectiveModelValues(
         scene=scene.name,
         model="scene",
         radius=scene.radius,
@@ -71,10 +72,10 @@ def values_of_scene(scene: Scene) -> Effective:
     )
 
 
-def read_back(task: tuple[Scene, Model]) -> Effective:
-    """The values of one model. What goes wrong is said in `error_message`; a value is never made up."""
+def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
+    """Return the values of one model; `error_message` states what goes wrong, and no value is made up."""
     scene, model = task
-    nothing = Effective(scene.name, model.key)
+    nothing = EffectiveModelValues(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
     short = scene.with_values({"duration": lasting})
     try:
@@ -82,26 +83,28 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
         ended = {"error_message": f"the motion ended: {motion.status}"}
         return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:
-        return replace(nothing, error_message=exception_line(error))
+        return replace(nothing, error_message=word_exception(error))
 
 
-class EffectiveValues(MappedAnalysis[list[Effective]]):
-    """For every scene what it states, then what the motion of each model shows."""
+class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
+    """Analysis of the values that each scene states and that the motion of each model shows."""
 
     key, stage, level = "effective", "effective values", 2
     seconds = 1.0
-    function = staticmethod(read_back)
-    without_value = staticmethod(lambda task, failed: Effective(task[0].name, task[1].key, error_message=failed.reason))
+    function = staticmethod(read_values_back)
+    without_value = staticmethod(
+        lambda task, failed: EffectiveModelValues(task[0].name, task[1].key, error_message=failed.reason)
+    )
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
-        """Every model of every scene."""
+        """Return every scene with every model."""
         return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
-        """In the order scene, model; what the scene states comes first."""
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[EffectiveModelValues]:
+        """Return the values in the order scene, model; those that the scene states come first."""
         read = self.values(study, surfaces, results)
         of_scenes = (
-            [values_of_scene(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
+            [read_scene_values(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
         )
         return [value for values in of_scenes for value in values]
 
@@ -112,21 +115,21 @@ def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
     swing = (place**2).sum(axis=1)
     far = int(np.argmax(swing))
     radius = float(swing[far] / (2.0 * place[far, 2])) if place[far, 2] > 0.0 else float("nan")
-    if scene.flat and abs(place[far, 2]) <= LEVEL * float(np.hypot(*place[far, :2])):
+    if scene.flat and abs(place[far, 2]) <= MAX_FLAT_SLOPE * float(np.hypot(*place[far, :2])):
         radius = float("inf")
     return {
         "radius": radius,
-        "friction": _friction_of_motion(scene, motion, radius),
+        "friction": _measure_friction(scene, motion, radius),
         "contact": float(motion.contact_force[0]),
         "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
         "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
-        **_top_link(scene, motion),
+        **_fit_top_link(scene, motion),
     }
 
 
-def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
+def _fit_top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     """
-    The force on the top body as a spring and a damper of the link below it, by least squares.
+    Return stiffness and damping of the link below the top body, by least squares of the force on that body.
 
     Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
     """
@@ -152,8 +155,8 @@ def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     return read | ({"damping": float(factors[1])} if damped and not turning else {})
 
 
-def _friction_of_motion(scene: Scene, motion: Trajectory, radius: float) -> float:
-    """Median ratio of contact forces across and along the normal in fast slides; NaN where heat changes it."""
+def _measure_friction(scene: Scene, motion: Trajectory, radius: float) -> float:
+    """Return the median ratio of tangential to normal contact force in fast slides; NaN if heat changes it."""
     if np.isnan(radius) or scene.dry_friction.heat is not None:
         return float("nan")
     force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
@@ -166,14 +169,14 @@ def _friction_of_motion(scene: Scene, motion: Trajectory, radius: float) -> floa
     along = np.einsum("tk,tk->t", force, normal)
     across = np.linalg.norm(force - along[:, None] * normal, axis=1)
     speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
-    fast = speed > FASTEST * speed.max()
+    fast = speed > MEASURED_SPEED_SHARE * speed.max()
     ratio = across[fast] / along[fast]
     law = scene.dry_friction
-    if law.exponent:  # back to the weight
+    if law.exponent:  # ratio converted back to the load under the weight
         ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:
         share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast
-        if not share.min() > LEAST_SHARE:
+        if not share.min() > MIN_FRICTION_CHANGE_SHARE:
             return float("nan")
         ratio = law.slow + (ratio - law.slow) / share
     return float(np.median(ratio / speed[fast] if scene.lubricated else ratio))

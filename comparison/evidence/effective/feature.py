@@ -1,27 +1,29 @@
-"""Effective values: in the report."""
+"""Report section of the effective values."""
 
 from comparison.evidence.effective.analysis import (
     PHASES,
-    Effective,
+    EffectiveModelValues,
     EffectiveValues,
     word_effective,
 )
-from comparison.evidence.forced_ratios import ForcedRatio, forced_ratios
+from comparison.evidence.forced_ratios import ForcedRatio, compute_forced_ratios
 from comparison.report.feature import Feature, Findings, SceneField
 from comparison.report.section import Section
 from reference.problem import Scene
 
 
-def _effective_of_scene(findings: Findings, scene: Scene) -> list[Effective]:
+def _effective_of_scene(findings: Findings, scene: Scene) -> list[EffectiveModelValues]:
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-EFFECTIVE = SceneField(EffectiveValues.key, list[Effective], "the scene, then every model", _effective_of_scene)
+EFFECTIVE = SceneField(
+    EffectiveValues.key, list[EffectiveModelValues], "the scene, then every model", _effective_of_scene
+)
 FORCED = SceneField(
     "forced",
     list[ForcedRatio],
     "one per axis, harmonic and body above the platform; empty under a recorded motion",
-    lambda findings, scene: forced_ratios(scene),
+    lambda findings, scene: compute_forced_ratios(scene),
 )
 FEATURE = Feature(
     EffectiveValues.key,
@@ -30,10 +32,12 @@ FEATURE = Feature(
     section=Section(
         "Effective values",
         context=lambda report: {
-            "effective": [values for scene in report.results.scenes for values in EFFECTIVE.of(scene)],
+            "effective": [values for scene in report.results.scenes for values in EFFECTIVE.read_from(scene)],
             "phases": PHASES,
         },
         verifies=True,
-        verdict=lambda results: word_effective([each for scene in results.scenes for each in EFFECTIVE.of(scene)]),
+        verdict=lambda results: word_effective(
+            [each for scene in results.scenes for each in EFFECTIVE.read_from(scene)]
+        ),
     ),
 )

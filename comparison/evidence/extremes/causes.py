@@ -1,4 +1,4 @@
-"""Causes of the limits at the extremes, by model and extreme."""
+"""Causes why a model has no answer at an extreme, by model and extreme."""
 
 _ENGINE = "translational", "spatial"
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
@@ -9,7 +9,7 @@ _LIGHT = (
     "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
     "rounding of those which balance at its start"
 )
-# why a model has no answer, where that is known: by quantity and extreme, by key of the model
+# causes, if known, by quantity and extreme, then by key of the model
 CAUSES: dict[tuple[str, str], dict[str, str]] = {
     ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
     ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),

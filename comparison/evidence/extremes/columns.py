@@ -1,4 +1,4 @@
-"""Columns of the matrix of extremes: the models, and what confirms each."""
+"""Columns of the matrix of extremes: the models, and the finer runs that confirm each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,20 +12,20 @@ EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
 
 @dataclass(frozen=True)
 class ModelColumn:
-    """A model and what confirms it."""
+    """A model, and the finer runs that confirm its answers."""
 
     key: str
     title: str
-    amplification: str  # "package:function"
-    settings: Mapping[str, Any]  # arguments of the function
-    tolerance: float  # relative error asked
-    # how a value is confirmed, in this order until one answers: function, settings, relative error asked
+    amplification: str  # function as "package:function"
+    settings: Mapping[str, Any]  # keyword arguments of the function
+    tolerance: float  # relative error asked of the model
+    # finer runs in order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
-    seconds: float = 0.5  # rough processor time of a cell with its finer runs
-    like: str = ""  # for an engine of the user: the column whose rows concern it, too
+    seconds: float = 0.5  # s, rough processor time of a cell with its finer runs
+    like: str = ""  # for a user's engine, the column whose rows concern it as well
 
 
-MAX_WORK = 6e5  # steps of the engine for a phase pair: a cell ends within the limit of its processor time
+MAX_WORK = 6e5  # largest number of engine steps for a phase pair: the cell then ends within its time limit
 
 
 def _model_column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
@@ -36,7 +36,8 @@ def _model_column(key: str, title: str, equations: str, regularization: float | 
 _REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
-STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
+# The engine at the step or contact stiffness that the row states
+STATED_ENGINE = "comparison.evidence.extremes.engine:amplification"
 # Calls that check a value, the first with an answer: the equations of the same law and geometry, then the engine at a
 # far closer tolerance
 _FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
@@ -48,19 +49,19 @@ COLUMNS = (
     ModelColumn("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
     ModelColumn("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
 )
-ALL = tuple(column.key for column in COLUMNS)
+ALL_MODELS = tuple(column.key for column in COLUMNS)
 
 
-def user_column(model: Model) -> ModelColumn:
-    """The column of an engine of the user, confirmed by the equations with the same law."""
+def make_user_column(model: Model) -> ModelColumn:
+    """Return the column of a user's engine, which the equations with the same friction law confirm."""
     law = {key: value for key, value in model.settings.items() if key != "engine"}
-    like = str(model.like) if model.like in ALL else "exact"
+    like = str(model.like) if model.like in ALL_MODELS else "exact"
     finer = ((EQUATIONS, law, 1e-8), (EQUATIONS, law, 1e-6))
     return ModelColumn(model.key, model.title, model.amplification, model.settings, 1e-3, finer, like=like)
 
 
-PLANAR = ALL[:4]  # every model whose bodies do not turn
-REFERENCE = ALL[:3]
-WITH_V_REG = ALL[2:]
-WITH_ENGINE = ALL[3:]
-SPATIAL = ALL[4:]
+PLANAR_MODELS = ALL_MODELS[:4]  # models whose bodies do not rotate
+REFERENCE_MODELS = ALL_MODELS[:3]
+REGULARIZED_MODELS = ALL_MODELS[2:]
+ENGINE_MODELS = ALL_MODELS[3:]
+SPATIAL_MODELS = ALL_MODELS[4:]

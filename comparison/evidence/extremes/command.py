@@ -13,32 +13,34 @@ from functools import partial
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.user_models import add_models, user_models
-from comparison.evidence.extremes.analysis import LIMIT, STAGE, Extremes, list_cells, select_quick
-from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED, user_column
+from comparison.cli.arguments import CommandParser, command, read_number, read_number_of_jobs, write_and_show
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.user_models import add_models, load_user_models
+from comparison.evidence.extremes.analysis import CELL_TIME_LIMIT, STAGE, Extremes, list_cells, select_quick
+from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED_ENGINE, make_user_column
 from comparison.evidence.extremes.matrix import FILE, STORED, CellVerdict, Matrix
-from comparison.evidence.extremes.rows import extreme_cases
+from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from reference.problem import SceneError
 
-MODELS = {EQUATIONS, ENGINE, STATED}  # functions that the workers call
+WORKER_FUNCTIONS = {EQUATIONS, ENGINE, STATED_ENGINE}  # functions that the workers call
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
-    """Judge the cells that the command line asks for; the exit code."""
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
+    """Judge the cells that the command line selects; return the exit code."""
     parser = CommandParser(
         "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
     )
     parser.add_out(f"where {FILE} goes")
     parser.add_computing()
-    parser.add_argument("--limit", metavar="SECONDS", help=f"most processor time of one cell (default {LIMIT:g})")
+    parser.add_argument(
+        "--limit", metavar="SECONDS", help=f"most processor time of one cell (default {CELL_TIME_LIMIT:g})"
+    )
     parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
-    parser.add_argument("--only", help=argparse.SUPPRESS)  # answered with the name of the option that is meant
+    parser.add_argument("--only", help=argparse.SUPPRESS)  # the refusal names the option that replaces it
     keys = [column.key for column in COLUMNS]
     parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
     add_models(parser)
@@ -47,7 +49,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     extremes = _choose_cells(options)
     out = resolve_destination(options.out)
     refuse_foreign_files(out, [FILE])
-    console = wide_console()
+    console = make_wide_console()
     matrix = judge_matrix(extremes, options, argv, console, executor)
 
     def show() -> None:
@@ -69,33 +71,37 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def judge_matrix(
     extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> Matrix:
-    """The matrix with all that is known of its run; stored cells are not judged again."""
+    """Return the matrix with the facts of its run; stored cells are not judged again."""
     begin, tasks = time.monotonic(), extremes.tasks()
-    results = compute_tasks("extremes", options, words, tasks, MODELS, console, executor)
+    results = compute_tasks("extremes", options, words, tasks, WORKER_FUNCTIONS, console, executor)
     matrix = extremes.collect(results)
     totals = [entry.total or 0.0 for row in matrix.rows for entry in row.entries.values()]
     run = {
-        **run_facts("extremes", options, words, begin),
+        **collect_run_facts("extremes", options, words, begin),
         "cpu_seconds": round(sum(totals), 1),
         "stored_before": results.parts[STAGE].stored,
         "limit": extremes.limit,
-        "reduced": len([task for task in tasks if not task.group]) < len(list_cells(list(extreme_cases()))),
+        "reduced": len([task for task in tasks if not task.group]) < len(list_cells(list(list_extreme_cases()))),
     }
     return replace(matrix, run=run)
 
 
 def _choose_cells(options: argparse.Namespace) -> Extremes:
-    """The cells that the options leave. Raises SceneError."""
+    """Return the cells that the options select. Raises SceneError."""
     if options.only is not None:
         rule = "selects analyses of a study; the extremes are chosen with --rows TEXT"
         raise SceneError("command line", "--only", options.only, rule)
-    limit = LIMIT if options.limit is None else read_number("--limit", options.limit, 0.1, 1e6, "s of processor time")
-    number_of_jobs(options)  # refused before anything else is looked at
-    supplied = user_models(options.model, options.model_limit, options.scheduler)
-    every = list(extreme_cases())
+    limit = (
+        CELL_TIME_LIMIT
+        if options.limit is None
+        else read_number("--limit", options.limit, 0.1, 1e6, "s of processor time")
+    )
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the cells are listed
+    supplied = load_user_models(options.model, options.model_limit, options.scheduler)
+    every = list(list_extreme_cases())
     kept = [row for row in (select_quick(every) if options.reduced else every) if options.rows in row.name]
     columns = [column for column in COLUMNS if not options.models or column.key in options.models]
-    columns += [user_column(model) for model in supplied]
+    columns += [make_user_column(model) for model in supplied]
     if not list_cells(kept, columns):
         raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
     return Extremes(kept, columns, limit)

@@ -1,5 +1,5 @@
 """
-The engine from a contact stiffness or a step that the caller states.
+The engine at a contact stiffness or a largest step that the caller states.
 
 The engine of the study chooses both by itself. Here its levels of accuracy start at the given step or stiffness, which
 shows whether the error estimate covers a bad choice, and whether the levels find the way from it to an answer.
@@ -14,9 +14,9 @@ import multibody
 from reference.problem import GRAVITY, Amplification, Scene
 from reference.problem.readings import DEFAULT_V_REG
 
-MAX_LEVELS = 6  # few: a bad start may cost some levels, not the answer
-LEVELS_TO_USUAL_CONTACT = 3  # from the given stiffness to that of the study, by equal factors
-STEP_RATIO = 4  # by which the engine divides its largest step
+MAX_LEVELS = 6  # largest number of levels: more could cost much after a bad start, and would not change the answer
+LEVELS_TO_USUAL_CONTACT = 3  # number of levels from the given stiffness to that of the study, by equal factors
+LEVEL_STEP_RATIO = 4  # ratio of the largest steps of two successive levels
 
 
 def amplification(
@@ -29,16 +29,17 @@ def amplification(
     step: float | None = None,
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
-    """As `multibody.amplification`, in full and with few levels, from a contact stiffness, N/m, or largest step, s."""
+    """Return `multibody.amplification` with few levels, from a contact stiffness, N/m, or a largest step, s."""
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
-        for number, level in enumerate(levels):  # a penetration between that of the first level and its own
+        for number, level in enumerate(levels):  # penetration between that of the first level and the level's own
             share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
             levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
-    if step is not None:  # the largest one is `factor` times as long, the smallest stays what it is
+    if step is not None:  # the largest step grows by `factor`; the smallest stays as it is
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
-        more, error = math.ceil(math.log(factor, STEP_RATIO)), max(factor, 1.0) ** 2  # a method of second order
+        # Number of levels that make up for `factor`, and the error of a second-order method
+        more, error = math.ceil(math.log(factor, LEVEL_STEP_RATIO)), max(factor, 1.0) ** 2
         for number, level in enumerate(levels):
             changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error)
             levels[number] = replace(changed, max_divisions=max(level.max_divisions + more, 0))

@@ -1,10 +1,10 @@
-"""Stability at the extremes: in the report."""
+"""Report section of the stability at the extremes."""
 
-from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, describe_entry
-from comparison.report.feature import Feature, stored_field
+from comparison.evidence.extremes.matrix import MEANING_OF_VERDICT, STORED, CellVerdict, describe_entry
+from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
 
-FOUND = stored_field(STORED, "extremes", "every model at the extremes of every quantity")
+FOUND = make_stored_field(STORED, "extremes", "every model at the extremes of every quantity")
 FEATURE = Feature(
     "extremes",
     (FOUND,),
@@ -12,10 +12,10 @@ FEATURE = Feature(
         "Stability at the extremes",
         STORED.word_how_to_make(),
         lambda report: {
-            "verdicts": [(verdict.value, MEANING[verdict]) for verdict in CellVerdict],
+            "verdicts": [(verdict.value, MEANING_OF_VERDICT[verdict]) for verdict in CellVerdict],
             "describe": describe_entry,
         },
         verifies=True,
-        verdict=lambda results: FOUND.of(results).count_line,
+        verdict=lambda results: FOUND.read_from(results).count_line,
     ),
 )

@@ -1,4 +1,4 @@
-"""The matrix of extremes as data: what every model made of every extreme, as a file and as the report needs it."""
+"""Matrix of extremes as data: the verdict on every model at every extreme, for its file and the report."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,7 @@ FILE = "extremes.json"
 
 
 class CellVerdict(StrEnum):
-    """From best to worst; a cell of several phase pairs is as good as its worst one."""
+    """Verdicts from best to worst; a cell of several phase pairs has that of its worst one."""
 
     CONVERGED = "converged"
     REFUSED = "refused"
@@ -21,7 +21,7 @@ class CellVerdict(StrEnum):
     FAILED = "FAILED"
 
 
-MEANING = {
+MEANING_OF_VERDICT = {
     CellVerdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
     CellVerdict.REFUSED: "refused: against a rule, or the motion leaves the model",
     CellVerdict.LIMIT: "limit: the model says that it cannot",
@@ -70,22 +70,22 @@ class Matrix:
                 require(key in self.columns, f"model {key[:40]!r} of a row is none of the columns")
 
     def counts(self) -> dict[str, int]:
-        """Number of cells of each verdict, from the best to the worst, zeros included."""
+        """Return the number of cells of each verdict, from the best to the worst, zeros included."""
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
         return {verdict.value: seen[verdict] for verdict in CellVerdict}
 
     @property
     def count_line(self) -> str:
-        """The counts in one line."""
+        """Return the counts in one line."""
         counts = self.counts()
         return f"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}"
 
     def groups(self) -> list[list[Extreme]]:
-        """The rows that share a quantity."""
+        """Return the rows grouped by quantity."""
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
     def cells_of(self, verdict: str) -> list[tuple[Extreme, str, MatrixEntry]]:
-        """Row, title of the column and entry of the cells of one verdict."""
+        """Return row, column title and entry of the cells that have one verdict."""
         return [
             (row, self.columns[key], entry)
             for row in self.rows
@@ -98,7 +98,7 @@ STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extre
 
 
 def describe_entry(entry: MatrixEntry) -> str:
-    """Return what stands in the field: the error claimed, or the status in its own words."""
+    """Return the text of a field of the matrix: the error claimed, or the status in its own words."""
     if entry.verdict == CellVerdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"
     return "FAILED" if entry.verdict == CellVerdict.FAILED else entry.status or "against a rule"

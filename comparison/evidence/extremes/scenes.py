@@ -1,14 +1,14 @@
-"""The plain scene of the extremes, and its variations, as in a scene file."""
+"""Plain scene of the extremes and its variations, with the tables and keys of a scene file."""
 
 import math
 from collections.abc import Sequence
 from typing import Any
 
-PLAIN_RADIUS = 0.25  # m, of the plain scene, whose period is 1 s
-GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
+PLAIN_RADIUS = 0.25  # m, radius of the plain scene, whose period is 1 s
+GRAVITY_LIMIT = 9.81  # m/s^2, downward acceleration of the plate at which the contact force vanishes
 
 
-def scene(
+def make_plain_scene(
     *,
     amplitudes: Sequence[Sequence[float]] = ((2.0, 0.0), (0.0, 2.0)),
     periods: Sequence[float] = (0.9, 1.1),
@@ -20,7 +20,7 @@ def scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """The plain scene, `fig3-I` at twice its amplitude, as in a scene file, with changed quantities; None: no key."""
+    """Return the plain scene, `fig3-I` at twice its amplitude, with changed values; None removes a key."""
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
@@ -40,32 +40,32 @@ def scene(
     }
 
 
-def amplitudes_along(amplitude: float) -> list[list[float]]:
+def make_horizontal_amplitudes(amplitude: float) -> list[list[float]]:
     """Return amplitudes of one harmonic along x and the other along y, m/s^2."""
     return [[amplitude, 0.0], [0.0, amplitude]]
 
 
-def amplitudes_upward(amplitude: float) -> list[list[float]]:
-    """Return those of the plain scene with a vertical one, m/s^2."""
+def make_vertical_amplitudes(amplitude: float) -> list[list[float]]:
+    """Return the amplitudes of the plain scene with a vertical component, m/s^2."""
     return [[2.0, 0.0], [0.0, 2.0], [amplitude, 0.0]]
 
 
 def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
-    """The bodies no lower against the contacts than in the plain scene: heights count from a radius below them."""
+    """Return the scene with bodies as high above the contacts as in the plain one; heights count from there."""
     rise = max(stated["isolator"]["radius"] - PLAIN_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
 def put_on_bars(share: float, **keys: Any) -> dict[str, Any]:
-    """The plain scene on four bars of 1 m that carry a share of their buckling load."""
+    """Return the plain scene on four bars of 1 m that carry a share of their buckling load."""
     beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
-    stated = scene()
+    stated = make_plain_scene()
     platform, body = stated["bodies"]
     bars = {"count": 4, "bending_stiffness": beam, "length": 1.0, "load_effect": "softening", **keys}
     return {**stated, "bodies": [platform, {**body, "period": None, "bars": bars}]}
 
 
 def change_bodies(**keys: Any) -> dict[str, Any]:
-    """Return the plain scene with these keys of every body."""
-    stated = scene()
+    """Return the plain scene with these keys set in every body."""
+    stated = make_plain_scene()
     return {**stated, "bodies": [{**body, **keys} for body in stated["bodies"]]}

@@ -1,5 +1,5 @@
 """
-The scaling test: what is left of the step from small to exact equations when loading and friction grow small together.
+Scaling test: how the step from small to exact equations falls when loading and friction scale down together.
 
 Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
 geometry that the small equations drop is of the
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import reference
-from comparison.evidence.trends import NONE, Trend, fit_trend
+from comparison.evidence.trends import NO_VALUES, Trend, fit_trend
 from comparison.result_types import Array
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
@@ -22,17 +22,17 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_C
 
-SCALES = (1.0, 0.5, 0.25, 0.125)
-PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
-TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
-STEP = "exact minus small"
-PRINTED = "small, s minus s/2"
+LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)
+SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs
+SCALING_TOLERANCE = 1e-8  # relative error of mu: the step at the smallest scale is 1e-5
+EXACT_MINUS_SMALL = "exact minus small"
+SMALL_SCALE_DIFFERENCE = "small, s minus s/2"
 
-Arguments = tuple[Scene, bool]  # and whether the supremum is taken
+Arguments = tuple[Scene, bool]  # scene, and whether the supremum is taken
 
 
 def scale_scene(scene: Scene, s: float) -> Scene:
-    """The scene with loading, dry friction and travel times s, the rate of friction with speed over s."""
+    """Return the scene with loading, dry friction and travel times s, and the rate of friction with speed over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
     if not law.constant or law.elastic:
@@ -46,10 +46,10 @@ def scale_scene(scene: Scene, s: float) -> Scene:
     return scene.with_values(values)
 
 
-def scene_trends(task: Arguments) -> list[Trend]:
-    """Both trends of one scene for each body. Runs inside a worker process."""
+def fit_scene_trends(task: Arguments) -> list[Trend]:
+    """Return both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
-    answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in SCALES]
+    answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
@@ -58,18 +58,27 @@ def scene_trends(task: Arguments) -> list[Trend]:
     name = _name_peak(scene, supremum)
     return [
         fit_trend(
-            scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, error[..., body].T, 2.0
+            scene.name,
+            body + 1,
+            f"{what}, {name}",
+            LOADING_SCALES[: len(size)],
+            size[..., body].T,
+            error[..., body].T,
+            2.0,
         )
         for body in range(len(scene.bodies))
-        for what, size, error in ((STEP, step, step_error), (PRINTED, halving, halving_error))
+        for what, size, error in (
+            (EXACT_MINUS_SMALL, step, step_error),
+            (SMALL_SCALE_DIFFERENCE, halving, halving_error),
+        )
     ]
 
 
 def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
-    """mu and error, (2, P, N): small, exact."""
-    cutoff = None if supremum else DEFAULT_V_C * s  # it scales with the motion
+    """Return mu and error, (2, P, N), by the small and the exact equations."""
+    cutoff = None if supremum else DEFAULT_V_C * s  # v_c scales with the motion
     answers = [
-        reference.amplification(scene, PHASES, equations=equations, tolerance=TOLERANCE, cutoff=cutoff)
+        reference.amplification(scene, SCALING_PHASES, equations=equations, tolerance=SCALING_TOLERANCE, cutoff=cutoff)
         for equations in ("small", "exact")
     ]
     return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])
@@ -77,9 +86,11 @@ def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
     scene, supremum = task
-    what = f"{STEP}, {_name_peak(scene, supremum)}"
+    what = f"{EXACT_MINUS_SMALL}, {_name_peak(scene, supremum)}"
     bodies = range(1, len(scene.bodies) + 1)
-    return [fit_trend(scene.name, body, what, SCALES, NONE, NONE, 2.0, failed.reason) for body in bodies]
+    return [
+        fit_trend(scene.name, body, what, LOADING_SCALES, NO_VALUES, NO_VALUES, 2.0, failed.reason) for body in bodies
+    ]
 
 
 def _name_peak(scene: Scene, supremum: bool) -> str:
@@ -87,14 +98,14 @@ def _name_peak(scene: Scene, supremum: bool) -> str:
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
-    """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
+    """Analysis of the trends of every scene and body, for the supremum and, if it differs, the resolved peak."""
 
     key, stage, level = "scaling", "scaling test", 2
     seconds = 0.1
-    function, without_value = staticmethod(scene_trends), staticmethod(_without_value)
+    function, without_value = staticmethod(fit_scene_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Every scene with phases and without heat, which does not scale, and whether the supremum is taken."""
+        """Return every scene with phases and without heat, which does not scale, and whether to take the supremum."""
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
         return [
             (scene, supremum) for scene in scenes for supremum in ([True, False] if has_dry_friction(scene) else [True])

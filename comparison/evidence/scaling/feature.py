@@ -1,8 +1,8 @@
-"""Scaling test: in the report."""
+"""Report section of the scaling test."""
 
 from fractions import Fraction
 
-from comparison.evidence.scaling.analysis import SCALES, Scaling
+from comparison.evidence.scaling.analysis import LOADING_SCALES, Scaling
 from comparison.evidence.trend_feature import make_trend_feature
 
 FEATURE = make_trend_feature(
@@ -12,5 +12,5 @@ FEATURE = make_trend_feature(
     "the step from small to exact equations over a common scale of loading and friction",
     "median size at each s",
     "s",
-    scales=list(map(Fraction, SCALES)),
+    scales=list(map(Fraction, LOADING_SCALES)),
 )

@@ -1,4 +1,4 @@
-"""The trade-off as an analysis: a task for every few seconds of a function's phase pairs, and the diagram of them."""
+"""Trade-off of error and time as tasks of a few seconds of phase pairs, and the diagram made of their results."""
 
 import time
 from collections.abc import Iterator, Sequence
@@ -12,9 +12,9 @@ from comparison.evidence.tradeoff.settings import (
     Setting,
     Settings,
     TradeoffQuestion,
+    list_questions,
     list_settings,
     list_user_settings,
-    questions_of,
 )
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
@@ -22,24 +22,24 @@ from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model
-from comparison.study.user_models import engine_of
-from comparison.wording import exception_line
+from comparison.study.user_models import engine_description
+from comparison.wording import word_exception
 from reference.problem import Amplification, Scene
 
-STAGE = "trade-off"  # of the tasks, on the terminal
-SEED = 20  # seed of the sample of phase pairs: the same in every run
-SHORT = 0.2  # s of motion, to warm up
-CHUNK = 3.0  # s of work in one task, about
-CHEAP = 0.01  # s per point of a reference solution of its own, about
+STAGE = "trade-off"  # name of the stage of these tasks on the terminal
+SAMPLE_SEED = 20  # seed of the random phase pairs: every run has the same
+WARM_UP_DURATION = 0.2  # s, duration of a motion that loads and compiles a function before it is timed
+TASK_SECONDS = 3.0  # s, rough work of one task
+OWN_SOLUTION_SECONDS = 0.01  # s, rough cost per phase pair of a setting's own reference solution
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
-Function = tuple[str, Settings]  # "package:function" and its keyword arguments
-_warm: set[str] = set()  # functions that this process has called
+Function = tuple[str, Settings]  # function as "package:function", and its keyword arguments
+_warmed_functions: set[str] = set()  # functions that this process has called, so that they are compiled
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """Some phase pairs of the sample under one function."""
+    """Phase pairs of the sample to be measured by one function."""
 
     scene: Scene
     function: Function
@@ -48,12 +48,12 @@ class Measurement:
 
 @dataclass(frozen=True)
 class SettingResult:
-    """Result of a measurement."""
+    """Values, errors and time that a measurement gave."""
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
     seconds: float  # s of processor time
-    step: float  # mean step, s; NaN where the function does not tell it
+    step: float  # mean step, s; NaN if the function does not return it
     error_message: str = ""  # what went wrong, or empty
 
     def __post_init__(self) -> None:
@@ -62,16 +62,18 @@ class SettingResult:
 
 
 def sample_phases(points: int) -> Array:
-    """The phase pairs that are measured, rad."""
-    return np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
+    """Return the phase pairs that are measured, rad."""
+    return np.random.default_rng(SAMPLE_SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
 
 
 def measure_setting(measurement: Measurement) -> SettingResult:
-    """Call the function, warm, inside a worker process; where it raises there are no values, but the reason."""
+    """Return what a warmed-up function computes and its time, or its error. Runs inside a worker process."""
     path, settings = measurement.function
-    if path not in _warm:
-        _warm.add(path)
-        _call_function(measurement.scene.with_values({"duration": SHORT}), measurement.phases[:1], path, settings)
+    if path not in _warmed_functions:
+        _warmed_functions.add(path)
+        _call_function(
+            measurement.scene.with_values({"duration": WARM_UP_DURATION}), measurement.phases[:1], path, settings
+        )
     return _call_function(measurement.scene, measurement.phases, path, settings)
 
 
@@ -80,7 +82,7 @@ def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -
     try:
         answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
-        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
+        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, word_exception(error))
     seconds = time.process_time() - clock
     if isinstance(answer, tuple):
         answer, step = answer
@@ -90,13 +92,13 @@ def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -
 
 
 def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:
-    """In place of what a task did not return: phase pairs without a value."""
+    """Return a result with phase pairs without a value, for a task that returned none."""
     nothing = np.full((len(measurement.phases), len(measurement.scene.bodies)), np.nan)
     return SettingResult(nothing, nothing, 0.0, np.nan, failed.reason)
 
 
 def join_results(parts: Sequence[SettingResult]) -> SettingResult:
-    """The measurements of one function as one: times added up, and the first error message."""
+    """Return the measurements of one function as one: times added up, and the first error message."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
     seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
     return SettingResult(
@@ -106,41 +108,41 @@ def join_results(parts: Sequence[SettingResult]) -> SettingResult:
 
 @dataclass(frozen=True)
 class TradeOff:
-    """Error against compute time of every setting in every scene; quick: fewer points and values."""
+    """Task list of the error against compute time of every setting and scene; quick: fewer points and values."""
 
     scenes: Sequence[Scene]
     quick: bool = False
     supplied: tuple[Model, ...] = ()
 
     def tasks(self) -> list[Task]:
-        """Every function of every scene, its sample in parts of about CHUNK seconds."""
+        """Return the tasks of every function of every scene; each takes about TASK_SECONDS."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
-        return list({task.key: task for task in tasks}.values())  # one function may serve two settings
+        return list({task.key: task for task in tasks}.values())  # Two settings may share a function.
 
     def collect(self, results: TaskResults) -> list[trade.MeasuredTrade]:
-        """One diagram for each scene, without what the command knows of the run."""
+        """Return one diagram for each scene, without the facts of the run, which the command adds."""
         return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
-        """The tasks of the reference solution of every question; then of every setting, and of what it is against."""
-        questions = {question.key: question for question in questions_of(scene)}
+        """Yield the tasks of every question's reference solution; then those of every setting and its reference."""
+        questions = {question.key: question for question in list_questions(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
         for each in self._settings(scene):
             question = questions[each.question]
             yield self._tasks(scene, (each.function, each.settings), question, each.seconds)
-            seconds = CHEAP if each.against else question.seconds
+            seconds = OWN_SOLUTION_SECONDS if each.against else question.seconds
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Those of one function on the sample of a question; seconds: per point of a motion of 20 s, about."""
+        """Return the tasks of one function on the sample of a question; seconds: rough cost of a point over 20 s."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
-        size, phases = int(np.clip(CHUNK / each, 1, count)), sample_phases(count)
-        engine = engine_of(function[1]).get("function", "")
-        limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
+        size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
+        engine = engine_description(function[1]).get("function", "")
+        limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}
         limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
         more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
         return [
@@ -152,25 +154,25 @@ class TradeOff:
         measured = (
             join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
-        solutions = [(question, next(measured)) for question in questions_of(scene)]
+        solutions = [(question, next(measured)) for question in list_questions(scene)]
         rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
         entries = [make_entry(setting, answer, against.mu) for setting, answer, against in rows]
-        entries = trade.with_pareto_fronts(entries, len(scene.bodies))
-        answered = [_count_answers(*solution, entries) for solution in solutions]
+        entries = trade.mark_pareto_fronts(entries, len(scene.bodies))
+        answered = [_make_solved_question(*solution, entries) for solution in solutions]
         numbers = zip(*((answer.mu, against.mu, answer.error_estimate) for _, answer, against in rows))
         values = dict(zip(trade.MEANINGS, map(list, numbers)))
         phases = sample_phases(max(question.points for question in answered))
-        found = trade.Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
+        found = trade.SceneTrade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
         return trade.MeasuredTrade(found, trade.label_values(entries, values, phases))
 
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
-    """Return what one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
+    """Return the errors and the time of one setting at M phase pairs, against a reference mu (M, N)."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points = len(measured.mu)
     median, most, estimate = (
-        [trade.error_of_share(column, share) for column in errors.T]
+        [trade.find_error_quantile(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
     )
     return trade.MeasuredSetting(
@@ -186,24 +188,24 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
     )
 
 
-def _count_answers(
+def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
-) -> trade.Answered:
-    """The question with its reference solution, and what is known about that."""
+) -> trade.SolvedQuestion:
+    """Return the question with its reference solution, the error of that, and the checks of it."""
     error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
-    error = trade.error_of_share(error_estimate.ravel(), 1.0)
+    error = trade.find_error_quantile(error_estimate.ravel(), 1.0)
     tolerance = question.reference_solution[1]["tolerance"]
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)
     solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
     own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
     checks = [own, *_word_agreements(question, entries)]
-    return trade.Answered(question.key, question.title, len(reference_solution.mu), solution, error, checks)
+    return trade.SolvedQuestion(question.key, question.title, len(reference_solution.mu), solution, error, checks)
 
 
 def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
     """
-    Return how far the most accurate setting of other methods, else of the same one, agrees with the reference solution.
+    Return how far the most accurate setting of other methods, else of the same one, agrees with the reference.
     """
     by_engine = question.reference_solution[0].startswith("multibody")
     candidates = [each for each in entries if each.question == question.key and not each.model_error and each.answered]

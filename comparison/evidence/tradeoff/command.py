@@ -1,5 +1,5 @@
 """
-Speed for accuracy: `phase-resonance tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
+Error against compute time: `phase-resonance tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
 
 Exit codes: 0 done; 2 a wrong scene or option; 3 the files could not be written; others as in `run_command`.
 """
@@ -13,37 +13,45 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
-from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table
-from comparison.cli.user_models import add_models, user_models
+from comparison.cli.arguments import CommandParser, command, read_number_of_jobs, write_and_show
+from comparison.cli.computing import collect_run_facts, compute_tasks
+from comparison.cli.terminal import make_table
+from comparison.cli.user_models import add_models, load_user_models
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.analysis import STAGE, TradeOff
-from comparison.evidence.tradeoff.growth import CostSeries, Growth, MeasuredGrowth, measure_by_workers
-from comparison.evidence.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
-from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load_trades
-from comparison.runner.attempts import publish_made
-from comparison.runner.output import netcdf_content, publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.evidence.tradeoff.growth import CostGrowth, CostSeries, MeasuredGrowth, measure_by_workers
+from comparison.evidence.tradeoff.settings import (
+    CONSTANT_STEP_RUN,
+    ENGINE,
+    ENGINE_LEVEL,
+    REFERENCE,
+    REFERENCE_RUN,
+    SCIPY_FACTORS,
+)
+from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, SceneTrade, TradeFile, load_trades
+from comparison.runner.attempts import publish_attempted
+from comparison.runner.output import encode_netcdf, publish_files, refuse_foreign_files, resolve_destination
+from comparison.runner.processes import Pool, make_process_pool
+from comparison.runner.progress import make_wide_console
 from comparison.study.study import refuse_same_names
-from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.figures.file_names import name_figure_file
 from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
 
-DEFAULT = "fig3-I"
+DEFAULT_SCENE = "fig3-I"
 COMMAND = "comparison.tradeoff"
-STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
-MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
+WORKER_START_SECONDS = 8.0  # s that a worker takes before its first task: imports, loading of compiled code
+# Functions that the workers call
+WORKER_FUNCTIONS = {REFERENCE, ENGINE, REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN, SCIPY_FACTORS}
 
 
 @command
-def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
-    """Measure the scenes of the command line; the exit code."""
+def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
+    """Measure the scenes of the command line; return the exit code."""
     parser = CommandParser(
         "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
     )
-    parser.add_scenes(DEFAULT)
+    parser.add_scenes(DEFAULT_SCENE)
     parser.add_out("where the files go")
     parser.add_computing()
     parser.add_argument(
@@ -54,23 +62,23 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     add_models(parser)
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     options = parser.parse_args(argv)
-    number_of_jobs(options)  # refused before anything else is looked at
-    scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT]]
+    read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT_SCENE]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = resolve_destination(options.out)
-    _load_trades(out)  # a file that is no trade is refused before anything is measured
+    _load_trades(out)  # a file that is no trade-off is refused before anything is measured
     written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
     refuse_foreign_files(out, written)
-    console = wide_console()
+    console = make_wide_console()
     if options.growth:
-        return _measure_growth(scenes[0], options, argv, out, console, executor)
+        return _measure_cost_growth(scenes[0], options, argv, out, console, executor)
     measured = measure_trades(scenes, options, argv, console, executor)
 
     def write() -> list[Path]:
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
-            publish_made(out, _values_file(each.trade.scene), partial(netcdf_content, each.values), COMMAND)
+            publish_attempted(out, _values_file(each.trade.scene), partial(encode_netcdf, each.values), COMMAND)
         return files
 
     def show() -> None:
@@ -82,14 +90,14 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     return 0
 
 
-def _measure_growth(
+def _measure_cost_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
-    begin, tasks = time.monotonic(), Growth(scene).tasks()
+    begin, tasks = time.monotonic(), CostGrowth(scene).tasks()
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
-    series = [*Growth(scene).collect(results), measure_by_workers(scene, process_pool)]
-    facts = run_facts("tradeoff", options, words, begin)
+    series = [*CostGrowth(scene).collect(results), measure_by_workers(scene, make_process_pool)]
+    facts = collect_run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
     write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     write_and_show(out, write, partial(print_growth, console, series))
@@ -98,8 +106,8 @@ def _measure_growth(
 
 
 def print_growth(console: Console, series: Sequence[CostSeries]) -> None:
-    """A row for every value, with the slope of its series in the last one."""
-    table = new_table("quantity", "model", "value", "s", "slope")
+    """Print a row for every value, with the fitted slope of its series in the last one."""
+    table = make_table("quantity", "model", "value", "s", "slope")
     for each in series:
         slope = "" if each.slope is None else f"{each.slope:.2f} ± {each.uncertainty:.2f}"
         for value, seconds in zip(each.values, each.seconds):
@@ -123,8 +131,8 @@ def _load_phased_scene(name: str) -> Scene:
     return scene
 
 
-def _load_trades(out: Path) -> list[Trade]:
-    """The trades that are in the folder. Raises UsageError for a file that is none."""
+def _load_trades(out: Path) -> list[SceneTrade]:
+    """Return the trade-offs stored in the folder. Raises UsageError for a file that is none."""
     try:
         return load_trades(out) or []
     except (OSError, ValueError) as error:
@@ -134,18 +142,18 @@ def _load_trades(out: Path) -> list[Trade]:
 def measure_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
-    """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
-    supplied = user_models(options.model, options.model_limit, options.scheduler)
+    """Return the trade-offs of the scenes with the facts of their run; stored tasks are not measured again."""
+    supplied = load_user_models(options.model, options.model_limit, options.scheduler)
     tradeoff = TradeOff(scenes, options.quick, supplied)
-    tasks, width = tradeoff.tasks(), number_of_jobs(options)
-    about = STARTING + sum(task.seconds for task in tasks) / width
+    tasks, width = tradeoff.tasks(), read_number_of_jobs(options)
+    about = WORKER_START_SECONDS + sum(task.seconds for task in tasks) / width
     for scene in scenes:
         console.print(f"{scene.title} ({scene.name})")
     console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
     begin = time.monotonic()
-    results = compute_tasks("tradeoff", options, words, tasks, MODELS, console, executor)
+    results = compute_tasks("tradeoff", options, words, tasks, WORKER_FUNCTIONS, console, executor)
     more = {"quick": options.quick, "stored_before": results.parts[STAGE].stored}
-    run = run_facts("tradeoff", options, words, begin) | more
+    run = collect_run_facts("tradeoff", options, words, begin) | more
     attributes = {"command": run["command"], **run["provenance"]}
     return [
         MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))
@@ -154,17 +162,17 @@ def measure_trades(
 
 
 def _values_file(scene: str) -> str:
-    return figure_file(scene, "tradeoff", ending=".nc")
+    return name_figure_file(scene, "tradeoff", ending=".nc")
 
 
-def print_trade(console: Console, trade: Trade) -> None:
-    """The fronts: what to take for which accuracy; and how each reference solution was checked."""
+def print_trade(console: Console, trade: SceneTrade) -> None:
+    """Print the fastest settings for each accuracy, and how each reference solution was checked."""
     for question in trade.questions:
         console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
         console.print(
             f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
         )
-        table = new_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
+        table = make_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
         for entry in sorted(trade.entries_of(question.key), key=lambda setting: setting.seconds):
             if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))

@@ -1,4 +1,4 @@
-"""Speed for accuracy: in the report."""
+"""Report section of error against compute time."""
 
 from collections.abc import Mapping, Sequence
 from itertools import groupby
@@ -6,33 +6,33 @@ from typing import Any
 
 from comparison.evidence.tradeoff import growth, trade
 from comparison.evidence.tradeoff.growth import CostSeries
-from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
-from comparison.report.feature import Feature, ResultField, stored_field
+from comparison.evidence.tradeoff.trade import MeasuredSetting, SceneTrade, SolvedQuestion
+from comparison.report.feature import Feature, ResultField, make_stored_field
 from comparison.report.panels import MAX_CURVES, Panel, make_panel
 from comparison.report.section import Report, Section
 from comparison.wording import scientific
 
-TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
+TARGET_ERRORS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the fastest method is stated in words
 
 
-def tradeoff_panels(trade: Trade) -> list[Panel]:
-    """One panel for each question, of the platform and of the last body."""
+def make_tradeoff_panels(trade: SceneTrade) -> list[Panel]:
+    """Return one panel for each question, of the platform and of the last body."""
     bodies = sorted({0, trade.bodies - 1})
     return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
 
 
-def word_trades(trades: Sequence[Trade]) -> str:
-    """Return what was measured: speed has no verdict."""
+def word_trades(trades: Sequence[SceneTrade]) -> str:
+    """Return what was measured, in a sentence; speed has no verdict."""
     settings = sum(len(trade.entries) for trade in trades)
     return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
 
 
-def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
-    """For each question, which method meets which error in the least time: one that estimates its error, if any."""
+def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
+    """Return for each question the fastest method for each error, preferring one that estimates its error."""
     answers = []
     for question in trade.questions:
         parts = []
-        for target in TARGETS:
+        for target in TARGET_ERRORS:
             listed = [entry for entry in trade.entries_of(question.key) if entry.complete and not entry.model_error]
             able = [entry for entry in listed if all(size is not None and size <= target for size in entry.most)]
             estimated = [entry for entry in able if entry.controlled]
@@ -46,8 +46,8 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     return answers
 
 
-def growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
-    """One panel for each quantity that grows: seconds over it, the slopes in the legend."""
+def make_growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
+    """Return one panel for each quantity that grows: seconds over it, the slopes in the legend."""
     panels: list[Panel] = []
     titles = list(dict.fromkeys(each.model for each in listed))
     for quantity, group in groupby(listed, key=lambda each: each.quantity):
@@ -67,7 +67,7 @@ def growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
     return panels
 
 
-def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
+def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> Panel:
     curves = {
         method: known
         for method, entries in trade.methods(question.key).items()
@@ -100,17 +100,17 @@ def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, 
 
 TRADES = ResultField(
     "tradeoff",
-    list[Trade],
+    list[SceneTrade],
     trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load_trades,
 )
-GROWTH = stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
+GROWTH = make_stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
     measured = GROWTH.get(report.results)
-    panels, digests = growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
-    functions = {"tradeoff_panels": tradeoff_panels, "tradeoff_answers": tradeoff_answers}
+    panels, digests = make_growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
+    functions = {"make_tradeoff_panels": make_tradeoff_panels, "word_fastest_methods": word_fastest_methods}
     return {**functions, "growth_panels": panels, "digests": digests}
 
 

@@ -1,4 +1,4 @@
-"""How the cost of a phase pair grows with bodies and duration, and that of a call with its phase pairs and workers."""
+"""Growth of the cost of a phase pair with bodies and duration, and of a call with its phase pairs and workers."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -18,39 +18,40 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import Scene
 
-CALLS, PAIRS = 16, 64  # calls and phase pairs of the equations, shared by the workers
+WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # number of calls shared by the workers, and phase pairs of the equations in each
 
 FILE = "growth.json"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
-BODIES = (2, 4, 8, 16, 32, 64, 100)
-DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
-PAIRED = "phase pairs"
-PHASES = (1, 4, 16, 64, 256)
-POINTS = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations
-TALL_DURATION = 5.0  # s, of scenes with many bodies
-SHAKEN = 3.0  # times the loading of the scene: else friction holds a tall platform, which costs nothing
-STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
-LIMIT = 60.0  # s of processor time of one measurement
-MAX_WORK = 1e9  # steps of the engine: none is refused in advance; LIMIT ends what takes too long
+BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)
+DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion
+PHASE_PAIRS = "phase pairs"
+PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)
+PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations, by side
+TALL_DURATION = 5.0  # s, duration of motion of scenes with many bodies
+# Factor on the loading of the scene: with a smaller one friction holds a tall platform, which costs nothing
+TALL_LOADING_FACTOR = 3.0
+TALL_STOREY_HEIGHT = 1.0  # m between the bodies of a tall scene, whose ring of supports is as wide as the scene is high
+MEASUREMENT_TIME_LIMIT = 60.0  # s, largest processor time of one measurement
+MAX_WORK = 1e9  # largest number of engine steps: it refuses nothing, because the time limit ends long measurements
 
 
-def make_tall(scene: Scene, bodies: int) -> Scene:
+def split_upper_body(scene: Scene, bodies: int) -> Scene:
     """Return the scene with its upper body cut into `bodies` - 1, each above the other on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
-    height = second.get("height", STOREY)
+    height = second.get("height", TALL_STOREY_HEIGHT)
     mass = second["mass"] / (bodies - 1)
-    above = [{**second, "mass": mass, "height": height + STOREY * number} for number in range(bodies - 1)]
-    isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), STOREY * bodies)}
+    above = [{**second, "mass": mass, "height": height + TALL_STOREY_HEIGHT * number} for number in range(bodies - 1)]
+    isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), TALL_STOREY_HEIGHT * bodies)}
     changed = {"isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
     return Scene.model_validate(table | changed).with_values(
-        {"excitation.scale": SHAKEN * (scene.excitation.scale or 1.0)}
+        {"excitation.scale": TALL_LOADING_FACTOR * (scene.excitation.scale or 1.0)}
     )
 
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """Quantity that grows. scene: of a value, from the scene of the study."""
+    """Quantity that grows. scene: makes the scene of a value from the scene of the study."""
 
     name: str
     unit: str
@@ -61,11 +62,11 @@ class GrowingQuantity:
 
 _EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    GrowingQuantity("bodies", "", BODIES, lambda scene, n: make_tall(scene, int(n)), _EACH),
+    GrowingQuantity("bodies", "", BODY_COUNTS, lambda scene, n: split_upper_body(scene, int(n)), _EACH),
     GrowingQuantity(
         "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH
     ),
-    GrowingQuantity(PAIRED, "", PHASES, lambda scene, n: scene, (EXACT,)),
+    GrowingQuantity(PHASE_PAIRS, "", PHASE_PAIR_COUNTS, lambda scene, n: scene, (EXACT,)),
 )
 
 
@@ -104,17 +105,17 @@ class MeasuredGrowth:
 STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance tradeoff --growth")
 
 
-def series_with_slope(
+def make_cost_series(
     quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]
 ) -> CostSeries:
-    """The series with its slope; NaN where there is no measurement."""
+    """Return the series with its slope; NaN where there is no measurement."""
     slope = map(finite_or_none, fit_slope(values, seconds))
     return CostSeries(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Exponent of the larger half of the values before the first NaN, and its standard error; NaN for fewer than 3."""
-    known = int(np.isfinite([*seconds, np.nan]).argmin())  # what is behind one without a measurement is no trend
+    """Return the exponent of the larger half of the values before the first NaN, and its error; NaN for less than 3."""
+    known = int(np.isfinite([*seconds, np.nan]).argmin())  # Values after one without a measurement are not fitted.
     if known < 3:
         return float("nan"), float("nan")
     x, y = np.log(values[:known]), np.log(seconds[:known])
@@ -124,23 +125,23 @@ def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float,
 
 
 @dataclass(frozen=True)
-class Growth:
-    """The series of a scene with phases."""
+class CostGrowth:
+    """Task list of the cost series of a scene with phases."""
 
     scene: Scene
 
     def tasks(self) -> list[Task]:
-        """One task for every quantity, model and value."""
+        """Return one task for every quantity, model and value."""
         return [task for _, _, tasks in self._series() for task in tasks]
 
     def collect(self, results: TaskResults) -> list[CostSeries]:
-        """In the order of quantities and models."""
+        """Return the cost series in the order of quantities and models."""
         collected = []
         for quantity, model, tasks in self._series():
             answers = [results.value(task, without_value) for task in tasks]
-            costs = [each.seconds / (1 if quantity.name == PAIRED else len(each.mu)) for each in answers]
+            costs = [each.seconds / (1 if quantity.name == PHASE_PAIRS else len(each.mu)) for each in answers]
             seconds = [cost if np.isfinite(each.mu).all() else float("nan") for cost, each in zip(costs, answers)]
-            collected.append(series_with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
+            collected.append(make_cost_series(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
     def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
@@ -154,23 +155,23 @@ class Growth:
     def _task(self, quantity: GrowingQuantity, model: Model, value: float) -> Task:
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(STUDY_TOLERANCE), **work}
-        phases = sample_phases(int(value) if quantity.name == PAIRED else POINTS[model.side])
+        phases = sample_phases(int(value) if quantity.name == PHASE_PAIRS else PHASE_PAIRS_OF_SIDE[model.side])
         measurement = Measurement(quantity.scene(self.scene, value), (model.amplification, settings), phases)
-        return Task(measure_setting, measurement, "growth", about=self.scene, timeout=LIMIT)
+        return Task(measure_setting, measurement, "growth", about=self.scene, timeout=MEASUREMENT_TIME_LIMIT)
 
 
 def measure_by_workers(scene: Scene, pool: Callable[[int], Executor]) -> CostSeries:
-    """Wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
+    """Return the wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
     most = count_cores()
     counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
     settings = {**EXACT.settings, "tolerance": 1e-6}
-    call = Measurement(scene, (EXACT.amplification, settings), sample_phases(PAIRS))
+    call = Measurement(scene, (EXACT.amplification, settings), sample_phases(PAIRS_PER_CALL))
     seconds = []
     for workers in counts:
         with pool(workers) as executor:
-            # before the clock starts, every worker imports and compiles
+            # Every worker imports and compiles before the clock starts.
             list(executor.map(measure_setting, [call] * 2 * workers))
             begin = time.monotonic()
-            list(executor.map(measure_setting, [call] * CALLS))
+            list(executor.map(measure_setting, [call] * WORKER_CALLS))
             seconds.append(time.monotonic() - begin)
-    return series_with_slope("workers", "", EXACT.title, list(map(float, counts)), seconds)
+    return make_cost_series("workers", "", EXACT.title, list(map(float, counts)), seconds)

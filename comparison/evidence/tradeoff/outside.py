@@ -14,23 +14,25 @@ from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, exponents, ground_acceleration, ground_peak
 from reference.problem.phases import check_phases
 from reference.solver.equations import exact_acceleration
-from reference.solver.system import pack
+from reference.solver.system import pack_scene
 
-ABSOLUTE = 1e-2  # absolute tolerance of a step, m and m/s, over its relative one
-SAMPLES = 2001  # samples of the motion in addition to the solver's own steps, to find where the peaks are
-NEAR = 1e-3  # share of the peak: samples as high as that are looked at again, FINER times as closely
-FINER = 50
-ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any speed
+ABSOLUTE_TOLERANCE_RATIO = 1e-2  # absolute tolerance of a step, m and m/s, over its relative tolerance
+MOTION_SAMPLES = 2001  # number of samples, in addition to the solver's own steps, that locate the peaks
+PEAK_NEIGHBORHOOD = (
+    1e-3  # Around samples within this share of the peak, the motion is sampled PEAK_REFINEMENT times as densely.
+)
+PEAK_REFINEMENT = 50
+LUBRICATED_V_REG = 1e6  # m/s, v_reg above any speed: it makes the lubricated law mu = f_c |v| linear throughout
 
 
 @njit  # type: ignore[untyped-decorator]
-def state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
-    """Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s."""
+def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
+    """Return the time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13), (4.4) and regularized friction."""
     below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
     z = np.exp(s * t + 1j * phase)
     u = (system.amplitudes[:, 0] * z[0] + system.amplitudes[:, 1] * z[1]).real
-    state = np.ascontiguousarray(y)  # Radau passes columns of a matrix
+    state = np.ascontiguousarray(y)  # Radau passes columns of a matrix, which are not contiguous
     x, v = state[: 2 * count].reshape((count, 2)), state[2 * count :].reshape((count, 2))
     px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]
     speed2 = vx * vx + vy * vy + (px * vx + py * vy) ** 2 / (radius * radius - px * px - py * py)
@@ -60,49 +62,49 @@ def state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corn
 
 
 @njit  # type: ignore[untyped-decorator]
-def state_derivatives(times: Array, states: Array, constants: Any) -> Array:
-    """`state_derivative` at times (T,) and states (T, 4 N)."""
+def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Array:
+    """Return the time derivatives of the states (T, 4 N) at times (T,)."""
     out = np.empty_like(states)
     for n in range(len(times)):
-        out[n] = state_derivative(times[n], states[n], *constants)
+        out[n] = compute_state_derivative(times[n], states[n], *constants)
     return out
 
 
-def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
-    """Return what `state_derivative` is called with after t and y."""
-    system = pack(scene, False, v_reg)
+def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
+    """Return the arguments of `compute_state_derivative` after t and y."""
+    system = pack_scene(scene, False, v_reg)
     if scene.lubricated:
-        system, v_reg = system._replace(friction=system.friction * ALWAYS_LINEAR), ALWAYS_LINEAR
+        system, v_reg = system._replace(friction=system.friction * LUBRICATED_V_REG), LUBRICATED_V_REG
     return system, exponents(scene), np.asarray(phase, dtype=float), v_reg
 
 
 def integrate_motion(
     scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float
 ) -> tuple[Array, Array]:
-    """Instants, s, close near the peaks, and states (T, 4 N) of a motion by SciPy. Raises ValueError if it fails."""
+    """Return instants, s, dense near the peaks, and states (T, 4 N) by SciPy. Raises ValueError if it fails."""
     run = solve_ivp(
-        state_derivative, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
-        args=constants_of(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE,
+        compute_state_derivative, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
+        args=pack_constants(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE_TOLERANCE_RATIO,
     )  # fmt: skip
     if not run.success:
         raise ValueError(f"{method}: {run.message}")
-    times = np.union1d(run.t, np.linspace(0.0, scene.duration, SAMPLES))
+    times = np.union1d(run.t, np.linspace(0.0, scene.duration, MOTION_SAMPLES))
 
     def states(instants: Array) -> Array:
         return np.ascontiguousarray(run.sol(instants).T)
 
-    high = absolute_accelerations(scene, phase, times, states(times), v_reg)
-    near = np.flatnonzero((high >= (1.0 - NEAR) * high.max(axis=0)).any(axis=1))
+    high = compute_absolute_accelerations(scene, phase, times, states(times), v_reg)
+    near = np.flatnonzero((high >= (1.0 - PEAK_NEIGHBORHOOD) * high.max(axis=0)).any(axis=1))
     before, after = times[np.maximum(near - 1, 0)], times[np.minimum(near + 1, len(times) - 1)]
-    closer = np.linspace(before, after, 2 * FINER + 1)
+    closer = np.linspace(before, after, 2 * PEAK_REFINEMENT + 1)
     times = np.union1d(times, closer)
     return times, states(times)
 
 
-def absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """Sizes of the absolute accelerations of a motion, (T, N)."""
-    constants, count = constants_of(scene, phase, v_reg), len(scene.bodies)
-    a = state_derivatives(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
+def compute_absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
+    """Return the magnitudes of the absolute accelerations of a motion, (T, N)."""
+    constants, count = pack_constants(scene, phase, v_reg), len(scene.bodies)
+    a = compute_state_derivatives(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
     depth = np.sqrt(scene.radius**2 - (x**2).sum(axis=1))
     vz = (x * v).sum(axis=1) / depth
@@ -113,21 +115,23 @@ def absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array, states:
     return size
 
 
-def amplification_factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """mu_i (N,) of a motion."""
+def compute_amplification_factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
+    """Return mu_i (N,) of a motion."""
     peaks: Array = (
-        absolute_accelerations(scene, phase, times, states, v_reg).max(axis=0)
+        compute_absolute_accelerations(scene, phase, times, states, v_reg).max(axis=0)
         / ground_peak(scene, np.reshape(phase, (1, 2)))[0]
     )
     return peaks
 
 
-def factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
-    """mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if that fails at a phase pair."""
+def solve_factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
+    """Return mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if it fails at a phase pair."""
     pairs: Array = check_phases(phases)
     return np.array(
         [
-            amplification_factors(scene, phase, *integrate_motion(scene, phase, method, tolerance, v_reg), v_reg)
+            compute_amplification_factors(
+                scene, phase, *integrate_motion(scene, phase, method, tolerance, v_reg), v_reg
+            )
             for phase in pairs
         ]
     )

@@ -1,5 +1,5 @@
 """
-What is measured: questions, each with a reference solution, and the settings of methods that answer them.
+Measured settings: questions, each with a reference solution, and the settings of methods that answer them.
 
 A reference solution is a run at a tolerance at least 100 times tighter than any setting that is compared with it.
 """
@@ -12,41 +12,43 @@ import numpy as np
 
 from comparison.evidence.tradeoff.trade import StatedSetting
 from comparison.study.models import EXACT, TRANSLATIONAL, V_REG_TEXT, Model, has_dry_friction, has_spatial_data
-from comparison.study.user_models import engine_of
+from comparison.study.user_models import engine_description
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
 
 REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
-RUN, LEVEL, CONSTANT = (
-    f"comparison.evidence.tradeoff.single_runs:{name}" for name in ("reference_run", "engine_run", "constant_step_run")
+REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN = (
+    f"comparison.evidence.tradeoff.single_runs:{name}"
+    for name in ("run_reference_once", "run_engine_once", "run_at_constant_step")
 )
-SCIPY = "comparison.evidence.tradeoff.outside:factors_by_scipy"
+SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"
 
-TIGHT = 1e-10  # the tightest the reference takes
-SPATIAL_TIGHT = 1e-5
-STEPS = {
+REFERENCE_SOLUTION_TOLERANCE = 1e-10  # smallest relative error that the equations can be asked for
+SPATIAL_SOLUTION_TOLERANCE = 1e-5
+# S, constant steps by integrator
+STEPS_OF_INTEGRATOR = {
     "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "trapezoidal": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "RK44": (4e-4, 2e-4, 1e-4),
     "velocity Verlet": (4e-4, 2e-4, 1e-4, 5e-5),
-}  # s
-DRY_SPEEDS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, v_reg
+}
+DRY_REGULARIZATIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, v_reg of dry friction
 
-PENETRATION = "penetration under the weight, over rho"
+PENETRATION_PARAMETER = "penetration under the weight, over rho"
 
 Settings = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class TradeoffQuestion:
-    """One panel. reference_solution: its function and settings. points, quick: phase pairs of the sample."""
+    """Question with its reference solution: function and settings. points, quick: phase pairs of the sample."""
 
     key: str
     title: str
     reference_solution: tuple[str, Settings]
     points: int
     quick: int
-    seconds: float  # s of the reference solution, per point, about
+    seconds: float  # s, rough cost of the reference solution per phase pair
 
 
 @dataclass(frozen=True)
@@ -62,29 +64,34 @@ class Setting(StatedSetting):
     against: tuple[str, Settings] | None = None
 
 
+# Settings of the equations by question
 _LAWS: Mapping[str, Settings] = {
     "exact": {},
     "small": {"equations": "small"},
     "regularised": {"regularization": DEFAULT_V_REG},
-}  # settings of the equations, by question
-_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_TIGHT}
-_TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law in _LAWS.items()}
+}
+_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_SOLUTION_TOLERANCE}
+_REFERENCE_SOLUTIONS = {
+    question: (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE}) for question, law in _LAWS.items()
+}
 QUESTIONS = (
-    TradeoffQuestion("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
-    TradeoffQuestion("small", "small equations, supremum", _TIGHT["small"], 48, 12, 0.006),
-    TradeoffQuestion("regularised", f"exact equations, v_reg = {V_REG_TEXT}", _TIGHT["regularised"], 12, 3, 0.01),
+    TradeoffQuestion("exact", "exact equations, supremum", _REFERENCE_SOLUTIONS["exact"], 48, 12, 0.006),
+    TradeoffQuestion("small", "small equations, supremum", _REFERENCE_SOLUTIONS["small"], 48, 12, 0.006),
+    TradeoffQuestion(
+        "regularised", f"exact equations, v_reg = {V_REG_TEXT}", _REFERENCE_SOLUTIONS["regularised"], 12, 3, 0.01
+    ),
     TradeoffQuestion("spatial", f"spatial engine model, v_reg = {V_REG_TEXT}", (ENGINE, _SPATIAL), 6, 2, 3.0),
 )
 
 
-def questions_of(scene: Scene) -> list[TradeoffQuestion]:
-    """The questions that a scene allows."""
+def list_questions(scene: Scene) -> list[TradeoffQuestion]:
+    """Return the questions that a scene allows."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
 def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
-    keys = {question.key for question in questions_of(scene)}
+    """Return every setting that is measured for a scene; quick: every second one of the expensive ones."""
+    keys = {question.key for question in list_questions(scene)}
     every = [
         *_reference_settings(scene),
         *_scipy_settings(quick),
@@ -95,19 +102,19 @@ def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
 
 
 class _VariedCall(NamedTuple):
-    """A function, its argument that varies along a curve, and its other arguments."""
+    """A function with the argument that varies along a curve, and its other arguments."""
 
     function: str
     argument: str
     others: Settings
 
 
-def _settings_of_curve(
+def _make_curve_settings(
     question: str, method: str, parameter: str, call: _VariedCall, values: Sequence[float],
     seconds: float | Sequence[float], **stated: Any,
 ) -> list[Setting]:  # fmt: skip
     """
-    Return one setting for each of `values`, which the varied argument of `call` takes.
+    Return a setting for each of `values`, which the varied argument of `call` takes.
 
     question, method, parameter: as `StatedSetting` has them. seconds: s, per point, of each or of all. stated: other
     fields of `Setting`, as `unit` or `against`, by name.
@@ -125,38 +132,40 @@ def _settings_of_curve(
 def _reference_settings(scene: Scene) -> Iterator[Setting]:
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
-        controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(RUN, "step_tolerance", law)
+        controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(REFERENCE_RUN, "step_tolerance", law)
         method = "reference, two runs and an estimate"
-        yield from _settings_of_curve(
+        yield from _make_curve_settings(
             question, method, "tolerance of mu", controlled, powers[1:], 0.003, controlled=True
         )
-        yield from _settings_of_curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
+        yield from _make_curve_settings(
+            question, "reference, one run", "tolerance inside a step", single, powers, 0.0015
+        )
     call = _VariedCall(REFERENCE, "regularization", {"tolerance": 1e-6})
-    for speed in DRY_SPEEDS if has_dry_friction(scene) else ():
-        faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
+    for speed in DRY_REGULARIZATIONS if has_dry_friction(scene) else ():
+        faster = REFERENCE, {"cutoff": speed, "tolerance": REFERENCE_SOLUTION_TOLERANCE}
         for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
             method = f"v_reg, model error against the {what}"
-            yield from _settings_of_curve(
+            yield from _make_curve_settings(
                 "exact", method, "v_reg", call, [speed], 0.004, unit="m/s", model_error=True, against=against
             )
 
 
 def _scipy_settings(quick: bool) -> Iterator[Setting]:
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
-    # LSODA checks the reference solution, too
+    # LSODA also checks the reference solution.
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
-        call = _VariedCall(SCIPY, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG})
+        call = _VariedCall(SCIPY_FACTORS, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG})
         values = [10.0**-power for power in powers]
-        yield from _settings_of_curve(
+        yield from _make_curve_settings(
             "regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds
         )
 
 
 def _engine_settings(quick: bool) -> Iterator[Setting]:
-    """The engine as the package runs it: error-controlled, and single runs with one parameter changed."""
+    """Yield the engine as the package runs it, with error control, and single runs with one parameter changed."""
     parameters = (
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
-        ("contact compliance", PENETRATION, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
+        ("contact compliance", PENETRATION_PARAMETER, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
         ("Newton", "relative tolerance of Newton's iteration", "newton", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)),
     )
     for question, model, tolerances, dearer in (
@@ -166,36 +175,38 @@ def _engine_settings(quick: bool) -> Iterator[Setting]:
         law, method = {"model": model, "regularization": DEFAULT_V_REG}, f"{model} engine, two levels and an estimate"
         seconds = [dearer * each for each in tolerances.values()]
         controlled = _VariedCall(ENGINE, "tolerance", law)
-        yield from _settings_of_curve(
+        yield from _make_curve_settings(
             question, method, "tolerance of mu", controlled, list(tolerances), seconds, controlled=True
         )
         for name, parameter, key, values in parameters:
             method, few = f"{model} engine, one run: {name}", values[:: 3 if quick else 1]
-            call = _VariedCall(LEVEL, key, law)
-            yield from _settings_of_curve(question, method, parameter, call, few, 0.25 * dearer)
+            call = _VariedCall(ENGINE_LEVEL, key, law)
+            yield from _make_curve_settings(question, method, parameter, call, few, 0.25 * dearer)
 
 
 def _constant_step_settings(quick: bool) -> Iterator[Setting]:
-    for solver, steps in STEPS.items():
-        call = _VariedCall(CONSTANT, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
+    for solver, steps in STEPS_OF_INTEGRATOR.items():
+        call = _VariedCall(CONSTANT_STEP_RUN, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
         few = steps[:: 2 if quick else 1]
         seconds = [0.25e-3 / step for step in few]
-        yield from _settings_of_curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, unit="s")
+        yield from _make_curve_settings(
+            "regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, unit="s"
+        )
 
 
 def list_user_settings(models: Sequence[Model]) -> list[Setting]:
-    """Engines of the user at the tolerances that they take, or as they are."""
+    """Return the settings of a user's engines at the tolerances that they take, or as they are."""
     measured = []
     for model in models:
         law = {key: value for key, value in model.settings.items() if key != "engine"}
         question, against = str(model.like), None
         if question not in {each.key for each in QUESTIONS}:
-            question, against = "exact", (REFERENCE, {**law, "tolerance": TIGHT})
+            question, against = "exact", (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE})
         parameter, values = "as it is, beside a tolerance of", [1e-3]
-        if "tolerance" in engine_of(model.settings).get("names", ""):
+        if "tolerance" in engine_description(model.settings).get("names", ""):
             parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
         call = _VariedCall(model.amplification, "tolerance", model.settings)
-        measured += _settings_of_curve(
+        measured += _make_curve_settings(
             question, f"user model: {model.title}", parameter, call, values, 1.0, against=against
         )
     return measured

@@ -1,4 +1,4 @@
-"""One run of either side with a numerical parameter at a given value: no second run, hence no error estimate."""
+"""Single runs of either side with a numerical parameter at a given value; without a second run there is no error."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,18 +15,18 @@ from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import prepare_run
 
-DISCONTINUOUS = 1.0  # the engine's own default
-USUAL_LEVEL = 1  # level of the engine: it usually answers at the default tolerance
+DISCONTINUOUS_TOLERANCE = 1.0  # tolerance of discontinuous iterations, as the engine's own default
+DEFAULT_ENGINE_LEVEL = 1  # level of the engine that usually answers at the default tolerance
 
 
-def reference_run(
+def run_reference_once(
     scene: Scene,
     phases: ArrayLike,
     step_tolerance: float,
     equations: str = "exact",
     regularization: float | None = None,
 ) -> tuple[Array, float]:
-    """Return mu of one run of the reference by phase pair, each step to `step_tolerance`; and the mean step, s."""
+    """Return mu of one run of the equations by phase pair, with steps to `step_tolerance`; and the mean step, s."""
     pairs = check_phases(phases)
     system, demand = prepare_run(scene, equations, regularization, 1e-6, None, "consistent")
     peaks = peaks_at(system, pairs, demand, step_tolerance)
@@ -34,30 +34,30 @@ def reference_run(
     return mu, float(scene.duration / peaks.steps.mean())
 
 
-def engine_run(
+def run_engine_once(
     scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """mu of one run of the engine for each phase pair at USUAL_LEVEL; step: a factor; level: fields of the level."""
-    usual = multibody.levels(scene, model, regularization=regularization)[USUAL_LEVEL]
+    """Return mu of one run of the engine by phase pair. step: factor on its steps; level: changed fields of it."""
+    usual = multibody.levels(scene, model, regularization=regularization)[DEFAULT_ENGINE_LEVEL]
     changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
-    return _factors_of_runs(scene, phases, lambda run: run.peak, model, regularization, level=changed)
+    return _compute_factors(scene, phases, lambda run: run.peak, model, regularization, level=changed)
 
 
-def constant_step_run(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
-    """mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN where it gives up."""
+def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
+    """Return mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN if it gives up."""
 
     def largest(run: Any) -> Array:
         size: Array = np.linalg.norm(run.absolute_acceleration, axis=-1).max(axis=0)
         return size
 
-    how = {"step": step, "integrator": solver, "discontinuous": DISCONTINUOUS}
-    return _factors_of_runs(scene, phases, largest, "translational", v_reg, **how)
+    how = {"step": step, "integrator": solver, "discontinuous": DISCONTINUOUS_TOLERANCE}
+    return _compute_factors(scene, phases, largest, "translational", v_reg, **how)
 
 
-def _factors_of_runs(
+def _compute_factors(
     scene: Scene, phases: ArrayLike, peak: Callable[[Any], Array], model: str, v_reg: float, **how: Any
 ) -> Array:
-    """mu (M, N) of one run for each phase pair; NaN where it ends early."""
+    """Return mu (M, N) of one run for each phase pair; NaN where it ends early."""
     pairs = check_phases(phases)
     runs = [multibody.single_run(scene, phase, model, v_reg, **how) for phase in pairs]
     nothing = np.full(len(scene.bodies), np.nan)

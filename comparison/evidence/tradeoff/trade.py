@@ -1,4 +1,4 @@
-"""What was measured, as data: errors and compute time of every setting, the fronts, and the files they are kept in."""
+"""Measured trade-off as data: errors and compute time of every setting, the Pareto fronts, and the files."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -24,7 +24,7 @@ MEANINGS = {
 
 @result
 class StatedSetting:
-    """Setting before it is measured."""
+    """A setting of a method before it is measured."""
 
     question: Annotated[str, "key of the question that it answers"]
     method: Annotated[str, "the curve that it belongs to"]
@@ -36,13 +36,13 @@ class StatedSetting:
 
     @property
     def setting(self) -> str:
-        """Parameter, value and unit."""
+        """Return parameter, value and unit."""
         return f"{self.parameter} {self.value:.3g} {self.unit}".strip()
 
 
 @result
 class MeasuredSetting(StatedSetting):
-    """One setting of a method, measured."""
+    """One setting of a method with its measured errors and time."""
 
     points: Annotated[int, "phase pairs asked for"]
     answered: Annotated[int, "phase pairs with a value"]
@@ -61,7 +61,7 @@ class MeasuredSetting(StatedSetting):
 
 
 @result
-class Answered:
+class SolvedQuestion:
     """One question with its reference solution."""
 
     key: Annotated[str, "key of the question"]
@@ -73,14 +73,14 @@ class Answered:
 
 
 @result
-class Trade:
-    """The measured trade of one scene."""
+class SceneTrade:
+    """Measured trade-off of one scene."""
 
     scene: Annotated[str, "name of the scene"]
     title: Annotated[str, "title of the scene"]
     digest: Annotated[str, "hash of the scene"]
     bodies: Annotated[int, "number of bodies"]
-    questions: Annotated[Sequence[Answered], "one per panel of the diagram"]
+    questions: Annotated[Sequence[SolvedQuestion], "one per panel of the diagram"]
     entries: Annotated[Sequence[MeasuredSetting], "one per setting"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
@@ -93,31 +93,31 @@ class Trade:
             require(each.question in keys, f"question {each.question[:40]!r} of an entry is none of the questions")
 
     def entries_of(self, question: str) -> list[MeasuredSetting]:
-        """The entries of one question, in the order in which they were listed."""
+        """Return the entries of one question in the order in which they were listed."""
         return [entry for entry in self.entries if entry.question == question]
 
     def methods(self, question: str) -> dict[str, list[MeasuredSetting]]:
-        """The curves of one question, from the cheapest value to the dearest."""
+        """Return the curves of one question, from the cheapest value to the most expensive."""
         curves: dict[str, list[MeasuredSetting]] = {}
         for entry in self.entries_of(question):
             curves.setdefault(entry.method, []).append(entry)
         return curves
 
 
-def error_of_share(errors: Array, share: float) -> float | None:
-    """The error that a share of the points does not exceed: one that occurred; None if no error is known."""
+def find_error_quantile(errors: Array, share: float) -> float | None:
+    """Return the occurring error that a share of the points does not exceed; None if no error is known."""
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
-def is_unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
-    """Return whether nothing else is at least as good in cost and error and better in one."""
+def is_pareto_optimal(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
+    """Return whether no other setting is at least as good in cost and error and better in one of them."""
     beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
     return math.isfinite(sum(mine)) and not beaten
 
 
-def with_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[MeasuredSetting]:
-    """The entries with `pareto_front` filled in, compared with those that answer their question at every point."""
+def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[MeasuredSetting]:
+    """Return the entries with `pareto_front` set, among those that answer their question at every point."""
     complete = [entry for entry in entries if entry.complete and not entry.model_error]
 
     def time_and_error(entry: MeasuredSetting, body: int) -> tuple[float, float]:
@@ -126,7 +126,7 @@ def with_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
 
     def is_on_front(entry: MeasuredSetting, body: int) -> bool:
         rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
-        return entry in complete and is_unbeaten(time_and_error(entry, body), rivals)
+        return entry in complete and is_pareto_optimal(time_and_error(entry, body), rivals)
 
     return [replace(entry, pareto_front=tuple(is_on_front(entry, body) for body in range(bodies))) for entry in entries]
 
@@ -136,30 +136,30 @@ class TradeFile:
     """Content of the file."""
 
     schema: Annotated[Literal["phase-resonance/tradeoff"], "what the file is"]
-    trades: Annotated[list[Trade], "one per scene"]
+    trades: Annotated[list[SceneTrade], "one per scene"]
 
 
 STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeoff")
 
 
-def load_trades(folder: Path) -> list[Trade] | None:
-    """The trades that a command left in a folder, as `StoredFile.load`."""
+def load_trades(folder: Path) -> list[SceneTrade] | None:
+    """Return the trade-offs that a command left in a folder, as `StoredFile.load` does."""
     content = STORED.load(folder)
     return None if content is None else content.trades
 
 
 @dataclass(frozen=True)
 class MeasuredTrade:
-    """One scene: the diagram, and every value behind it by setting, point and body."""
+    """Measured trade-off of one scene with every value behind it by setting, point and body."""
 
-    trade: Trade
+    trade: SceneTrade
     values: xr.Dataset
 
 
 def label_values(
     entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array
 ) -> xr.Dataset:
-    """Every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
+    """Return every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
     axes = ("setting", "point", "body")
     variables: dict[str, Any] = {}
     for name, rows in values.items():

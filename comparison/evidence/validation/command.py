@@ -16,24 +16,31 @@ import numpy as np
 from rich.console import Console
 
 from comparison.cli.arguments import CommandParser, command, write_and_show
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import make_table
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import frame, pendulum
-from comparison.evidence.validation.files import DECAY, FRAME_SOURCE, LARGE, PENDULUM_SOURCE, read_folder, wrong_file
-from comparison.evidence.validation.table import STORED, Found, Validation, join_findings, load_record
+from comparison.evidence.validation.files import (
+    DECAY_FILE,
+    FRAME_SOURCE,
+    LARGE_SWING_FILE,
+    PENDULUM_SOURCE,
+    make_file_error,
+    read_folder,
+)
+from comparison.evidence.validation.table import STORED, ExperimentFindings, Validation, join_findings, load_record
 from comparison.runner.environment import describe_provenance
 from comparison.runner.output import publish_files, refuse_foreign_files, resolve_destination
-from comparison.runner.progress import wide_console
+from comparison.runner.progress import make_wide_console
 from comparison.verdicts import NOT_COMPARED, word_counts
-from comparison.wording import exception_line
+from comparison.wording import word_exception
 from reference.problem import SceneError
 
-REASON = 150  # letters of what a library says of a motion
+MAX_REASON_LETTERS = 150  # largest number of letters of a library's error message that is shown
 
 
 @command
 def main(argv: Sequence[str]) -> int:
-    """Compare with the measured files that the command line names, or print what is recorded; the exit code."""
+    """Compare with the measured files that the command line names, or print the record; return the exit code."""
     parser = CommandParser(
         "validation", "Measured motions compared with what the equations and the engine compute of them."
     )
@@ -46,7 +53,7 @@ def main(argv: Sequence[str]) -> int:
     )
     parser.add_out(f"where {STORED.name} goes")
     options = parser.parse_args(argv)
-    console = wide_console()
+    console = make_wide_console()
     if options.folder is None:
         print_validation(console, load_record())
         console.print("Recorded in the package. To compute it anew, or with other runs of the frame, get the files:")
@@ -65,19 +72,19 @@ def main(argv: Sequence[str]) -> int:
 
 
 def compare_folder(folder: Path) -> Validation:
-    """Everything that a folder of measured files allows."""
+    """Return every comparison that a folder of measured files allows."""
     begin = time.process_time()
     measured = read_folder(folder)
     found = [_compare_file("s_b_<weight>g_x.mat", frame.compare_frame, measured.runs)] if measured.runs else []
-    found += [_compare_file(DECAY, pendulum.compare_decay, measured.decay)] if measured.decay else []
-    found += [_compare_file(LARGE, pendulum.compare_large, measured.large)] if measured.large else []
+    found += [_compare_file(DECAY_FILE, pendulum.compare_decay, measured.decay)] if measured.decay else []
+    found += [_compare_file(LARGE_SWING_FILE, pendulum.compare_large_swings, measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
     run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": describe_provenance()}
     return Validation(*join_findings(found), run)
 
 
-def _compare_file(file: str, compare: Callable[[Any], Found], measured: Any) -> Found:
-    """Return what an experiment adds. Raises SceneError, one line, for a motion that no comparison can be made of."""
+def _compare_file(file: str, compare: Callable[[Any], ExperimentFindings], measured: Any) -> ExperimentFindings:
+    """Return the findings of an experiment. Raises SceneError, one line, for a motion that cannot be compared."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -90,16 +97,16 @@ def _compare_file(file: str, compare: Callable[[Any], Found], measured: Any) -> 
         LookupError,
         TypeError,
         AssertionError,
-    ) as error:  # raised by NumPy, SciPy, pydantic
-        reason = exception_line(error)[:REASON]
+    ) as error:  # raised by NumPy, SciPy or pydantic
+        reason = word_exception(error)[:MAX_REASON_LETTERS]
         rule = f"must hold motions like the published ones: none can be compared with these ({reason})"
-        raise wrong_file(file, rule) from error
+        raise make_file_error(file, rule) from error
 
 
 def print_validation(console: Console, table: Validation) -> None:
-    """A row for every quantity, the causes, the inputs, and the counts."""
+    """Print a row for every quantity, the causes, the inputs, and the counts."""
     heads = ("D", "u_D", "u_input", "E equations", "u_num", "E engine", "u_num", "u_val", "verdict")
-    lines = new_table("quantity", *heads)
+    lines = make_table("quantity", *heads)
     for each in table.quantities:
         sides = [each.sides[side] for side in (EQUATIONS, ENGINE)]
         numbers = [number for side in sides for number in (side.error, side.numerical)] + [sides[0].validation]

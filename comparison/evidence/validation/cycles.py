@@ -1,4 +1,4 @@
-"""The cycles of a shaken frame: a measured run folded by the motion of its base, and what is read off a cycle."""
+"""Cycles of a shaken frame: a measured run folded by the motion of its base, and the quantities of a cycle."""
 
 import math
 from typing import NamedTuple
@@ -6,43 +6,43 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from comparison.evidence.validation.files import Shaken, wrong_file
+from comparison.evidence.validation.files import FrameRun, make_file_error
 from comparison.result_types import Array
 
-SAMPLES = 250  # samples of a cycle, as measured
-FEWEST = 3  # whole cycles of a run
-HARMONICS = 6  # fitted to the base motion
-UNEXPLAINED = 0.1  # rms share of the base motion that they may leave; 0.003 in the published runs
-DRIFT = 0.1  # share of its range by which the middle of the plate may move between cycles
-SPEED = 2.0  # mm/s: slower is at rest
-WIDTH = 4  # samples to either side of a velocity
+CYCLE_SAMPLES = 250  # samples per cycle, as in the measurement
+MIN_CYCLES = 3  # smallest number of whole cycles in a run
+BASE_HARMONICS = 6  # number of harmonics fitted to the base motion
+MAX_UNEXPLAINED_SHARE = 0.1  # largest rms share of the base motion outside these harmonics; 0.003 in the published runs
+MAX_DRIFT_SHARE = 0.1  # largest shift of the plate's middle position between cycles, as a share of its range
+REST_SPEED = 2.0  # mm/s, speed below which the plate is at rest
+VELOCITY_HALF_WIDTH = 4  # samples on either side of the instant at which a velocity is computed
 
 
 class Cycles(NamedTuple):
-    """A measured run, folded: motions (J, SAMPLES), mm, from the largest position of the base on."""
+    """A measured run folded into cycles (J, samples), mm, each from the largest position of the base on."""
 
-    run: Shaken
+    run: FrameRun
     motions: Array
-    frequency: float  # Hz
-    amplitude: float  # mm, of the fundamental of the base
+    frequency: float  # Hz, frequency of the base
+    amplitude: float  # mm, amplitude of the base's fundamental
     second: complex  # mm, second harmonic of the base
 
     @property
     def mean(self) -> Array:
-        """The mean cycle about its mean, mm."""
+        """Return the mean cycle about its mean, mm."""
         mean = self.motions.mean(axis=0)
         about: Array = mean - mean.mean()
         return about
 
 
-def fold_run(run: Shaken) -> Cycles:
-    """The whole cycles of a run, by the fundamental of the base motion."""
+def fold_run(run: FrameRun) -> Cycles:
+    """Return the whole cycles of a run, by the fundamental of the base motion."""
     time = run.time - run.time[0]
     spectrum = np.abs(np.fft.rfft(run.base - run.base.mean()))
     first = float(np.argmax(spectrum)) / (time[-1] + time[1])
 
     def fit_harmonics(frequency: float) -> tuple[Array, Array]:
-        turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(HARMONICS + 1))
+        turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(BASE_HARMONICS + 1))
         terms = np.hstack([np.cos(turns), np.sin(turns[:, 1:])])
         factors: Array = np.linalg.lstsq(terms, run.base, rcond=None)[0]
         return factors, run.base - terms @ factors
@@ -53,57 +53,64 @@ def fold_run(run: Shaken) -> Cycles:
     frequency = first * float(scaled.x[0])
     factors, rest = fit_harmonics(frequency)
     left = float(rest.std() / run.base.std())
-    if not left <= UNEXPLAINED:
-        rule = f"y must be periodic: {HARMONICS} harmonics leave {100.0 * left:.0f} % of it, which may be "
-        raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", f"{rule}{100.0 * UNEXPLAINED:.0f} % at most")
-    harmonics = factors[1 : HARMONICS + 1] - 1j * factors[HARMONICS + 1 :]
+    if not left <= MAX_UNEXPLAINED_SHARE:
+        rule = f"y must be periodic: {BASE_HARMONICS} harmonics leave {100.0 * left:.0f} % of it, which may be "
+        raise make_file_error(
+            f"s_b_{1e3 * run.weight:g}g_y.mat", f"{rule}{100.0 * MAX_UNEXPLAINED_SHARE:.0f} % at most"
+        )
+    harmonics = factors[1 : BASE_HARMONICS + 1] - 1j * factors[BASE_HARMONICS + 1 :]
     begin = np.angle(harmonics[0])
     phase = frequency * time + begin / (2.0 * np.pi)
     whole = range(math.ceil(phase[0]), math.floor(phase[-1]))
-    if len(whole) < FEWEST:
-        rule = f"y must have {FEWEST} whole cycles of the base, not {len(whole)}"
-        raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", rule)
-    grid = np.arange(SAMPLES) / SAMPLES
+    if len(whole) < MIN_CYCLES:
+        rule = f"y must have {MIN_CYCLES} whole cycles of the base, not {len(whole)}"
+        raise make_file_error(f"s_b_{1e3 * run.weight:g}g_y.mat", rule)
+    grid = np.arange(CYCLE_SAMPLES) / CYCLE_SAMPLES
     motions = np.array([np.interp(number + grid, phase, run.plate) for number in whole])
     plate = f"s_b_{1e3 * run.weight:g}g_x.mat"
     for number, motion in enumerate(motions, start=1):
-        if math.isnan(read_cycle(motion, frequency)[2]):
-            rule = (
-                f"x must be faster than {SPEED:g} mm/s to either side in every cycle, or in none: not in cycle {number}"
-            )
-            raise wrong_file(plate, rule)
+        if math.isnan(measure_cycle(motion, frequency)[2]):
+            rule = f"x must be faster than {REST_SPEED:g} mm/s to either side in every cycle, or in none: "
+            raise make_file_error(plate, f"{rule}not in cycle {number}")
     drift = float(np.abs(np.diff(motions.mean(axis=1))).max() / (np.ptp(motions, axis=1).min() or np.inf))
-    if drift > DRIFT:
+    if drift > MAX_DRIFT_SHARE:
         rule = f"x must repeat itself: its middle moves by {100.0 * drift:.0f} % of its range from a cycle to the next"
-        raise wrong_file(plate, f"{rule}, which may be {100.0 * DRIFT:.0f} % at most")
+        raise make_file_error(plate, f"{rule}, which may be {100.0 * MAX_DRIFT_SHARE:.0f} % at most")
     return Cycles(run, motions, frequency, abs(harmonics[0]), complex(harmonics[1] * np.exp(-2j * begin)))
 
 
-def read_cycle(motion: Array, frequency: float) -> Array:
+def measure_cycle(motion: Array, frequency: float) -> Array:
     """
-    The quantities of one cycle (SAMPLES,), mm: NAMES.
+    Return the quantities of one cycle, mm, in the order of NAMES.
 
     The plate starts and stops where its speed passes SPEED, before and behind each of its two largest speeds; the
     phases are from the turn of the base on, means of both directions.
     """
-    speed = (np.roll(motion, -WIDTH) - np.roll(motion, WIDTH)) * frequency * SAMPLES / (2 * WIDTH)
-    if np.abs(speed).max() < SPEED:  # at rest throughout: nothing starts or stops
+    speed = (
+        (np.roll(motion, -VELOCITY_HALF_WIDTH) - np.roll(motion, VELOCITY_HALF_WIDTH))
+        * frequency
+        * CYCLE_SAMPLES
+        / (2 * VELOCITY_HALF_WIDTH)
+    )
+    if np.abs(speed).max() < REST_SPEED:  # The plate rests throughout, so that it neither starts nor stops.
         return np.array([0.5 * np.ptp(motion), motion.std(), 100.0, math.nan, math.nan])
     ends = []
     for sign in (-1.0, 1.0):
         top = int(np.argmax(sign * speed))
         turned = np.roll(sign * speed, -top)
-        ends.append([top - _first_below(turned[np.arange(0, -SAMPLES, -1)]), top + _first_below(turned)])
-    starts, stops = (np.array(ends).T - [0.0, 0.5 * SAMPLES]) * 360.0 / SAMPLES
+        ends.append(
+            [top - _find_end_of_motion(turned[np.arange(0, -CYCLE_SAMPLES, -1)]), top + _find_end_of_motion(turned)]
+        )
+    starts, stops = (np.array(ends).T - [0.0, 0.5 * CYCLE_SAMPLES]) * 360.0 / CYCLE_SAMPLES
     moving = (stops - starts).sum() / 360.0
     middles = [np.angle(np.exp(1j * np.radians(phases)).sum(), deg=True) % 360.0 for phases in (starts, stops)]
     return np.array([0.5 * np.ptp(motion), motion.std(), 100.0 * (1.0 - moving), *middles])
 
 
-def _first_below(speed: Array) -> float:
-    """Place at which a speed that begins above SPEED passes it."""
-    below = np.flatnonzero(speed < SPEED)
+def _find_end_of_motion(speed: Array) -> float:
+    """Return the interpolated index at which a speed that begins above REST_SPEED falls to it."""
+    below = np.flatnonzero(speed < REST_SPEED)
     if not len(below) or below[0] == 0:
         return math.nan
     k = int(below[0])
-    return float(k - (SPEED - speed[k]) / (speed[k - 1] - speed[k]))
+    return float(k - (REST_SPEED - speed[k]) / (speed[k - 1] - speed[k]))

@@ -1,5 +1,5 @@
 """
-The measured files, as their authors publish them, read where the user has them.
+Measured files as their authors publish them, read from a folder of the user.
 
 A process of its own with limits of memory and time reads a file, and hands back columns of numbers: a file that ends
 the process that reads it costs one line.
@@ -24,30 +24,32 @@ from reference.support.files import read_file
 
 try:
     import resource
-except ImportError:  # Windows limits no process
+except ImportError:  # Windows cannot limit the memory or time of a process.
     resource = None  # type: ignore[assignment]
 
-LARGEST = 2**24  # bytes of a file
+MAX_FILE_BYTES = 2**24  # bytes of the largest file that is read
 MAX_SAMPLES = 2_000_000
-READING = 30.0  # s of processor time that reading a file may take: the published ones take less than 1 s
-MEMORY = 2**29  # bytes that reading a file may take: a column of MAX_SAMPLES takes 2^24
-LENGTHS = (1.0, 1e4)  # s, shortest and longest motion that is compared
-FARTHEST = {"mm": 1e4, "rad": 1e3}  # largest credible reading in each unit
-NUMERIC = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}  # no booleans
-FRAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")
-DECAY, LARGE = "SingleDataFreeSwing_1_Dt_0_0001.mat", "SinglePendulumDataForParameterEstimation.mat"
+MAX_READING_SECONDS = 30.0  # s of processor time that reading a file may take: the published ones take less than 1 s
+MAX_READING_BYTES = 2**29  # bytes that reading a file may take: a column of MAX_SAMPLES takes 2^24
+DURATION_RANGE = (1.0, 1e4)  # s, shortest and longest motion that is compared
+MAX_READINGS = {"mm": 1e4, "rad": 1e3}  # largest credible reading in each unit
+# Types of numbers in a file; booleans are none
+NUMERIC_TYPES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
+FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")
+DECAY_FILE, LARGE_SWING_FILE = "SingleDataFreeSwing_1_Dt_0_0001.mat", "SinglePendulumDataForParameterEstimation.mat"
 FRAME_SOURCE = (
     "single-storey frame with a brass-to-steel contact, Marino, Cicirello, Data-Centric Engineering 2023 "
     "(arXiv 2303.03858), rig in Nonlinear Dynamics 99 (2020) 1781-1799: github.com/l-marino/switching-GPLFM, commit "
     "01dc3d9 (GPL-3.0), files s_b_<weight>g_x.mat and s_b_<weight>g_y.mat"
 )
-CELLS = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # variables of the file of large swings
+LARGE_SWING_VARIABLES = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # variables in the file of large swings
 PENDULUM_SOURCE = (
-    f"swinging pendulum: github.com/dynamicslab/MultiArm-Pendulum, commit e99a7e1 (MIT), files {DECAY} and {LARGE}"
+    "swinging pendulum: github.com/dynamicslab/MultiArm-Pendulum, commit e99a7e1 (MIT), files "
+    f"{DECAY_FILE} and {LARGE_SWING_FILE}"
 )
 
 
-class Shaken(NamedTuple):
+class FrameRun(NamedTuple):
     """One run of the frame: weight of the disc, kg; time, s; motions of top plate and base, mm, (T,)."""
 
     weight: float
@@ -57,11 +59,11 @@ class Shaken(NamedTuple):
 
     @property
     def name(self) -> str:
-        """For tables."""
+        """Return the name of the run for tables."""
         return f"frame, {1e3 * self.weight:g} g"
 
 
-class Swing(NamedTuple):
+class FreeSwing(NamedTuple):
     """A free swing: time, s, and angle from hanging, rad, (T,)."""
 
     time: Array
@@ -69,67 +71,73 @@ class Swing(NamedTuple):
 
 
 class MeasuredFiles(NamedTuple):
-    """Measurements in a folder."""
+    """Measurements found in a folder."""
 
-    runs: list[Shaken]
-    decay: Swing | None
-    large: Swing | None
+    runs: list[FrameRun]
+    decay: FreeSwing | None
+    large: FreeSwing | None
 
 
 def read_folder(folder: Path) -> MeasuredFiles:
-    """The measured files in a folder and in the folders directly in it. Raises SceneError, one line."""
+    """Return the measured files in a folder and its direct subfolders. Raises SceneError, one line."""
     if not folder.is_dir():
-        raise wrong_file(folder, "must be a folder with the measured files")
+        raise make_file_error(folder, "must be a folder with the measured files")
     files: dict[str, Path] = {}
     for file in sorted([*folder.glob("*.mat"), *folder.glob("*/*.mat")]):
         if file.name in files:
             rule = f"must hold each file once: also {files[file.name].relative_to(folder)}; leave one of them"
-            raise wrong_file(file, rule)
+            raise make_file_error(file, rule)
         files[file.name] = file
-    named = [match for name in files if (match := FRAME.fullmatch(name))]
+    named = [match for name in files if (match := FRAME_FILE_NAME.fullmatch(name))]
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
     for grams in plates.keys() ^ bases.keys():
         missing = "y" if grams in plates else "x"
-        raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing, but its partner is there")
+        raise make_file_error(folder, f"s_b_{grams}g_{missing}.mat is missing, but its partner is there")
     workers = Workers(1)
     try:
-        runs = [_read_shaken(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
-        decay = _read_swing(workers, files[DECAY], decay_columns, ("Theta1",)) if DECAY in files else None
-        large = _read_swing(workers, files[LARGE], large_columns, CELLS) if LARGE in files else None
+        runs = [_read_frame_run(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
+        decay = (
+            _read_swing(workers, files[DECAY_FILE], select_decay_columns, ("Theta1",)) if DECAY_FILE in files else None
+        )
+        large = (
+            _read_swing(workers, files[LARGE_SWING_FILE], select_large_swing_columns, LARGE_SWING_VARIABLES)
+            if LARGE_SWING_FILE in files
+            else None
+        )
     finally:
         workers.abandon()
     if not (runs or decay or large):
-        rule = f"holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat, {DECAY}, {LARGE}"
-        raise wrong_file(folder, rule)
+        rule = "holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat"
+        raise make_file_error(folder, f"{rule}, {DECAY_FILE}, {LARGE_SWING_FILE}")
     return MeasuredFiles(runs, decay, large)
 
 
-def _read_shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:
+def _read_frame_run(workers: Workers, grams: int, plate: Path, base: Path) -> FrameRun:
     x, y = (_read_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
     time = _check_series(plate, "t", x["t"])
     motion = _check_series(plate, "x", x["x"], len(time), "mm")
     ground = _check_series(base, "y", y["y"], len(time), "mm")
     if np.ptp(ground) == 0.0:
-        raise wrong_file(base, "y must move: every sample of the base is the same")
+        raise make_file_error(base, "y must move: every sample of the base is the same")
     own = _check_series(base, "t", y["t"])
     if len(own) != len(time) or np.abs(own - time).max() > 0.5 * (time[1] - time[0]):
-        raise wrong_file(base, f"t must be the same as in {plate.name}")
-    return Shaken(grams * 1e-3, time, motion, ground)
+        raise make_file_error(base, f"t must be the same as in {plate.name}")
+    return FrameRun(grams * 1e-3, time, motion, ground)
 
 
 def _read_swing(
     workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]
-) -> Swing:
+) -> FreeSwing:
     found = _read_columns(workers, file, columns, names)
     (first, instants), (second, angles) = found.items()
     time = _check_series(file, first, instants)
     angle = _check_series(file, second, angles, len(time), "rad")
     if np.ptp(angle) == 0.0:
-        raise wrong_file(file, f"{second} must move: every sample is the same")
-    return Swing(time, angle - np.pi)
+        raise make_file_error(file, f"{second} must move: every sample is the same")
+    return FreeSwing(time, angle - np.pi)
 
 
-def decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
+def select_decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return times and angles of the structure in the file of the decay."""
     try:
         return {"Theta1.time": content["Theta1"]["time"], "Theta1.values": content["Theta1"]["signals"]["values"]}
@@ -137,12 +145,12 @@ def decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
         raise ValueError("Theta1 must be a structure with time and signals.values") from None
 
 
-def large_columns(content: Mapping[str, Any]) -> dict[str, Any]:
+def select_large_swing_columns(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return times and angles of the cells in the file of large swings."""
     try:
         return {
             shown: np.concatenate([np.atleast_2d(part)[0] for name in names for part in content[name]])
-            for shown, names in (("Time", CELLS[:2]), ("Y", CELLS[2:]))
+            for shown, names in (("Time", LARGE_SWING_VARIABLES[:2]), ("Y", LARGE_SWING_VARIABLES[2:]))
         }
     except (IndexError, TypeError, ValueError):
         raise ValueError("Y_id must be cells of angles and rates, (2, T)") from None
@@ -153,36 +161,37 @@ def _read_columns(
 ) -> Mapping[str, Any]:
     """Return the columns of numbers in a file, read by a process of its own. Raises SceneError, one line."""
     try:
-        found: Any = workers.start(partial(read_columns, file, columns, tuple(names)), READING).result()
+        found: Any = workers.start(partial(read_columns, file, columns, tuple(names)), MAX_READING_SECONDS).result()
     except TimeLimitError:
-        found = f"takes more than {READING:g} s to read: must be a MATLAB file with columns of numbers"
+        found = f"takes more than {MAX_READING_SECONDS:g} s to read: must be a MATLAB file with columns of numbers"
     except WorkerDiedError:
         found = "ends the process that reads it: must be a MATLAB file with columns of numbers"
     if isinstance(found, str):
-        raise wrong_file(file, found)
+        raise make_file_error(file, found)
     return dict(found)
 
 
 def read_columns(
     file: Path, columns: Callable[[Any], Mapping[str, Any]], names: tuple[str, ...]
 ) -> Mapping[str, Any] | str:
-    """Read the columns of variables of a file inside a worker process; return what is wrong with it as text."""
+    """Return the columns of variables in a file, or its fault as text. Runs inside a worker process."""
     try:
         with limit_memory(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            data = read_file(file, LARGEST)
+            data = read_file(file, MAX_FILE_BYTES)
             kinds = {name: kind for name, _, kind in whosmat(io.BytesIO(data))}
             for name in names:
                 if name not in kinds:
                     return f"must hold the variable {name}"
-                if columns is dict and kinds[name] not in NUMERIC:
+                if columns is dict and kinds[name] not in NUMERIC_TYPES:
                     return _rule_of_column(name)
             found = loadmat(io.BytesIO(data), variable_names=names, simplify_cells=True)
     except OSError as error:
         return error.strerror or "cannot be read"
     except MemoryError:
-        return f"takes more than {MEMORY / 2**20:.0f} MiB to read: must be a MATLAB file with columns of numbers"
-    except Exception:  # whatever scipy makes of bytes that are no such file
+        limit = f"{MAX_READING_BYTES / 2**20:.0f} MiB"
+        return f"takes more than {limit} to read: must be a MATLAB file with columns of numbers"
+    except Exception:  # SciPy raises all kinds of errors for bytes that are no such file.
         return "must be a MATLAB file of version 5 to 7.2"
     try:
         listed = columns({name: found[name] for name in names})
@@ -196,7 +205,7 @@ def read_columns(
 
 @contextmanager
 def limit_memory() -> Iterator[None]:
-    """Let the process take MEMORY more than it has, where the system tells how much that is."""
+    """Limit the process to MAX_READING_BYTES more than it has, if the system states how much that is."""
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[0])
     except (OSError, ValueError):
@@ -205,7 +214,7 @@ def limit_memory() -> Iterator[None]:
         yield
         return
     before = resource.getrlimit(resource.RLIMIT_AS)
-    most = pages * resource.getpagesize() + MEMORY
+    most = pages * resource.getpagesize() + MAX_READING_BYTES
     resource.setrlimit(resource.RLIMIT_AS, (most if before[1] < 0 else min(most, before[1]), before[1]))
     try:
         yield
@@ -218,20 +227,20 @@ def _rule_of_column(name: str) -> str:
 
 
 def _check_series(file: Path, name: str, values: Any, count: int | None = None, unit: str = "") -> Array:
-    """Return a column of finite samples; rising at even steps where it is the time, `count` is None."""
+    """Return a column of finite samples; `count` None marks the time, which must rise in even steps."""
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
-        raise wrong_file(file, _rule_of_column(name))
+        raise make_file_error(file, _rule_of_column(name))
     series = series.astype(float)
     if count is not None and len(series) != count:
-        raise wrong_file(file, f"{name} must have as many samples as the time, {count}, not {len(series)}")
+        raise make_file_error(file, f"{name} must have as many samples as the time, {count}, not {len(series)}")
     if not np.isfinite(series).all():
-        raise wrong_file(file, f"{name} must be finite numbers")
+        raise make_file_error(file, f"{name} must be finite numbers")
     if count is None:
         _refuse_time(file, name, series)
-    elif (farthest := float(np.abs(series).max())) > FARTHEST[unit]:
-        rule = f"{name} must be a motion of at most {FARTHEST[unit]:g} {unit}, not {farthest:.3g} {unit}"
-        raise wrong_file(file, rule)
+    elif (farthest := float(np.abs(series).max())) > MAX_READINGS[unit]:
+        rule = f"{name} must be a motion of at most {MAX_READINGS[unit]:g} {unit}, not {farthest:.3g} {unit}"
+        raise make_file_error(file, rule)
     return series
 
 
@@ -241,13 +250,15 @@ def _refuse_time(file: Path, name: str, series: Array) -> None:
         steps, span = np.diff(series), float(series[-1] - series[0])
         even = steps.min() > 0.0 and np.ptp(steps) < 1e-3 * steps.mean()
     if not even:
-        raise wrong_file(file, f"{name} must rise in even steps")
-    if not LENGTHS[0] <= span <= LENGTHS[1]:
-        raise wrong_file(file, f"{name} must span {LENGTHS[0]:g} to {LENGTHS[1]:g} s, not {span:.3g} s")
+        raise make_file_error(file, f"{name} must rise in even steps")
+    if not DURATION_RANGE[0] <= span <= DURATION_RANGE[1]:
+        raise make_file_error(
+            file, f"{name} must span {DURATION_RANGE[0]:g} to {DURATION_RANGE[1]:g} s, not {span:.3g} s"
+        )
 
 
-def wrong_file(file: Path | str, rule: str) -> SceneError:
-    """Return what is wrong with a file, in one line that names it however long its path is."""
+def make_file_error(file: Path | str, rule: str) -> SceneError:
+    """Return the error for a faulty file, one line that names the file however long its path is."""
     if isinstance(file, Path) and file.suffix == ".mat":
         return SceneError("command line", "FOLDER", str(file.parent), f"{file.name}: {rule}")
     return SceneError("command line", "FOLDER", str(file), rule)

@@ -1,4 +1,4 @@
-"""Measured quantities compared with what both sides compute, as data: a file, and what the report needs of it."""
+"""Table of measured quantities compared with those of both sides, as the data of a file and of the report."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -27,18 +27,20 @@ from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
-COVERAGE = 2.0  # standard deviations of an expanded uncertainty
-LAW, INPUT, OPEN = "the friction law", "an input", "not explained"  # begin the explanation of what is not met
-LOADED = ", friction of the load"  # behind the name of a run of the frame
+COVERAGE_FACTOR = 2.0  # number of standard deviations in an expanded uncertainty
+# First words of the explanation of a quantity that is not met
+LAW_CAUSE, INPUT_CAUSE, NO_CAUSE = "the friction law", "an input", "not explained"
+# Suffix of the name of a run that is computed with load-dependent friction
+LOAD_FRICTION_SUFFIX = ", friction of the load"
 DEGREES, CYCLE = "deg", "% of a cycle"
-BOTH = EQUATIONS, ENGINE
-ORDER: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # from the best to the worst
-ABSOLUTE = (DEGREES, CYCLE)  # units of which a share says nothing
+JUDGED_SIDES = EQUATIONS, ENGINE
+VERDICTS_BEST_FIRST: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # verdicts from the best to the worst
+ABSOLUTE_UNITS = (DEGREES, CYCLE)  # units for which a relative error has no meaning
 
 
 @result
-class Comparison:
-    """One quantity by one side."""
+class SideComparison:
+    """One measured quantity as computed by one side."""
 
     value: Annotated[float | None, "S; null without an answer"]
     error: Annotated[float | None, "E = S - D"]
@@ -53,7 +55,7 @@ class Comparison:
 
 @result
 class MeasuredQuantity:
-    """One measured quantity."""
+    """One measured quantity compared with both sides."""
 
     experiment: Annotated[str, "frame or pendulum, and the run"]
     name: Annotated[str, "what it is"]
@@ -63,7 +65,9 @@ class MeasuredQuantity:
     data: Annotated[float, "u_D"]
     inputs: Annotated[float, "u_input"]
     cause: Annotated[str, "explanation of what is not met: the friction law, an input, or none found; empty where met"]
-    sides: Annotated[Mapping[str, Comparison], "by side: equations, smoothed (with the engine's friction law), engine"]
+    sides: Annotated[
+        Mapping[str, SideComparison], "by side: equations, smoothed (with the engine's friction law), engine"
+    ]
 
     def __post_init__(self) -> None:
         for side in (EQUATIONS, ENGINE):
@@ -71,8 +75,8 @@ class MeasuredQuantity:
 
     @property
     def base(self) -> float | None:
-        """Value to which an E is relative, None where a share of it says nothing."""
-        return None if self.unit in ABSOLUTE else self.measured
+        """Return the value to which the error is relative, None for units without relative errors."""
+        return None if self.unit in ABSOLUTE_UNITS else self.measured
 
     def word(self, side: str) -> str:
         """Return the verdict on one side in words."""
@@ -90,7 +94,7 @@ class MeasuredQuantity:
 
 
 @result
-class Curve:
+class PlotCurve:
     """One line of a plot; empty in the table that the package holds."""
 
     panel: Annotated[str, "title of its plot"]
@@ -107,7 +111,7 @@ class Curve:
 
 @result
 class CycleResidual:
-    """Difference of a whole motion, which quantities of it alone do not show."""
+    """Difference of the whole motion over a cycle, which no single quantity shows."""
 
     experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
     use: Annotated[str, "calibrated or predicted"]
@@ -122,11 +126,11 @@ class Validation:
     inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
     facts: Annotated[Sequence[str], "what else was found, in sentences"]
     residuals: Annotated[Sequence[CycleResidual], "of the runs of the frame"]
-    curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
+    curves: Annotated[Sequence[PlotCurve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
     def explanations(self) -> dict[str, list[MeasuredQuantity]]:
-        """Quantities that are not met, by their explanation."""
+        """Return the quantities that are not met, grouped by their explanation."""
         groups: dict[str, list[MeasuredQuantity]] = {}
         for each in self.quantities:
             if each.cause:
@@ -134,35 +138,36 @@ class Validation:
         return groups
 
     def counts(self) -> dict[Verdict, int]:
-        """Quantities of the equations and of the engine by verdict."""
+        """Return how many quantities of the equations and of the engine have each verdict."""
         return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
 
 
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
 
 
-def worse_side(each: MeasuredQuantity) -> str:
-    """Return the side with the worse verdict on a quantity, of equal ones that with the larger error."""
-    return max(BOTH, key=lambda side: (ORDER.index(each.sides[side].verdict), abs(each.sides[side].error or 0.0)))
+def find_worse_side(each: MeasuredQuantity) -> str:
+    """Return the side with the worse verdict on a quantity; of equal verdicts, that with the larger error."""
+    rank = {side: VERDICTS_BEST_FIRST.index(each.sides[side].verdict) for side in JUDGED_SIDES}
+    return max(JUDGED_SIDES, key=lambda side: (rank[side], abs(each.sides[side].error or 0.0)))
 
 
-def verdict_on(each: MeasuredQuantity) -> Verdict:
-    """Return the worse verdict of both sides on a quantity: met where both meet it."""
-    return each.sides[worse_side(each)].verdict
+def worse_verdict(each: MeasuredQuantity) -> Verdict:
+    """Return the worse verdict of both sides on a quantity: met if both meet it."""
+    return each.sides[find_worse_side(each)].verdict
 
 
 def verdict_line(table: Validation) -> str:
     """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
     off = [
-        (each.sides[worse_side(each)].error or 0.0, each.base or 0.0, f"{each.experiment}, {each.name}")
+        (each.sides[find_worse_side(each)].error or 0.0, each.base or 0.0, f"{each.experiment}, {each.name}")
         for each in table.quantities
-        if verdict_on(each) == NOT_MET
+        if worse_verdict(each) == NOT_MET
     ]
     return word_counts_and_largest(table.counts(), off)
 
 
 def load_record() -> Validation:
-    """The table of the published files, as the command made it; without their motions."""
+    """Return the stored table of the published files, without their motions."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
     return STORED.read(file.read_bytes())
 
@@ -174,23 +179,23 @@ class ComputedValues(NamedTuple):
     errors: Array
 
 
-class Found(NamedTuple):
-    """Contribution of one experiment to the table."""
+class ExperimentFindings(NamedTuple):
+    """Findings of one experiment: its part of the table."""
 
     quantities: list[MeasuredQuantity]
     inputs: list[str]
     facts: list[str]
     residuals: list[CycleResidual]
-    curves: list[Curve]
+    curves: list[PlotCurve]
 
 
-def join_findings(parts: Sequence[Found]) -> Found:
-    """Return what several experiments add."""
-    return Found(*([each for part in column for each in part] for column in zip(*parts)))
+def join_findings(parts: Sequence[ExperimentFindings]) -> ExperimentFindings:
+    """Return the findings of several experiments as one."""
+    return ExperimentFindings(*([each for part in column for each in part] for column in zip(*parts)))
 
 
-class Data(NamedTuple):
-    """Measurements: names and units of the quantities, their use, D and u_D."""
+class MeasuredData(NamedTuple):
+    """Measurements: names and units of the quantities, their use, measured values D and uncertainties u_D."""
 
     names: Sequence[str]
     units: Sequence[str]
@@ -199,7 +204,7 @@ class Data(NamedTuple):
     uncertainty: Array
 
 
-def motion_of(
+def compute_released_motion(
     side: str,
     scene: Scene,
     phases: tuple[float, float],
@@ -208,7 +213,7 @@ def motion_of(
     tolerance: float,
     equations: str = "exact",
 ) -> Trajectory:
-    """The motion of bodies released from rest at `place` (N,), m along x; the tolerance is the engine's."""
+    """Return the motion of bodies released from rest at `place` (N,), m along x; the tolerance is the engine's."""
     start = np.column_stack([place, np.zeros_like(place)])
     initial = State(start, np.zeros_like(start))
     if side == ENGINE:
@@ -217,8 +222,8 @@ def motion_of(
     return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
 
 
-def values_of_motion(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
-    """Return what is read from a motion, `count` values, and its errors; NaN from one that ended early."""
+def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
+    """Return `count` values read from a motion, and their errors; NaN from one that ended early."""
     nothing = np.full(count, np.nan)
     if motion.status not in FULL_LENGTH_OUTCOMES or motion.accuracy is None:
         return ComputedValues(nothing, nothing)
@@ -228,26 +233,26 @@ def values_of_motion(motion: Trajectory, read: Callable[[Trajectory], Array], co
 
 
 def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
-    """An input as a sentence."""
+    """Return an input as a sentence."""
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
 
-def measured_quantities(
+def compare_quantities(
     experiment: str,
-    data: Data,
+    data: MeasuredData,
     answers: Mapping[str, ComputedValues],
     varied: Sequence[Array],
     explain: Callable[[int, float], str],
 ) -> list[MeasuredQuantity]:
     """
-    The table of one run.
+    Return the comparisons of one run, one for each quantity.
 
     varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
     changes. explain: why quantity k has an E beyond this u_val.
     """
     rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
-        if math.isnan(data.values[k]):  # phases of starts and stops in a run at rest
+        if math.isnan(data.values[k]):  # A run at rest has no phases of starts and stops.
             continue
         sides, cause = {}, ""
         for side, (values, errors) in answers.items():
@@ -257,12 +262,14 @@ def measured_quantities(
             if verdict == NOT_MET and side != SMOOTHED:
                 cause = explain(k, allowed)
             value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
-            sides[side] = Comparison(value, off, numerical, limit, verdict)
+            sides[side] = SideComparison(value, off, numerical, limit, verdict)
         measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
         rows.append(MeasuredQuantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
     return rows
 
 
-def plot_curves(title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]) -> list[Curve]:
-    """The lines of one plot, by name."""
-    return [Curve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]
+def make_plot_curves(
+    title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]
+) -> list[PlotCurve]:
+    """Return the lines of one plot by name."""
+    return [PlotCurve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]

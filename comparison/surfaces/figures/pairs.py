@@ -1,4 +1,4 @@
-"""Static figures in the paper's manner: mu_i over [0, 2 pi]^2 from two models, and their signed difference."""
+"""Figures in the paper's manner: mu_i over [0, 2 pi]^2 from two models, and their signed difference."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,73 +13,74 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.result_types import Array
 from comparison.study.models import Model, Pair, label_of
-from comparison.surfaces.model_difference import ModelDifference, difference_of
-from comparison.surfaces.surfaces import stride_of, values_of
+from comparison.surfaces.model_difference import ModelDifference, compute_difference
+from comparison.surfaces.surfaces import find_common_stride, select_values
 from comparison.wording import mathtext
 from reference.problem import Scene
 from reference.support.drawing import escape_for_matplotlib
 
-HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
+HEIGHT_COLORS = "cividis"  # color map that reads alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"
-TURN = (0.0, 2.0 * np.pi)
+PHASE_RANGE = (0.0, 2.0 * np.pi)
 QUARTER_TICKS = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
-PNG = {"compress_level": 3}  # compression of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
+# Compression of the dense surfaces: smaller than with the usual level 6, in 0.6 of the time
+PNG_SETTINGS = {"compress_level": 3}
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
     """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
-    both = [surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
+    both = [extend_surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(
         escape_for_matplotlib(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"),
         fontsize=12,
         y=0.98,
     )
-    low, high = limits_of([height for _, height in both])
+    low, high = find_height_limits([height for _, height in both])
     for left, surface, model in zip((0.0, 0.315), both, (pair.first, pair.second)):
         axes = figure.add_axes((left, 0.0, 0.31, 0.86), projection="3d")
         assert isinstance(axes, Axes3D)
         _draw_surface(axes, *surface, low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(label_of(model, scene))}", fontsize=11, pad=0)
     _draw_difference_map(
-        figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), difference_of(surfaces, scene.name, pair, body)
+        figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), compute_difference(surfaces, scene.name, pair, body)
     )
-    figure.savefig(path, pil_kwargs=PNG)
+    figure.savefig(path, pil_kwargs=PNG_SETTINGS)
 
 
 def close_period(phase: Array, mu: Array) -> tuple[Array, Array]:
-    """The phases up to 2 pi and the surface on them: its first row and column repeated where the period closes."""
+    """Return the phases up to 2 pi and the surface on them, with its first row and column repeated at the end."""
     return np.append(phase, 2.0 * np.pi), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
 
 
-def limits_of(heights: Sequence[Array]) -> tuple[float, float]:
-    """The lowest and the highest of all values; around a flat surface some room."""
+def find_height_limits(heights: Sequence[Array]) -> tuple[float, float]:
+    """Return the lowest and the highest of all values, with some room around a flat surface."""
     finite = np.concatenate([height[np.isfinite(height)] for height in heights])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     return (low, high) if low < high else (0.9 * low - 0.1, 1.1 * high + 0.1)
 
 
 def draw_map(axes: Axes, phase: Array, values: Array, **style: Any) -> QuadMesh:
-    """Values at the phases as colors, alpha1 to the right and alpha2 upward; gray where there is none."""
+    """Draw values over the phases as colors, alpha1 to the right and alpha2 upward; gray where there is none."""
     phase, height = close_period(phase, values)
     axes.set_facecolor("0.75")
     image = axes.pcolormesh(phase, phase, height.T, shading="nearest", **style)
-    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
+    axes.set(xlim=PHASE_RANGE, ylim=PHASE_RANGE, aspect="equal")
     axes.set_xticks(*QUARTER_TICKS)
     axes.set_yticks(*QUARTER_TICKS)
     return image
 
 
-def surface_to_two_pi(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
-    """The phases of a model up to 2 pi, and mu on them."""
-    phase = surfaces["alpha1"].values[:: stride_of(surfaces, scene.name, model)]
-    return close_period(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
+def extend_surface_to_two_pi(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
+    """Return the phases of a model up to 2 pi, and mu on them."""
+    phase = surfaces["alpha1"].values[:: find_common_stride(surfaces, scene.name, model)]
+    return close_period(phase, select_values(surfaces, "mu", scene.name, model)[body - 1])
 
 
 def draw_in_space(
     axes: Axes3D, phase: Array, height: Array, limits: tuple[float, float], aspect: float, zoom: float, **style: Any
 ) -> None:
-    """A surface over the phases; aspect: of the height to either side."""
+    """Draw a surface over the phases in perspective; aspect: ratio of the height to either side."""
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
     axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **style)
     axes.set_zlim(*limits)

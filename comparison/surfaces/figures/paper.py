@@ -12,18 +12,18 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.study.models import label_of
 from comparison.study.study import Study
-from comparison.surfaces.figures.pairs import PNG, draw_in_space, limits_of, surface_to_two_pi
+from comparison.surfaces.figures.pairs import PNG_SETTINGS, draw_in_space, extend_surface_to_two_pi, find_height_limits
 from comparison.wording import mathtext
 from reference.problem import Scene
 
-PRINT: dict[Any, Any] = {
+PRINT_STYLE: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 8.0,
-    "pdf.fonttype": 42,  # as journals take it
+    "pdf.fonttype": 42,  # TrueType fonts, as journals require
 }  # style of matplotlib for figures in journals
-WIDTH = 6.9  # inches, two columns of a page
-RESOLUTION = 300  # dots per inch
+FIGURE_WIDTH = 6.9  # inches, width of two columns of a page
+PRINT_RESOLUTION = 300  # dots per inch of the PNG file
 
 
 def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene) -> None:
@@ -34,11 +34,11 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     pairs = [pair for pair in study.pairs(scene) if pair.second.side != "user"]
     first, last = pairs[0].first, pairs[-1].second
     bodies = len(scene.bodies)
-    with mpl.rc_context(PRINT):
-        figure = Figure(figsize=(WIDTH, 2.7 * bodies))
+    with mpl.rc_context(PRINT_STYLE):
+        figure = Figure(figsize=(FIGURE_WIDTH, 2.7 * bodies))
         for row in range(bodies):
-            heights = [surface_to_two_pi(surfaces, scene, model, row + 1) for model in (first, last)]
-            limits = limits_of([height for _, height in heights])
+            heights = [extend_surface_to_two_pi(surfaces, scene, model, row + 1) for model in (first, last)]
+            limits = find_height_limits([height for _, height in heights])
             for column, ((phase, height), model) in enumerate(zip(heights, (first, last))):
                 place = (0.02 + 0.5 * column, 1.0 - (row + 0.98) / bodies, 0.46, 0.88 / bodies)
                 axes = figure.add_axes(place, projection="3d")
@@ -46,13 +46,13 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 draw_surface(axes, phase, height, limits, rf"$\mu_{{{row + 1}}}$")
                 label = mathtext(label_of(model, scene))
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {label}", y=1.0, fontsize=9.0)
-        # the same figure gives the same file
+        # Without a creation date the same figure gives the same file.
         figure.savefig(path.with_name(f"{path.name.removesuffix('.png')}.pdf"), metadata={"CreationDate": None})
-        figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
+        figure.savefig(path, dpi=PRINT_RESOLUTION, pil_kwargs=PNG_SETTINGS)
 
 
 def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
-    """One gray surface in the manner of the paper; phase: rad, with both ends; name: of the height."""
+    """Draw one gray surface in the manner of the paper; phase: rad, with both ends; name: of the height."""
     assert isinstance(axes, Axes3D)
     lines = {"color": "white", "edgecolor": "black", "linewidth": 0.4, "shade": False}
     draw_in_space(axes, phase, height, limits, 0.66, 1.02, **lines)

@@ -1,4 +1,4 @@
-"""All pictures of a study's surfaces, each drawn by whoever has time, and handed back as files."""
+"""Pictures of a study's surfaces as tasks, whose results are files."""
 
 import tempfile
 from dataclasses import replace
@@ -9,41 +9,41 @@ import xarray as xr
 
 from comparison.runner.analysis import Analysis
 from comparison.runner.attempts import attempt
-from comparison.runner.task import Task, fingerprint
+from comparison.runner.task import Task, describe_contents
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import Pair
 from comparison.study.selection import Selection
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.figures.file_names import name_figure_file
 
-SHOWN = ["mu", "error", "stride", "recorded"]  # variables of the surfaces that pictures are made of
+DRAWN_VARIABLES = ["mu", "error", "stride", "recorded"]  # variables of the surfaces from which pictures are drawn
 
 
-Files = tuple[tuple[str, bytes], ...]  # names and contents
-# kind ("total", "paper"), the study and the surfaces of one scene alone, body, pair of models
-Picture = tuple[str, Study, xr.Dataset, int, Pair | None]
+NamedFiles = tuple[tuple[str, bytes], ...]  # names and contents of files
+# arguments of a task: kind ("total", "paper"), study and surfaces of one scene alone, body, pair of models
+PictureArguments = tuple[str, Study, xr.Dataset, int, Pair | None]
 
 
 class Pictures(Analysis[dict[str, bytes]]):
-    """Every file of every picture by its name."""
+    """Analysis whose result is the files of every picture by name."""
 
     key, stage, needs_surfaces = "pictures", "pictures", True
     seconds = 3.0
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each picture of the selected sections: a scene without phases has no surfaces."""
+        """Return one task for each picture of the selected sections; a scene without phases has no surfaces."""
         assert surfaces is not None, "they are what is drawn"
         tasks = []
         for scene in study.phased:
             alone = replace(study, scenes=(scene,), selection=Selection())
-            shown = surfaces[SHOWN].sel(scene=[scene.name])
+            shown = surfaces[DRAWN_VARIABLES].sel(scene=[scene.name])
             bodies = range(1, len(scene.bodies) + 1)
-            pictures: list[Picture] = []
+            pictures: list[PictureArguments] = []
             if study.selection.has("surfaces", scene.name):
                 pictures.append(("paper", alone, shown, 0, None))
                 totals = [pair for pair in study.pairs(scene) if pair.key == "total"]
                 pictures += [("total", alone, shown, body, pair) for body in bodies for pair in totals]
-            about = fingerprint(shown)
+            about = describe_contents(shown)
             tasks += [
                 Task(draw_picture, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures
             ]
@@ -60,17 +60,17 @@ class Pictures(Analysis[dict[str, bytes]]):
         return files
 
 
-def draw_picture(picture: Picture) -> Files:
-    """The files of one picture. Runs inside a worker process."""
-    from comparison.surfaces.figures import pairs, paper  # plotting: not needed to list what is drawn
+def draw_picture(picture: PictureArguments) -> NamedFiles:
+    """Return the files of one picture. Runs inside a worker process."""
+    from comparison.surfaces.figures import pairs, paper  # Plotting libraries are loaded only where a picture is drawn.
 
     kind, study, surfaces, body, pair = picture
     (scene,) = study.scenes
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if kind == "paper":
-            paper.draw_paper_figure(folder / figure_file(scene.name, "paper"), study, surfaces, scene)
+            paper.draw_paper_figure(folder / name_figure_file(scene.name, "paper"), study, surfaces, scene)
         else:
             assert pair is not None
-            pairs.draw_pair(folder / figure_file(scene.name, f"body{body}", pair.key), surfaces, scene, body, pair)
+            pairs.draw_pair(folder / name_figure_file(scene.name, f"body{body}", pair.key), surfaces, scene, body, pair)
         return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))

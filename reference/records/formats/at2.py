@@ -53,6 +53,7 @@ def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
 
 
 def _shorten_lines(lines: Sequence[str]) -> list[str]:
+    """Return the first lines, each cut and with single blanks."""
     return [" ".join(line[:MAX_LINE].split()) for line in lines[:MAX_HEADER_LINES]]
 
 

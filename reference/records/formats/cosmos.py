@@ -78,5 +78,6 @@ def _header_step(lines: Sequence[str]) -> float:
 
 
 def _split_fields(number: int, line: str, width: int) -> list[float]:
+    """Return the numbers in a line of fields of this width. Raises RecordError."""
     cells = [line[at : at + width].strip() for at in range(0, len(line.rstrip()), max(width, 1))]
     return [parse_number(number, cell) for cell in cells if cell]

@@ -39,7 +39,7 @@ ACCELERATION_NAMES = {
 ACCELERATION_NAMES |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
 ACCELERATION_NAMES |= {"aceleración", "aceleracion", "ivme"}
 ACCELERATION_WITH_AXIS = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
-BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")
+TEXT_IN_BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")
 DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 
 
@@ -122,6 +122,7 @@ def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple
 
 
 def _split_cells(number: int, line: str, separator: str) -> list[str]:
+    """Return the cells of a line. Raises RecordError."""
     if len(line) > MAX_LINE:
         raise RecordError(f"line {number}: {len(line)} letters: must be at most {MAX_LINE}")
     if separator == " ":
@@ -192,7 +193,7 @@ def _with_unit(line: int, column: HeaderCell, unit: str | None, name: str) -> He
 def _name_and_unit(cell: str) -> tuple[str, str]:
     """Return name and unit in a cell of the header: 'ax [g]', 'NS(gal)', 'Acceleration in g', 'Acc, m/s2', 'acc_g'."""
     text = " ".join(cell.split())
-    if match := BRACKETS.fullmatch(text):
+    if match := TEXT_IN_BRACKETS.fullmatch(text):
         unit = match[2].strip()
         unit = unit.partition("(")[0].strip() if unit_factor(unit) is None else unit
         return f"{match[1]} {match[3]}".strip(), unit

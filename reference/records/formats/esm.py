@@ -13,7 +13,7 @@ from reference.records.samples import RecordError, RecordSamples, make_even_samp
 from reference.support.arguments import quote
 
 FORMAT = "ESM .ASC"
-ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
+HEADER_ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
 
 
 def recognizes_esm(head: Sequence[str]) -> bool:
@@ -25,8 +25,8 @@ def recognizes_esm(head: Sequence[str]) -> bool:
 def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
     """Return the samples of an ESM .ASC file. Raises RecordError."""
     lines = text.splitlines()
-    size = next((at for at, line in enumerate(lines) if not ENTRY.fullmatch(line.strip())), len(lines))
-    stated = {match[1]: match[2] for line in lines[:size] if (match := ENTRY.fullmatch(line.strip()))}
+    size = next((at for at, line in enumerate(lines) if not HEADER_ENTRY.fullmatch(line.strip())), len(lines))
+    stated = {match[1]: match[2] for line in lines[:size] if (match := HEADER_ENTRY.fullmatch(line.strip()))}
     step, count, unit = (stated.get(key, "").strip() for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"))
     factor = unit_factor(unit)
     if factor is None:

@@ -14,21 +14,21 @@ from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import quote
 
 FORMAT = "JMA CSV"
-RATE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
-UNIT = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
+SAMPLING_RATE_LINE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
+UNIT_LINE = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
 
 
 def recognizes_jma(head: Sequence[str]) -> bool:
     """Return True if the first lines state a sampling rate and a unit."""
-    return any(map(RATE.match, head)) and any(map(UNIT.match, head))
+    return any(map(SAMPLING_RATE_LINE.match, head)) and any(map(UNIT_LINE.match, head))
 
 
 @lru_cache(maxsize=32)
 def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     """Return the samples of a CSV file of the JMA. Raises RecordError."""
     lines = text.splitlines()
-    rate = next(match for line in lines if (match := RATE.match(line)))
-    unit = next(match for line in lines if (match := UNIT.match(line)))
+    rate = next(match for line in lines if (match := SAMPLING_RATE_LINE.match(line)))
+    unit = next(match for line in lines if (match := UNIT_LINE.match(line)))
     factor, sampling = unit_factor(unit[1]), parse_number(1, rate[1])
     if factor is None or sampling <= 0.0:
         raise RecordError(f"UNIT = {quote(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")

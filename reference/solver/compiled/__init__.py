@@ -14,15 +14,15 @@ from typing import Any
 from reference.solver.compiled.parts import compiled_part
 from reference.support.build_cache import cache_on_disk
 
-# Divisions by zero give inf or NaN as in NumPy; other threads run meanwhile.
-OPTIONS = {"error_model": "numpy", "nogil": True}
+# Divisions by zero give inf or NaN as in NumPy; other threads can run meanwhile.
+NUMBA_OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Decorate a part of the solver that only compiled code calls."""
-    return compiled_part(**OPTIONS)(function)
+    return compiled_part(**NUMBA_OPTIONS)(function)
 
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
-    return cache_on_disk(Path(__file__).parents[1], slow=True, **OPTIONS)(function)
+    return cache_on_disk(Path(__file__).parents[1], slow=True, **NUMBA_OPTIONS)(function)

@@ -24,14 +24,14 @@ from numba.extending import intrinsic
 
 
 class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
-    """A structure passed by reference, with one set of fields per subclass."""
+    """Numba's type of a structure passed by reference; each subclass has one set of fields."""
 
     def __init_subclass__(cls) -> None:
         default_manager.register(cls, StructRefModel)
 
     @property
     def mangling_args(self) -> tuple[str, tuple[()]]:
-        """Name of the type in the names of compiled functions, with its variant (variants.py)."""
+        """Name of the type within the names of compiled functions, with its variant (variants.py)."""
         return "_".join([self._typename, *(name for name, kind in self._fields if kind == types.none)]), ()
 
     @cached_property
@@ -62,7 +62,7 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
     key = ByReference
 
     def generic_resolve(self, kind: ByReference, name: str) -> Any:
-        """Return the type of a field, None if there is none of this name."""
+        """Return the type of a field, None for an unknown name."""
         return kind.field_dict.get(name)
 
 
@@ -75,7 +75,7 @@ def _read(context: Any, builder: Any, kind: ByReference, reference: Any, name: s
 
 @lower_setattr_generic(ByReference)
 def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str) -> None:
-    """Write code that sets a field, with the references to an array in it."""
+    """Write code that sets a field, and counts the references to an array in it."""
     kind, given = signature.args
     reference, value = arguments
     field = kind.field_dict[name]
@@ -87,13 +87,13 @@ def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str
 
 
 def _allocate(context: Any, builder: Any, kind: ByReference) -> Any:
-    """Write code for a structure without values."""
+    """Write code that allocates a structure without values."""
     _, lower = structref.new._defn(context.typing_context, types.TypeRef(kind))
     return lower(context, builder, None, None)
 
 
 def structure_from_tuple(kind: type[ByReference]) -> Any:
-    """Return a function of compiled code that makes such a structure from a named tuple."""
+    """Return a function of compiled code that makes a structure of this type from a named tuple."""
 
     @intrinsic
     def construct(context: Any, values: Any) -> Any:
@@ -113,7 +113,7 @@ def structure_from_tuple(kind: type[ByReference]) -> Any:
 
 
 def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
-    """Return a function of compiled code that makes such a structure with the types of `fields`, all bits zero."""
+    """Return a function of compiled code that makes a structure of this type with these fields, all bits zero."""
     structure = kind([(name, typeof(value)) for name, value in fields.items()])
 
     @intrinsic

@@ -22,8 +22,8 @@ from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
 # Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
 # functions that numba inlines before their types are known, and no variable whose end must be marked.
-UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
-OPERATORS = {each for each in vars(operator).values() if callable(each)}
+UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
+PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
 
 class _NoEnvironment:
@@ -34,7 +34,7 @@ class _NoEnvironment:
 
 
 class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """Code of one part as numba writes it; entry points link, optimize and translate it."""
+    """Code of one part as numba writes it, which entry points link, optimize and translate."""
 
     codegen = _NoEnvironment()
     _whole: Any = None
@@ -48,7 +48,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        """Return the code of this part and of all parts that it calls, each once; entry points call this."""
+        """Return the code of this part and of all parts that it calls, each once, for the linking of an entry point."""
         if self._whole is None:
             whole = self._final_module.clone()
             libraries = [self]
@@ -70,7 +70,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _LowerAsPart(LoweringPass):  # type: ignore[misc]
-    """Pass before the lowering: its code goes into a `_PartLibrary` and counts no references."""
+    """Pass before numba's lowering, after which the code goes into a `_PartLibrary` and counts no references."""
 
     _name = "as_part"
 
@@ -78,15 +78,15 @@ class _LowerAsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        context = state.targetctx  # numba makes one for every function
+        context = state.targetctx  # numba makes a context for every function
         state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
-        context.nrt = NRTContext(context, True)  # fields of structures are still read through it
+        context.nrt = NRTContext(context, True)  # fields of structures are still read through this context
         context.enable_nrt = False
         return False
 
 
 class _RememberedFunctions(Context):  # type: ignore[misc]
-    """Numba's lookup of what functions return, which asks once for a function of numba and types of arguments."""
+    """Numba's lookup of the types that functions return, with one question per function and types of arguments."""
 
     def __init__(self, context: Context) -> None:
         self.__dict__ = context.__dict__
@@ -94,7 +94,7 @@ class _RememberedFunctions(Context):  # type: ignore[misc]
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
         """Return the signature."""
-        if kws or not (isinstance(func, types.Function) or func in OPERATORS):
+        if kws or not (isinstance(func, types.Function) or func in PYTHON_OPERATORS):
             return super().resolve_function_type(func, args, kws)
         if (func, args) not in self._known:
             self._known[func, args] = super().resolve_function_type(func, args, kws)
@@ -105,7 +105,7 @@ remembered_functions = cache(_RememberedFunctions)
 
 
 class PartCompiler(CompilerBase):  # type: ignore[misc]
-    """Numba's own passes but those that a part does not need, and `_LowerAsPart` among them."""
+    """Compiler with numba's own passes except those that a part does not need, and with `_LowerAsPart`."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
@@ -115,7 +115,7 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
     def define_pipelines(self) -> list[Any]:
         """Return the passes in their order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED]
+        passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED_PASSES]
         passes.add_pass_after(_LowerAsPart, AnnotateTypes)
         passes.finalize()
         return [passes]

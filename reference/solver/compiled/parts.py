@@ -1,5 +1,5 @@
 """
-Functions that exist only as a part of the compiled function that calls them.
+Functions that exist only as parts of the compiled functions that call them.
 
 Numba optimizes a function together with all that it calls, and translates it to machine code, before it looks at the
 next caller. A part of a large function goes through that once per level of callers, and only the last build ever runs.
@@ -21,7 +21,7 @@ from typing import Any
 import numba
 
 njit: Any = numba.njit
-NEWEST_KNOWN = 0, 68  # newest version of numba whose internals were tried (oldest: 0.61)
+NEWEST_KNOWN = 0, 68  # newest version of numba on which its internals were tested (oldest: 0.61)
 
 
 def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:

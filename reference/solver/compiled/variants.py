@@ -1,4 +1,4 @@
-"""Functions of compiled code in two variants, of which only the one that a system needs is compiled."""
+"""Functions of compiled code with two variants, of which only the one that a system needs is compiled."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numba import types
 from numba.extending import lower_builtin, type_callable
 
 
-def variants(field: str, without: Any, present: Any) -> Callable[..., Any]:
+def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]:
     """Return a function whose first argument is a System: `without` where its `field` is None, else `present`."""
 
     def call(system: Any, *numbers: Any) -> Any:

@@ -1,1 +1,1 @@
-"""The contact of the platform: friction laws, its acceleration under each, slip directions at a stop."""
+"""Contact of the platform: friction laws, the acceleration under each, and slip directions at a stop."""

@@ -22,36 +22,36 @@ from reference.solver.contact.load import scale_by_load
 from reference.solver.rows import Number, broadcast_like, where_positive
 from reference.solver.system import CREEPING, Load, System
 
-SMALLEST_SPEED = 1e-200  # m/s: its square underflows, so a slower slide has stopped
+SMALLEST_SPEED = 1e-200  # m/s: the square of a slower speed underflows, so a slower slide has stopped
 
 
 @compiled
 def static_coefficient(system: System) -> float:
-    """Return the coefficient that holds the platform at rest, under the weight."""
+    """Return the friction coefficient that holds the platform at rest, under the weight."""
     return system.friction
 
 
 @compiled
 def kinetic_coefficient(system: System) -> float:
-    """Return the coefficient of a slide at vanishing speed, under the weight."""
+    """Return the friction coefficient of a slide at vanishing speed, under the weight."""
     return system.friction
 
 
 @compiled
 def viscous_factor(system: System) -> float:
-    """Return f_c of a lubricated contact, s/m."""
+    """Return the viscous friction coefficient f_c of a lubricated contact, s/m."""
     return system.friction
 
 
 @compiled
 def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the largest force that friction takes at rest under a reaction, both over m1."""
+    """Return the largest friction force at rest under a reaction, both over the mass m1 of the platform, m/s^2."""
     return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
 @compiled
 def coefficient(system: System, speed: Number) -> Number:
-    """Return the dry friction coefficient mu at the sliding speed (3.8), m/s."""
+    """Return the dry friction coefficient mu at the sliding speed (3.8), m/s, under the weight."""
     if system.rate == 0.0:
         return broadcast_like(system.friction, speed)
     return system.friction - system.rise * expm1(-system.rate * speed)
@@ -59,19 +59,19 @@ def coefficient(system: System, speed: Number) -> Number:
 
 @compiled
 def coefficient_slope(system: System, speed: Number) -> Number:
-    """Return the derivative of mu by the sliding speed, s/m."""
+    """Return the derivative of the friction coefficient mu by the sliding speed, s/m."""
     return system.rise * system.rate * exp(-system.rate * speed)
 
 
 @compiled
 def rising_rate(system: System, speed: float) -> float:
-    """Return the rate at which friction that rises with the speed damps it, 1/s; 0 where it does not rise."""
+    """Return the rate at which friction damps the speed, 1/s, if it rises with the speed; 0 otherwise."""
     return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
 @compiled
 def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
-    """Return the squared sliding speed: v-bar^2 of (3.8), or the horizontal one in the small equations (4.3)."""
+    """Return the squared sliding speed, m^2/s^2: that of (3.8), or the horizontal one in the small equations (4.3)."""
     planar = vx * vx + vy * vy
     if system.small:
         return planar
@@ -82,7 +82,7 @@ def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy
 @compiled
 def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return (excess, reaction / m1) by the consistent condition for rest of the exact equations, (T4) of docs/theory.md.
+    Return how far the squared tangential force exceeds the squared static limit, and the normal reaction, (T4).
 
     The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
     at most mu times its normal part N > 0, that is while the excess |T|^2 - (mu N)^2 is not positive.
@@ -102,7 +102,7 @@ def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Numbe
 @compiled
 def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return (excess, reaction / m1) of the condition for rest of (4.3): rest while |Mf^-1 F_3| <= 1 (4.6, corrected).
+    Return how far the squared tangential force exceeds the squared static limit, and the vertical reaction, (4.3).
 
     Mf = mu (R I - u p^T / rho) with R = M (g + zeta''); F_3 = f - R p / rho. The excess is |adj F_3|^2 - det^2 with
     Mf^-1 = adj / det, so that nothing is divided by a small number.
@@ -119,14 +119,14 @@ def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Numbe
     hx = d * gx - b * gy
     hy = a * gy - c * gx
     det = a * d - b * c
-    scale = friction * friction * reaction * reaction  # makes the unit that of the exact excess
+    scale = friction * friction * reaction * reaction  # with this divisor the excess has the unit of the exact one
     return where_positive(scale, (hx * hx + hy * hy - det * det) / scale, gx * gx + gy * gy), reaction
 
 
 @compiled
 def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     """
-    Return |F_3|^2 - |F_F|^2 of (4.6) as printed in the paper, over m1^2; m^2/s^4.
+    Return how far the squared tangential force exceeds the squared limit of (4.6) as printed, over m1^2, m^2/s^4.
 
     The components of F_F are mu N each, so the limit is sqrt(2) mu N at the origin. F_3 has gravity and spring with the
     printed signs. It serves to measure the effect of this misprint.
@@ -135,16 +135,16 @@ def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     friction = scale_by_load(system, load.k_t, reaction, static_coefficient(system))
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
-    # The spring force f + u has the opposite sign in print.
+    # The printed equation has the spring force f + u with the opposite sign.
     gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius
     gy = -(2.0 * load.uy + load.fy) + reaction * load.py / system.radius
     return gx * gx + gy * gy - lx * lx - ly * ly
 
 
 @compiled
-def heading(angle: float, axes: int) -> tuple[float, float]:
-    """Return cosine and sine of a slip direction; along x exactly where the motion stays in that plane."""
-    cosine, sine = cos(angle), sin(angle)  # side by side: LLVM makes one call of them
+def slip_direction_cosines(angle: float, axes: int) -> tuple[float, float]:
+    """Return cosine and sine of a slip direction; exactly along x if the motion stays in that plane."""
+    cosine, sine = cos(angle), sin(angle)  # side by side, so that LLVM makes one call of both
     if axes == 1:
         return (1.0 if cosine > 0.0 else -1.0), 0.0
     return cosine, sine
@@ -166,14 +166,14 @@ def slip_vector(
 
 @compiled
 def largest_coefficient(system: System) -> float:
-    """Return the largest coefficient of friction at any speed."""
+    """Return the largest coefficient of friction at any speed, under the weight."""
     largest: float = system.friction + max(0.0, system.rise)
     return largest
 
 
 @compiled
 def decay_rate(system: System, contact: int) -> float:
-    """Return the rate of decay of the velocity by friction alone, 1/s, where friction is linear in it."""
+    """Return the rate at which friction alone makes the velocity decay, 1/s, where friction is linear in it."""
     largest = largest_coefficient(system)
     factor = largest / system.v_reg if contact == CREEPING else largest
     rate: float = factor * system.mass_ratio * system.gravity
@@ -182,6 +182,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Return the rate at which friction changes as a slide turns, 1/s; with its speed it changes by 1/e of that."""
+    """Return the rate at which friction turns with the direction of a slide, 1/s: it changes by 1/e in its inverse."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
     return rate

@@ -13,76 +13,77 @@ from math import exp, log, sqrt
 
 from reference.problem.friction import LEAST_LOAD
 from reference.solver.compiled import compiled
-from reference.solver.compiled.variants import variants
+from reference.solver.compiled.variants import choose_variant
 from reference.solver.equations import exact_acceleration
-from reference.solver.rows import Number, broadcast_like, highest, where_positive
+from reference.solver.rows import Number, broadcast_like, row_maximum, where_positive
 from reference.solver.system import Load, System
 
-MAX_ITERATIONS = 40  # iterations of Newton's method for the reaction
-LAST_CHANGE = 1e-8  # relative change of the reaction that ends the iteration: the next one would be below rounding
-# Misfit before the last change, as a share of the drive along the normal, above which no reaction fits
+MAX_ITERATIONS = 40  # iterations of Newton's method for the reaction at most
+LAST_CHANGE = 1e-8  # relative change of the reaction that ends the iteration: the next change would be below rounding
+# Share of the drive along the normal that may be missing before the last change; beyond it no reaction is a solution
 MAX_MISFIT = 1e-7
 
 
 @compiled
 def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
-    """Return the coefficient as it is: friction depends on neither load nor heating."""
+    """Return the friction coefficient unchanged: friction depends on neither load nor temperature."""
     return coefficient
 
 
 @compiled
 def _scale_by_load_factor(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
-    """Return the coefficient at k_T and under a reaction, from that under the weight."""
+    """Return the friction coefficient at the temperature factor k_T and under a reaction, from the cold one."""
     return coefficient * load_factor(system, k_t, reaction)
 
 
 @compiled
 def _keep_slip(system: System, reaction: Number, slip: Number) -> Number:
-    """Return a component of the slip vector as it is: friction does not depend on the load."""
+    """Return a component of the slip vector unchanged: friction does not depend on the load."""
     return slip
 
 
 @compiled
 def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number:
-    """Return a component of the slip vector times the relative change of friction over that of the reaction."""
+    """Return a component of the slip vector times the ratio of relative changes of friction and reaction."""
     return slip * (1.0 + elasticity(system, reaction))
 
 
-scale_by_load = variants("exponent", _keep_coefficient, _scale_by_load_factor)
+scale_by_load = choose_variant("exponent", _keep_coefficient, _scale_by_load_factor)
 """Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
 
-scale_by_response = variants("exponent", _keep_slip, _scale_by_response)
+scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)
 """Return a slip vector times the relative change of the friction force over that of the reaction."""
 
 
 @compiled
 def load_factor(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the coefficient at k_T and under a reaction, over that under the weight."""
+    """Return the ratio of the friction coefficient at k_T and under a reaction to the cold one under the weight."""
     return k_t * exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
 
 
 @compiled
 def elasticity(system: System, reaction: Number) -> Number:
-    """Return the relative change of the coefficient over that of the reaction."""
+    """Return the ratio of the relative change of the friction force to that of the reaction."""
     above = reaction - LEAST_LOAD * system.mass_ratio * system.gravity
     return where_positive(above, broadcast_like(system.exponent, above), broadcast_like(0.0, above))
 
 
 @compiled
 def _acceleration_of_given_slip(
-    system: System, load: Load, speed2: Number, sx: Number, sy: Number
+    system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
+    """Return acceleration, reaction and determinant for a slip vector that is independent of the reaction."""
     pressure = system.gravity + load.uz
     return exact_acceleration(
-        load.px, load.py, load.fx, load.fy, pressure, speed2, sx, sy, system.mass_ratio, system.radius
+        load.px, load.py, load.fx, load.fy, pressure, squared_speed, sx, sy, system.mass_ratio, system.radius
     )
 
 
 @compiled
 def _acceleration_of_load(
-    system: System, load: Load, speed2: Number, sx: Number, sy: Number
+    system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Solve for the reaction by Newton's method; the determinant is the derivative of its equation."""
+    """Return the acceleration, with the reaction by Newton's method and its equation's derivative as determinant."""
     # Friction that eases with the load (n < 0) makes the equation for R nonlinear. Its derivative takes the place of
     # the inertia determinant: where it vanishes, no acceleration exists (Painleve's paradox). If the iteration ends far
     # from a solution, none exists either: the determinant is set to -1, which the callers read as the paradox.
@@ -91,7 +92,7 @@ def _acceleration_of_load(
     tilt = nx * nx + ny * ny
     plain = 1.0 + (system.mass_ratio - 1.0) * tilt
     taken = (system.mass_ratio - 1.0) * (nx * sx + ny * sy)
-    drive = speed2 * curvature - nx * load.fx - ny * load.fy + sqrt(1.0 - tilt) * (system.gravity + load.uz)
+    drive = squared_speed * curvature - nx * load.fx - ny * load.fy + sqrt(1.0 - tilt) * (system.gravity + load.uz)
     drive = system.mass_ratio * drive
     reaction, misfit = drive / plain, drive
     for _ in range(MAX_ITERATIONS):
@@ -100,7 +101,7 @@ def _acceleration_of_load(
         misfit = drive - reaction * (plain - factor * taken)
         change = misfit / slope
         reaction += change
-        if not highest(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
+        if not row_maximum(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
             break
     factor = load_factor(system, load.k_t, reaction)
     determinant = plain - (1.0 + elasticity(system, reaction)) * factor * taken
@@ -109,5 +110,5 @@ def _acceleration_of_load(
     return load.fx + reaction * (nx - sx), load.fy + reaction * (ny - sy), reaction, determinant
 
 
-exact_equations = variants("exponent", _acceleration_of_given_slip, _acceleration_of_load)
+exact_equations = choose_variant("exponent", _acceleration_of_given_slip, _acceleration_of_load)
 """Return (ax, ay, reaction / m1, inertia determinant) by the exact equations."""

@@ -1,4 +1,4 @@
-"""The platform at one instant: what acts on it, and its acceleration and reaction under one of the friction laws."""
+"""The platform at one instant: the forces on it, and its acceleration and reaction under one of the friction laws."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from reference.solver.rows import Number, broadcast_like, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
 from reference.solver.work import DRIVE, POSITION, Workspace
 
-ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which rounding may make a drive exceed it
+ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which a drive may exceed it by rounding alone
 
 
 @compiled
 def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
-    """Return all that acts on the platform in the state x, v at the start of the step."""
+    """Return position, drive and ground acceleration of the platform in the state x, v at the start of the step."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
@@ -38,7 +38,7 @@ def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
 
 @compiled
 def load_at_stages(work: Workspace) -> Load:
-    """Return all that acts on the platform at the stages, in rows, from `stage` and `ground`."""
+    """Return position, drive and ground acceleration of the platform at the stages, from `stage` and `ground`."""
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
@@ -47,19 +47,19 @@ def load_at_stages(work: Workspace) -> Load:
 
 
 @compiled
-def slip_factor(system: System, contact: int, speed2: Number) -> Number:
-    """Return the slip vector over the horizontal velocity (friction.py), s/m."""
+def slip_factor(system: System, contact: int, squared_speed: Number) -> Number:
+    """Return the ratio of the slip vector (friction.py) to the horizontal velocity, s/m."""
     if contact == SLIDING:
-        speed = sqrt(speed2)
+        speed = sqrt(squared_speed)
         return coefficient(system, speed) / speed
     if contact == CREEPING:
-        return coefficient(system, sqrt(speed2)) / system.v_reg
-    return broadcast_like(viscous_factor(system), speed2)
+        return coefficient(system, sqrt(squared_speed)) / system.v_reg
+    return broadcast_like(viscous_factor(system), squared_speed)
 
 
 @compiled
-def acceleration(
-    system: System, load: Load, speed2: Number, sx: Number, sy: Number
+def solve_platform_acceleration(
+    system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
     """Return (ax, ay, reaction / m1, inertia determinant) by the exact or the small equations (equations.py)."""
     if system.small:
@@ -70,18 +70,18 @@ def acceleration(
             scale_by_load(system, load.k_t, reaction, sx), scale_by_load(system, load.k_t, reaction, sy),
             system.mass_ratio, system.radius,
         )  # fmt: skip
-    return exact_equations(system, load, speed2, sx, sy)
+    return exact_equations(system, load, squared_speed, sx, sy)
 
 
 @compiled
 def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant, speed2); the velocity of a slide must not be zero."""
-    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
-    factor = slip_factor(system, contact, speed2)
-    ax, ay, reaction, determinant = acceleration(system, load, speed2, factor * vx, factor * vy)
-    return ax, ay, reaction, determinant, speed2
+    """Return (ax, ay, reaction / m1, inertia determinant, squared speed) for a velocity that is not zero."""
+    squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
+    factor = slip_factor(system, contact, squared_speed)
+    ax, ay, reaction, determinant = solve_platform_acceleration(system, load, squared_speed, factor * vx, factor * vy)
+    return ax, ay, reaction, determinant, squared_speed
 
 
 @compiled
@@ -90,19 +90,19 @@ def acceleration_along(
 ) -> tuple[Number, Number, Number, Number]:
     """Return (ax, ay, reaction / m1, full over horizontal speed) of a slide along (ex, ey) at any speed >= 0."""
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
-    ax, ay, reaction, _ = acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
+    ax, ay, reaction, _ = solve_platform_acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
 
 
 @compiled
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
-    """Return (excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
+    """Return (excess over the condition for rest, reaction / m1): rest is possible while the excess is not positive."""
     if system.small:
         excess, reaction = squared_rest_excess_small(system, load)
     else:
         excess, reaction = squared_rest_excess_exact(system, load)
     if system.rest_condition == PRINTED:
-        # Where (4.6) as printed lets go of a platform that friction can hold, no motion begins.
+        # Where (4.6) as printed releases a platform that friction can hold, no motion begins.
         excess = min(excess, squared_rest_excess_as_printed(system, load))
     limit = static_limit(system, load.k_t, reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

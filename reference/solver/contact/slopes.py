@@ -18,7 +18,7 @@ from reference.solver.work import (
     DRIVE,
     POSITION,
     REACTION,
-    SPEED2,
+    SQUARED_SPEED,
     VELOCITY,
     Workspace,
 )
@@ -27,14 +27,14 @@ from reference.solver.work import (
 @compiled
 def set_slopes(system: System, contact: int, work: Workspace) -> None:
     """
-    Set the derivatives of the platform's (ax, ay) by position, velocity and drive at the stages.
+    Set the derivatives of the platform's acceleration (ax, ay) by position, velocity and drive at the stages.
 
     `stage` holds the reaction, determinant and speed there. Rows of work.slopes: from BY_POSITION, BY_VELOCITY and
     BY_DRIVE on (ax, ay) by x, then by y.
     """
-    speed2 = row(work.stage, SPEED2)
-    factor = slip_factor(system, contact, speed2)
-    bend = factor_slope(system, contact, factor, speed2)
+    squared_speed = row(work.stage, SQUARED_SPEED)
+    factor = slip_factor(system, contact, squared_speed)
+    bend = factor_slope(system, contact, factor, squared_speed)
     reaction, k_t = row(work.stage, REACTION), row(work.ground, 3)
     factor, bend = scale_by_load(system, k_t, reaction, factor), scale_by_load(system, k_t, reaction, bend)
     if system.small:
@@ -44,26 +44,26 @@ def set_slopes(system: System, contact: int, work: Workspace) -> None:
 
 
 @compiled
-def factor_slope(system: System, contact: int, factor: Row, speed2: Row) -> Row:
+def factor_slope(system: System, contact: int, factor: Row, squared_speed: Row) -> Row:
     """Return the derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
-    bend = -0.5 * factor / speed2 if contact == SLIDING else broadcast_like(0.0, speed2)
+    bend = -0.5 * factor / squared_speed if contact == SLIDING else broadcast_like(0.0, squared_speed)
     if system.rate > 0.0 and contact != LUBRICATED_SLIDING:
-        speed = sqrt(speed2)
-        changing = speed2 if contact == SLIDING else speed * system.v_reg
-        bend = where_positive(speed2, bend + 0.5 * coefficient_slope(system, speed) / changing, bend)
+        speed = sqrt(squared_speed)
+        changing = squared_speed if contact == SLIDING else speed * system.v_reg
+        bend = where_positive(squared_speed, bend + 0.5 * coefficient_slope(system, speed) / changing, bend)
     return bend
 
 
 @compiled
-def put_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
-    """Write the derivatives of ax and ay."""
+def write_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
+    """Write the derivatives of the accelerations ax and ay into their two rows."""
     put(slopes, place, x)
     put(slopes, place + 1, y)
 
 
 @compiled
 def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Set the derivatives of (4.3)."""
+    """Set the derivatives of the platform's acceleration by the small equations (4.3)."""
     stage, out, radius = work.stage, work.slopes, system.radius
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, ux, uy = row(stage, REACTION), row(work.ground, 0), row(work.ground, 1)
@@ -71,17 +71,19 @@ def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
     for axis in range(2):
         ex, ey = (1.0, 0.0) if axis == 0 else (0.0, 1.0)
         lever = (ex * sx + ey * sy) / radius
-        put_pair(out, BY_POSITION + 2 * axis, ux * lever - reaction * ex / radius, uy * lever - reaction * ey / radius)
+        write_pair(
+            out, BY_POSITION + 2 * axis, ux * lever - reaction * ex / radius, uy * lever - reaction * ey / radius
+        )
         gain = 2.0 * bend * (vx * ex + vy * ey)
         dsx, dsy = factor * ex + gain * vx, factor * ey + gain * vy
         lever = (px * dsx + py * dsy) / radius
-        put_pair(out, BY_VELOCITY + 2 * axis, ux * lever - reaction * dsx, uy * lever - reaction * dsy)
-        put_pair(out, BY_DRIVE + 2 * axis, broadcast_like(ex, ux), broadcast_like(ey, uy))
+        write_pair(out, BY_VELOCITY + 2 * axis, ux * lever - reaction * dsx, uy * lever - reaction * dsy)
+        write_pair(out, BY_DRIVE + 2 * axis, broadcast_like(ex, ux), broadcast_like(ey, uy))
 
 
 @compiled
 def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Set the derivatives of (3.9)-(3.13)."""
+    """Set the derivatives of the platform's acceleration by the exact equations (3.9)-(3.13)."""
     # With a = f + R (n - s), R = M (v^2 / rho - n . f + n_z q) / D and D = 1 + (M - 1) (n^2 - n . s) (equations.py)
     # every derivative is  f' + R' (n - t) + R (n' - s'),  where t is s times the relative change of the friction force
     # over that of the reaction (load.py), and
@@ -94,7 +96,7 @@ def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
     radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
     rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
     lean = nx * vx + ny * vy
-    share = ratio / determinant  # change of the reaction per load along the normal
+    share = ratio / determinant  # ratio of the change of the reaction to the load along the normal
     turn = reaction * (ratio - 1.0) / determinant
     dn = -1.0 / radius
     tx, ty = scale_by_response(system, reaction, sx), scale_by_response(system, reaction, sy)
@@ -107,7 +109,7 @@ def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
         dspeed2 = 2.0 * radial * (v + radial * p)
         gain = bend * dspeed2
         d_reaction = share * (dspeed2 / radius - dn * f - dn * n * rise) - turn * (dn * (2.0 * n - s) - gain * lean)
-        put_pair(
+        write_pair(
             out, BY_POSITION + 2 * axis,
             d_reaction * (nx - tx) + reaction * (dn * ex - gain * vx),
             d_reaction * (ny - ty) + reaction * (dn * ey - gain * vy),
@@ -115,10 +117,10 @@ def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
         dspeed2 = 2.0 * (v + radial * p)
         gain = bend * dspeed2
         d_reaction = share * dspeed2 / radius + turn * (gain * lean + factor * n)
-        put_pair(
+        write_pair(
             out, BY_VELOCITY + 2 * axis,
             d_reaction * (nx - tx) - reaction * (gain * vx + factor * ex),
             d_reaction * (ny - ty) - reaction * (gain * vy + factor * ey),
         )  # fmt: skip
         d_reaction = -share * n
-        put_pair(out, BY_DRIVE + 2 * axis, d_reaction * (nx - tx) + ex, d_reaction * (ny - ty) + ey)
+        write_pair(out, BY_DRIVE + 2 * axis, d_reaction * (nx - tx) + ex, d_reaction * (ny - ty) + ey)

@@ -1,5 +1,5 @@
 """
-The one-sided limits at a stop: all accelerations that the platform takes while its speed goes to zero.
+The one-sided limits at a stop: all accelerations that the platform has while its speed goes to zero.
 
 The forces are constant then, but the slip direction still turns, theta' = a . e_perp(theta) (T7 of docs/theory.md),
 until the acceleration points along it. The supremum of (5.1) is taken over that whole arc of directions. The bodies
@@ -12,22 +12,23 @@ from math import cos, pi, sin, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import kinetic_coefficient, slip_vector
-from reference.solver.contact.platform import acceleration, acceleration_along
+from reference.solver.contact.platform import acceleration_along, solve_platform_acceleration
 from reference.solver.system import Load, System
 
-SAMPLES_PER_TURN = 48  # directions per full turn at which an arc is sampled
-FIRST_STRIDE = 1e-3  # rad, first stride of the search for the direction that does not turn, which may be close
-GOLDEN_SECTIONS = 20  # golden sections around the best sample: they leave 1e-5 of the distance of two samples
-# Share of the largest squared sample by which a peak between two samples exceeds it at most
+SAMPLES_PER_TURN = 48  # number of directions per full turn at which an arc is sampled
+# Rad, first stride of the search for the direction that does not turn, which may be close to the first
+FIRST_STRIDE = 1e-3
+GOLDEN_SECTIONS = 20  # golden sections around the best sample, which leave 1e-5 of the distance of two samples
+# A peak between two samples exceeds the largest squared sample by at most this share
 MAX_RISE_BETWEEN_SAMPLES = 0.1
-MAX_ROUNDING_TURN = 1e-9  # sideways acceleration that rounding may make, as a share of the drive
-# Deceleration of a slide that begins which rounding of its instant may make, as a share of friction
+MAX_ROUNDING_TURN = 1e-9  # share of the drive: rounding may make so large a sideways acceleration
+# share of friction: rounding of the instant may make so large a deceleration of a slide that begins
 MAX_ROUNDING_BRAKING = 1e-6
 
 
 @compiled
 def turning_acceleration(system: System, load: Load, angle: float) -> float:
-    """Return a . e_perp, which is positive when the direction turns counter-clockwise."""
+    """Return the acceleration across the direction, a . e_perp, m/s^2: a positive one turns it counter-clockwise."""
     ex, ey = cos(angle), sin(angle)
     ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
     return ay * ex - ax * ey
@@ -45,7 +46,7 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return the direction at which the turning from `angle` ends; `angle` itself if a . e_perp is below no_turn."""
+    """Return the direction at which the turning from `angle` ends; `angle` itself for accelerations below no_turn."""
     # theta' keeps its sign until it vanishes, so the first zero of a . e_perp in the sense of the turning is the end.
     # It may be close by, or there may be several: the search goes in strides that double from FIRST_STRIDE up to the
     # distance of two samples, and ends at the first change of sign, or after a full turn.
@@ -66,10 +67,10 @@ def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) 
 
 @compiled
 def can_begin_slide(system: System, load: Load, angle: float) -> bool:
-    """Return True if a slide from rest has an acceleration in this direction (Painleve) that does not brake it."""
+    """Return True if a slide from rest in this direction has an acceleration (Painleve), which does not brake it."""
     ex, ey = cos(angle), sin(angle)
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
-    ax, ay, reaction, determinant = acceleration(system, load, 0.0, sx, sy)
+    ax, ay, reaction, determinant = solve_platform_acceleration(system, load, 0.0, sx, sy)
     gain = ax * ex + ay * ey
     return (
         determinant > 0.0 and reaction > 0.0 and gain >= -MAX_ROUNDING_BRAKING * kinetic_coefficient(system) * reaction
@@ -78,7 +79,7 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """Return the direction between the two that does not turn, by regula falsi (Illinois; Dowell and Jarratt 1971)."""
+    """Return the direction between both that does not turn, by regula falsi (Illinois; Dowell and Jarratt 1971)."""
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)

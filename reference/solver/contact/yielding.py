@@ -1,5 +1,5 @@
 """
-Friction that yields elastically before it slides: its force, and how that changes.
+Friction that yields elastically before it slides: its force, and the rate of its change.
 
 The friction force is k times an elastic displacement e in the tangent plane, bounded by mu N. Here q = k e / m1, m/s^2,
 by its horizontal part, and kappa = k / m1.
@@ -18,14 +18,14 @@ from math import sqrt
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient, squared_sliding_speed
 from reference.solver.contact.load import scale_by_load
-from reference.solver.contact.platform import acceleration
+from reference.solver.contact.platform import solve_platform_acceleration
 from reference.solver.rows import Number, broadcast_like
 from reference.solver.system import ELASTIC, Load, System
 
 
 @compiled
 def elastic_acceleration(
-    system: System, load: Load, speed2: Number, qx: Number, qy: Number
+    system: System, load: Load, squared_speed: Number, qx: Number, qy: Number
 ) -> tuple[Number, Number, Number]:
     """Return (ax, ay, reaction / m1) under a given friction force q over m1: (T3) of docs/theory.md, solved for N."""
     px, py = load.px, load.py
@@ -37,7 +37,7 @@ def elastic_acceleration(
         return load.fx - slope * px - qx + load.ux * lever, load.fy - slope * py - qy + load.uy * lever, reaction
     nx, ny = -px / system.radius, -py / system.radius
     tilt = nx * nx + ny * ny
-    drive = speed2 / system.radius - nx * load.fx - ny * load.fy + sqrt(1.0 - tilt) * pressure
+    drive = squared_speed / system.radius - nx * load.fx - ny * load.fy + sqrt(1.0 - tilt) * pressure
     held = (system.mass_ratio - 1.0) * (nx * qx + ny * qy)
     reaction = (system.mass_ratio * drive + held) / (1.0 + (system.mass_ratio - 1.0) * tilt)
     return load.fx + reaction * nx - qx, load.fy + reaction * ny - qy, reaction
@@ -59,19 +59,22 @@ def yielding_motion(
         nx, ny = -load.px / system.radius, -load.py / system.radius
         nz = sqrt(1.0 - nx * nx - ny * ny)
         qz, vz = -(nx * qx + ny * qy) / nz, -(nx * vx + ny * vy) / nz
-    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
+    squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
     size = sqrt(qx * qx + qy * qy + qz * qz)
-    friction = coefficient(system, sqrt(speed2))
+    friction = coefficient(system, sqrt(squared_speed))
     work = vx * qx + vy * qy + vz * qz
     transport = work / system.radius
     if contact == ELASTIC:
-        ax, ay, reaction = elastic_acceleration(system, load, speed2, qx, qy)
+        ax, ay, reaction = elastic_acceleration(system, load, squared_speed, qx, qy)
         limit = scale_by_load(system, load.k_t, reaction, friction * reaction)
         turned_x, turned_y, determinant = system.stiffness * vx, system.stiffness * vy, broadcast_like(1.0, qx)
     else:
-        ax, ay, reaction, determinant = acceleration(system, load, speed2, friction * qx / size, friction * qy / size)
+        ax, ay, reaction, determinant = solve_platform_acceleration(
+            system, load, squared_speed, friction * qx / size, friction * qy / size
+        )
         limit = scale_by_load(system, load.k_t, reaction, friction * reaction)
-        cx, cy, cz = ny * qz - nz * qy, nz * qx - nx * qz, nx * qy - ny * qx  # n x q: the way that q turns
+        # N x q, the direction in which the friction force q turns
+        cx, cy, cz = ny * qz - nz * qy, nz * qx - nx * qz, nx * qy - ny * qx
         turn = system.stiffness * (vx * cx + vy * cy + vz * cz) / (size * limit)
         turned_x, turned_y = turn * cx, turn * cy
     return (

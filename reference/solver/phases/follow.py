@@ -1,4 +1,4 @@
-"""The steps of one phase of the contact: each is proposed, solved, checked, cut at an event and committed."""
+"""Steps of one phase of the contact: each is proposed, solved, checked, limited to an event and committed."""
 
 from __future__ import annotations
 
@@ -6,33 +6,33 @@ from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, kinetic_coefficient, rising_rate
-from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, mark_parts
-from reference.solver.look_ahead import end_early
+from reference.solver.events import LEVEL_EVENT, SPEED_EVENT, expand_level, expand_speed, mark_parts
+from reference.solver.look_ahead import end_run_early
 from reference.solver.near_stop import solve_near_stop_step
 from reference.solver.peaks import link_error_rate
-from reference.solver.phases.rest import begin_rest, cut_at_onset, set_reaction
+from reference.solver.phases.rest import begin_rest, set_reaction, shorten_step_to_onset
 from reference.solver.phases.sliding import (
     adapt_sliding_length,
     begin_sliding,
-    cut_at_creep,
     guess_slide,
     guess_turning_slide,
     is_slow,
+    limit_step_to_creep,
     propose_sliding_length,
     recover_failed_slide,
     squared_speed_in_state,
     turns_too_far,
 )
-from reference.solver.phases.smooth import begin_smooth, cut_at_slide
+from reference.solver.phases.smooth import begin_smooth, limit_step_to_slide
 from reference.solver.phases.stopping import (
     NEAR_STOP_NEWTON_FRACTION,
     begin_stopping,
     commit_stopping_step,
-    cut_at_kink_or_creep,
+    limit_step_to_kink_or_creep,
     propose_stretched_length,
 )
 from reference.solver.record import record_stick
-from reference.solver.rows import highest, lowest, row
+from reference.solver.rows import row, row_maximum, row_minimum
 from reference.solver.step_control import (
     FAILURE_SHORTENING,
     MAX_SHORTENING,
@@ -47,7 +47,7 @@ from reference.solver.step_control import (
     remaining_time,
     set_length,
 )
-from reference.solver.steps import load_step, solve_moving_step, solve_rest_step, step_error
+from reference.solver.steps import set_step_loads, solve_moving_step, solve_rest_step, step_error
 from reference.solver.system import (
     CREEPING,
     OPEN,
@@ -63,16 +63,17 @@ from reference.solver.system import (
     System,
 )
 from reference.solver.travel import instant_of_travel
-from reference.solver.work import REACTION, SPEED2, Workspace
+from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 
-# Rounding of an acceleration, which is a difference of forces, as a share of the friction limit
+# Rounding error of an acceleration, which is a difference of forces, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
-MAX_VIBRATION_ANGLE = 5.0  # rad, largest turn of the chain's fastest vibration in a step that follows it
+MAX_VIBRATION_ANGLE = 5.0  # rad, largest phase angle of the chain's fastest vibration in a step that resolves it
 # Error that a step leaves in a free vibration, over the step's defect and the seventh power of the angle by which the
 # vibration turns. The vibration itself is the defect over twice that (docs/decisions/0002).
 DRIFT_SHARE = 6e-8
-MIN_DRIFT_ANGLE = 2.0  # rad: a hundred steps with smaller angles leave less than a thousandth of their tolerance
-# Factor of Newton's tolerance where friction depends on the speed
+# Rad: a hundred steps with smaller angles add less than a thousandth of their tolerance to the drift
+MIN_DRIFT_ANGLE = 2.0
+# Factor of the tolerance of Newton's method where friction depends on the speed
 VARYING_NEWTON_FRACTION = 1e-3
 
 
@@ -80,14 +81,14 @@ VARYING_NEWTON_FRACTION = 1e-3
 def follow_phase(
     system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
 ) -> tuple[int, int]:
-    """Follow the motion until the contact changes or the run ends: (outcome, next state of the contact). See run.py."""
+    """Follow the motion until the contact changes or the run ends; return outcome and next contact, see run.py."""
     # A step goes through five gates. (1) The phase proposes its length; a slide about to stop proposes none and hands
     # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
     # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
-    # it cuts it: the shorter step is solved again, by `cut_at_onset` in rest and by the next pass in every other phase,
+    # it ends it: the shorter step is solved again, in rest by `shorten_step_to_onset`, otherwise by the next pass,
     # so that a step always ends at the event. (5) Peaks, displacement and drift are read off it before its end becomes
     # the new state.
-    since = begin_phase(system, work, contact, settings)
+    since = begin_contact_phase(system, work, contact, settings)
     following = contact
     while following == contact and remaining_time(system, work, settings) > 0.0:
         if not count_step(work, settings):
@@ -110,7 +111,7 @@ def follow_phase(
         if not error <= settings.tolerance:
             set_length(work, contact, min(MAX_SHORTENING, factor) * h)
             continue
-        end, following = cut_at_event(system, work, contact, settings, h)
+        end, following = limit_step_to_event(system, work, contact, settings, h)
         if end == 0.0:
             break
         if end < h and contact != REST:
@@ -122,7 +123,7 @@ def follow_phase(
             return TRAVEL, contact
         following = prepare_next_step(system, work, contact, following, settings, end, factor)
         if contact != STOPPING and work.time > work.look_time:
-            end_early(system, work, settings)
+            end_run_early(system, work, settings)
     if contact in (REST, CREEPING):
         record_stick(record, since, work.time)
     return SOLVED, following
@@ -132,7 +133,7 @@ def follow_phase(
 def shorten_failed_step(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, code: int
 ) -> tuple[int, int]:
-    """Prepare another try at a step that was not solved; return SOLVED, or why there is none, and the next contact."""
+    """Shorten the step after one that was not solved; return SOLVED, or the reason to give up, and the next contact."""
     following = contact
     if code != UNSOLVED and is_too_short(work, contact, settings, h, code):
         return code, contact
@@ -149,7 +150,7 @@ def shorten_failed_step(
 def commit_within_travel(
     system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
 ) -> int:
-    """Make the end of the step the new state; return TRAVEL, at the instant in work.time, where its travel ends."""
+    """Make the end of the step the new state; return TRAVEL if the travel ends in it, at the instant work.time."""
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
         add_drift(system, work, h, angle)
@@ -162,13 +163,13 @@ def commit_within_travel(
 
 @compiled
 def vibration_angle(system: System, contact: int, h: float) -> float:
-    """Return the angle by which the chain's fastest vibration turns in a step, rad; 0 near a stop, in short steps."""
+    """Return the phase angle of the chain's fastest vibration in a step, rad; 0 near a stop, where steps are short."""
     return 0.0 if contact == STOPPING else system.fastest * h
 
 
 @compiled
 def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
-    """Add to work.drift the error that a step leaves in the fastest vibration: in all at most the vibration itself."""
+    """Add to work.drift the error that a step leaves in the fastest vibration: at most the whole vibration."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
         defect = sqrt(work.defect[i] ** 2 + (link_error_rate(system, work, h, i) / system.fastest) ** 2)
@@ -177,8 +178,8 @@ def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
 
 
 @compiled
-def begin_phase(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Prepare the first step of a phase; return when the phase begins, s."""
+def begin_contact_phase(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
+    """Prepare the first step of a phase; return the instant at which the phase begins, s."""
     since: float = work.time
     if contact == REST:
         since = begin_rest(system, work)
@@ -193,7 +194,7 @@ def begin_phase(system: System, work: Workspace, contact: int, settings: RunSett
 
 @compiled
 def propose_length(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Return the length of the next step in the time of the phase; 0 where stretched time begins instead."""
+    """Return the length of the next step in the time of the phase; 0 if stretched time begins instead."""
     if contact == SLIDING:
         return propose_sliding_length(system, work, settings)
     if contact == STOPPING:
@@ -211,8 +212,8 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
     if contact == REST:
         solve_rest_step(system, work, h)
         set_reaction(system, work)
-        return OPEN if lowest(row(work.stage, REACTION)) <= 0.0 else SOLVED
-    load_step(system, work, h)
+        return OPEN if row_minimum(row(work.stage, REACTION)) <= 0.0 else SOLVED
+    set_step_loads(system, work, h)
     enough = NEWTON_FRACTION * settings.tolerance * work.scale[0]
     if contact == SLIDING:
         guess_slide(system, work, h)
@@ -234,15 +235,17 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 
 
 @compiled
-def cut_at_event(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> tuple[float, int]:
+def limit_step_to_event(
+    system: System, work: Workspace, contact: int, settings: RunSettings, h: float
+) -> tuple[float, int]:
     """Return the length of the step up to its first event, 0 for one at its start, and the next contact."""
     if contact == REST:
-        return cut_at_onset(system, work, h)
+        return shorten_step_to_onset(system, work, h)
     if contact == SLIDING:
-        return cut_at_creep(system, work, h)
+        return limit_step_to_creep(system, work, h)
     if contact == STOPPING:
-        return cut_at_kink_or_creep(system, work, settings, h)
-    return cut_at_slide(system, work, contact, h)
+        return limit_step_to_kink_or_creep(system, work, settings, h)
+    return limit_step_to_slide(system, work, contact, h)
 
 
 @compiled
@@ -250,7 +253,7 @@ def mark_counted_parts(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, since: float
 ) -> int:
     """
-    Mark the parts of the step that count for the peaks: their ends in work.edges; return their number.
+    Mark the parts of the step that count for the peaks, with their ends in work.edges; return their number.
 
     Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
@@ -259,17 +262,17 @@ def mark_counted_parts(
     # slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:
         level, start2 = system.v_reg * system.v_reg, squared_speed_in_state(system, work)
-        if max(start2, highest(row(work.stage, SPEED2))) > level:
+        if max(start2, row_maximum(row(work.stage, SQUARED_SPEED))) > level:
             expand_speed(work, h, level)
-            return mark_parts(system, work, SPEED, -1.0, start2 - level)
+            return mark_parts(system, work, SPEED_EVENT, -1.0, start2 - level)
     if settings.cutoff > 0.0 and contact == SLIDING:
         level = settings.cutoff * settings.cutoff
         expand_speed(work, h, level)
-        return mark_parts(system, work, SPEED, 1.0, work.squared_start_speed - level)
+        return mark_parts(system, work, SPEED_EVENT, 1.0, work.squared_start_speed - level)
     if settings.cutoff > 0.0 and contact == STOPPING:
         level = log(settings.cutoff)
         expand_level(work, row(work.levels, ()), level)
-        return mark_parts(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
+        return mark_parts(system, work, LEVEL_EVENT, 1.0, work.log_speed + work.log_ratio - level)
     early = max(since - work.time, 0.0) if contact == REST else 0.0
     work.edges[0], work.edges[1] = early / h, 1.0
     return 1 if early < h else 0
@@ -279,7 +282,7 @@ def mark_counted_parts(
 def prepare_next_step(
     system: System, work: Workspace, contact: int, following: int, settings: RunSettings, h: float, factor: float
 ) -> int:
-    """Set the length of the next step after one that was committed; return the next state of the contact."""
+    """Set the length of the next step after a committed step; return the next state of the contact."""
     if contact == STOPPING:
         after = commit_stopping_step(system, work, settings, h, factor)
         return following if following == CREEPING else after

@@ -1,4 +1,4 @@
-"""Rest: the platform stays where it is while friction can hold it, the chain above it vibrates."""
+"""Rest: the platform stays where it is while friction can hold it, and the chain above it vibrates."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from reference.solver.work import REACTION, Workspace
 # has no direction beyond rounding
 ONSET_EXCESS = 1e-12
 MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS
-ONSET_DIFFERENCE = 1e-4  # step of the difference quotient of the excess, as a share of the time to the onset
-ONSET_ITERATIONS = 8  # Newton's iterations for the onset
+ONSET_DIFFERENCE = 1e-4  # share of the time to the onset that is the step of the difference quotient of the excess
+ONSET_ITERATIONS = 8  # iterations of Newton's method for the onset
 
 
 @compiled
 def begin_rest(system: System, work: Workspace) -> float:
-    """Prepare a phase of rest; return since when the platform is at rest, s."""
+    """Prepare a phase of rest; return the instant from which the platform is at rest, s."""
     work.v[0, 0] = work.v[0, 1] = 0.0
     begin_from_state(system, work, REST)
     since = work.time + work.early_rest
@@ -32,8 +32,8 @@ def begin_rest(system: System, work: Workspace) -> float:
 
 
 @compiled
-def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Solve a step of rest again up to just past the onset inside it; return its length and the next contact."""
+def shorten_step_to_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
+    """Solve a step of rest again up to just past the onset of sliding in it; return its length and the next contact."""
     # The slide that follows begins in the direction in which its acceleration does not turn it, which the excess over
     # the friction limit decides. At the limit itself that direction is undefined, so the onset is located between
     # MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their error.
@@ -47,7 +47,7 @@ def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]
     slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
     end = h * onset
     reaction: float = work.stage[REACTION, STAGES - 1]
-    # The limit hardly changes in the iteration.
+    # the friction limit hardly changes in the iteration
     limit = static_limit(system, work.ground[3, STAGES - 1], reaction) ** 2
     for _ in range(ONSET_ITERATIONS):
         solve_rest_step(system, work, end)
@@ -62,6 +62,6 @@ def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]
 
 @compiled
 def set_reaction(system: System, work: Workspace) -> None:
-    """Set the reaction at the stages of a step at rest."""
+    """Set the reaction of the contact at the stages of a step at rest."""
     _, reaction = rest_excess(system, load_at_stages(work))
     put(work.stage, REACTION, reaction)

@@ -8,9 +8,9 @@ from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import (
     coefficient_slope,
-    heading,
     kinetic_coefficient,
     rising_rate,
+    slip_direction_cosines,
     squared_sliding_speed,
     static_limit,
 )
@@ -20,7 +20,7 @@ from reference.solver.events import locate_level_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import update_peak_by_limit
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import Row, broadcast_like, lowest, put, row
+from reference.solver.rows import Row, broadcast_like, put, row, row_minimum
 from reference.solver.step_control import (
     ERROR_ORDER,
     MAX_LENGTH_FACTOR,
@@ -42,33 +42,36 @@ from reference.solver.system import (
     RunSettings,
     System,
 )
-from reference.solver.work import SPEED2, VELOCITY, Workspace
+from reference.solver.work import SQUARED_SPEED, VELOCITY, Workspace
 
 # "Period" below is RunSettings.period, the time in which forces change.
 # Longest first step of a slide from rest, in periods, over the seventh root of the tolerance (ERROR_ORDER)
 MAX_FIRST_STEP = 0.57
-CAUTIOUS_GROWTH = 2.0  # largest growth of the step after one that had to be shortened
+CAUTIOUS_GROWTH = 2.0  # largest ratio of a step to the one before after that had to be shortened
 # Stretched time begins where the slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME periods, and the
 # chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
 STOP_WITHIN_STEPS = 1.5
 STOP_WITHIN_TIME = 0.05
 MAX_CHAIN_ANGLE = 0.5
-# Longest step as a share of the time to the stop: a longer one comes too close to where the direction turns fast
+# Longest step as a share of the time to the stop: a longer one ends too close to where the direction turns fast
 MAX_WAY_TO_STOP = 0.55
-MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
-LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from that of v_reg at which a slide has reached it
-NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2 below which a slide may pass v_reg between two stages
-# Share of the friction limit times the step below which the direction of a slide follows the force within the step
+# Smallest cosine of the turn of the velocity between two stages: a step with a larger turn is not smooth
+MIN_TURN_COSINE = 0.3
+LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which a slide has reached v_reg
+NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: a slower slide may pass v_reg between two stages
+# Share of the friction limit times the step: the direction of a slower slide follows the force within the step
 STIFF_SPEED_FRACTION = 0.03
-MIN_ACCELERATION_FRACTION = 1e-12  # share of the drive that accelerates a slide at least, so that it has a direction
-BARELY_SLIPPING_EXCESS = 1e-4  # share of the squared friction limit below which a slide need not begin yet
+# Share of the drive that accelerates a slide at least, so that the slide has a direction
+MIN_ACCELERATION_FRACTION = 1e-12
+# Share of the squared friction limit: with a smaller excess of the drive a slide need not begin yet
+BARELY_SLIPPING_EXCESS = 1e-4
 # A slide that cannot begin with a step of this share of the period, or of the time in which friction responds to the
 # speed, moves nothing: it is replaced by rest for NEGLIGIBLE_HOLD periods. A crossing this early in a step (share of
 # the step) means that the phase begins on the level.
 NEGLIGIBLE_STEP = 1e-6
 NEGLIGIBLE_RESPONSE = 1e-3
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP
-MAX_LENGTH_RATIO = 3.0  # ratio of the last length over one that failed above which the last polynomial is no guess
+MAX_LENGTH_RATIO = 3.0  # ratio of the last step length to one that failed: above it the last polynomial is no guess
 
 
 @compiled
@@ -94,7 +97,7 @@ def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> Non
     work.angle = direction_at_stop(system, load, atan2(gy, gx), 0.0)
     if settings.cutoff == 0.0:
         update_peak_by_limit(work, PLATFORM, squared_absolute_acceleration(system, load, work.angle, 1.0))
-    ex, ey = heading(work.angle, system.axes)
+    ex, ey = slip_direction_cosines(work.angle, system.axes)
     ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
     begin_with_acceleration(system, work, ground, ax, ay, SLIDING)
 
@@ -138,19 +141,19 @@ def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
 
 @compiled
 def is_slow(system: System, work: Workspace, h: float) -> bool:
-    """Return True if the direction of the slide follows the force within the step."""
+    """Return True if a slide is so slow that its direction follows the force within the step."""
     speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
     return speed < STIFF_SPEED_FRACTION * h * kinetic_coefficient(system) * system.mass_ratio * system.gravity
 
 
 @compiled
 def guess_slide(system: System, work: Workspace, h: float) -> None:
-    """Set the first guess of the stage accelerations; that of a slow slide along its direction at the start."""
+    """Set the first guess of the stage accelerations; a slow slide accelerates along its direction at the start."""
     if not is_slow(system, work, h):
         guess_from_last_step(work, h)
         return
     nodes = row(NODES_ROW, ())
-    ex, ey = heading(work.angle, system.axes)
+    ex, ey = slip_direction_cosines(work.angle, system.axes)
     guess_along(system, work, h, broadcast_like(ex, nodes), broadcast_like(ey, nodes))
 
 
@@ -167,7 +170,7 @@ def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
             work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k], ground[3, k]
         )  # fmt: skip
         angle = direction_at_stop(system, load, angle, 0.0)
-        work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
+        work.a[0, 0, k], work.a[0, 1, k] = slip_direction_cosines(angle, system.axes)
     guess_along(system, work, h, row(work.a, (0, 0)), row(work.a, (0, 1)))
 
 
@@ -192,7 +195,7 @@ def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> 
 
 @compiled
 def turns_too_far(work: Workspace) -> bool:
-    """Return True if the velocity turns too far between two stages to be a smooth slide."""
+    """Return True if the velocity turns too far between two stages for a smooth slide."""
     bx, by = work.v[0, 0], work.v[0, 1]
     for k in range(STAGES):
         vx, vy = work.stage[VELOCITY, k], work.stage[VELOCITY + 1, k]
@@ -229,25 +232,25 @@ def recover_failed_slide(system: System, work: Workspace, settings: RunSettings,
 
 
 @compiled
-def cut_at_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
+def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
     """Return the length of the step up to where the slide slows down to v_reg, 0 at its start, and the next contact."""
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
-    if lowest(row(work.stage, SPEED2)) < NEAR_LEVEL_FACTOR * floor2:
+    if row_minimum(row(work.stage, SQUARED_SPEED)) < NEAR_LEVEL_FACTOR * floor2:
         start = max(work.squared_start_speed, floor2 * (1.0 + LEVEL_TOLERANCE))
-        slowed = locate_level_crossing(system, work, row(work.stage, SPEED2), start, floor2)
+        slowed = locate_level_crossing(system, work, row(work.stage, SQUARED_SPEED), start, floor2)
         if slowed < NEGLIGIBLE_STEP:
             return 0.0, CREEPING
         if slowed < 1.0 - NEGLIGIBLE_STEP:
             return h * slowed, SLIDING
-    return h, CREEPING if work.stage[SPEED2, STAGES - 1] < floor2 * (1.0 + LEVEL_TOLERANCE) else SLIDING
+    return h, CREEPING if work.stage[SQUARED_SPEED, STAGES - 1] < floor2 * (1.0 + LEVEL_TOLERANCE) else SLIDING
 
 
 @compiled
 def adapt_sliding_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the length of the next step after one that was committed."""
+    """Set the length of the next step after a step that was committed."""
     if h * factor > work.length or h == work.length:
         work.length = h * min(factor, work.max_growth)
     work.max_growth = MAX_LENGTH_FACTOR
-    work.squared_start_speed = work.stage[SPEED2, STAGES - 1]
+    work.squared_start_speed = work.stage[SQUARED_SPEED, STAGES - 1]

@@ -7,36 +7,36 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate
 from reference.solver.events import locate_level_crossing
 from reference.solver.phases.sliding import squared_speed_in_state
-from reference.solver.rows import highest, row
+from reference.solver.rows import row, row_maximum
 from reference.solver.step_control import begin_from_state
 from reference.solver.system import CREEPING, SLIDING, System
-from reference.solver.work import SPEED2, Workspace
+from reference.solver.work import SQUARED_SPEED, Workspace
 
-LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from that of v_reg at which creep has reached it
-EARLY_CROSSING = 1e-6  # share of a step before which a crossing means that the phase begins at v_reg
-NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2 above which creep may pass v_reg between two stages
-MAX_FIRST_DECAY = 2.0  # longest first step of creep, in times of decay of the velocity
+LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which creep has reached v_reg
+EARLY_CROSSING = 1e-6  # share of a step: an earlier crossing means that the phase begins at v_reg
+NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: a faster creep may pass v_reg between two stages
+MAX_FIRST_DECAY = 2.0  # longest first step of creep, in decay times of the velocity
 
 
 @compiled
 def begin_smooth(system: System, work: Workspace, contact: int) -> None:
-    """Prepare a phase without a corner of friction; creep begins with a step that its friction allows."""
+    """Prepare a phase without a corner of friction; creep begins with a step that the decay by friction allows."""
     begin_from_state(system, work, contact)
     if contact == CREEPING:
         work.length = min(work.length, MAX_FIRST_DECAY / decay_rate(system, contact))
 
 
 @compiled
-def cut_at_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
+def limit_step_to_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
     """Return the length of the step up to where creep reaches v_reg, 0 if it begins there, and the next contact."""
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact
-    if highest(row(work.stage, SPEED2)) > NEAR_LEVEL_FRACTION * level:
+    if row_maximum(row(work.stage, SQUARED_SPEED)) > NEAR_LEVEL_FRACTION * level:
         start = min(squared_speed_in_state(system, work), level * (1.0 - LEVEL_TOLERANCE))
-        crossing = locate_level_crossing(system, work, row(work.stage, SPEED2), start, level)
+        crossing = locate_level_crossing(system, work, row(work.stage, SQUARED_SPEED), start, level)
         if crossing < EARLY_CROSSING and work.hold_time == 0.0:
             return 0.0, SLIDING
         if EARLY_CROSSING <= crossing < 1.0 - EARLY_CROSSING:
             return h * crossing, CREEPING
-    return h, SLIDING if work.stage[SPEED2, STAGES - 1] > level * (1.0 - LEVEL_TOLERANCE) else CREEPING
+    return h, SLIDING if work.stage[SQUARED_SPEED, STAGES - 1] > level * (1.0 - LEVEL_TOLERANCE) else CREEPING

@@ -7,14 +7,14 @@ from math import exp, log, pi, sqrt
 from reference.solver.chain import set_chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import SMALLEST_SPEED, heading, kinetic_coefficient
+from reference.solver.contact.friction import SMALLEST_SPEED, kinetic_coefficient, slip_direction_cosines
 from reference.solver.contact.platform import acceleration_along, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, direction_at_stop
 from reference.solver.events import locate_level_crossing
 from reference.solver.ground import ground_at
 from reference.solver.peaks import SETTLED_FRACTION, update_peak_by_limit
 from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
-from reference.solver.rows import lowest, row
+from reference.solver.rows import row, row_minimum
 from reference.solver.step_control import MIN_STEP, begin_with_acceleration, next_kink
 from reference.solver.system import CREEPING, PLATFORM, REGULARIZED, REST, SLIDING, STOPPING, Load, RunSettings, System
 from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Workspace
@@ -22,10 +22,10 @@ from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA,
 # "Period" below is RunSettings.period, the time in which forces change; "the loading's velocity" is the size of the
 # loading's acceleration times the period over 2 pi.
 FIRST_STEP = 1.0  # change of the direction, rad, or of ln v in the first step
-# Share of the loading that accelerates the platform at least, where the length of the first step is chosen
+# Share of the loading that accelerates the platform at least in the estimate of the first step's length
 MIN_FIRST_ACCELERATION = 1e-3
-MAX_GROWTH = 2.0  # largest growth of a length beyond the one that would have met the tolerance in the last step
-MAX_CHAIN_ANGLE = 0.7  # rad, largest turn of the chain's fastest vibration in one step
+MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the last one would have met the tolerance
+MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the chain's fastest vibration in one step
 # A slide that gathers speed leaves stretched time where its speed over its acceleration exceeds this share of the
 # length of a plain step, and this share of the period.
 LEAVING_TIME_FRACTION = 0.3
@@ -41,32 +41,34 @@ MAX_DAMPED_JUMP = 0.01
 MIN_FOLLOWED_SPEED = 1e-10
 DECISIVE_ARC_FRACTION = 0.97
 DECISIVE_RISE_FRACTION = 0.999
-NEGLIGIBLE_RISE = 1e-9  # share of a squared peak that the arc may add to the end of the last step without counting
+# Share of a squared peak: a smaller rise that the arc adds to the end of the last step does not count
+NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
-EARLY_CROSSING = 1e-9  # share of a step before which a crossing means that the phase begins on the level
-# Time left to the stop within which forces count as constant, over the period and the root of the tolerance
+EARLY_CROSSING = 1e-9  # share of a step: an earlier crossing means that the phase begins at v_reg
+# Time left to the stop in which forces count as constant, over the period and the root of the tolerance
 MAX_FROZEN_TIME = 0.01
-MAX_FRICTION_CHANGE = 1e-12  # share of the rise of friction that counts as no change down to rest
+# Share of the rise of friction with the speed: a smaller change down to rest counts as none
+NEGLIGIBLE_FRICTION_RISE = 1e-12
 # Duration of a slide at almost constant speed, as a multiple of the time within which a slide counts as stopping
 MIN_STEADY_TIMES = 2.0
-MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction below which a slide turns back on its own line
-# Share of the loading's velocity below which a straight slide that friction cannot hold is at its turning point
+MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction: with a smaller one a slide turns back on its own line
+# Share of the loading's velocity: a slower straight slide that friction cannot hold is at its turning point
 MAX_TURNING_POINT_SPEED = 1e-12
-NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance at which the change of the angle ends Newton's method
+NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of the angle ends Newton's method
 # Bounds on the change of ln v in one step. Time and position are integrals of v and v^2 over tau: where forces stay
 # constant no acceleration shows their error. With these bounds it stays below 1e-8 of what is left of the slide at the
 # start of the step.
-MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound in the first step
-LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of the bound per unit by which ln v has fallen since
+MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
+LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of that bound per unit by which ln v has fallen since
 
 
 @compiled
 def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> None:
-    """Prepare a phase in stretched time: the accelerations in the state and the length of the first step."""
+    """Prepare a phase in stretched time: set the accelerations in the state and the length of the first step."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
-    ex, ey = heading(work.angle, system.axes)
+    ex, ey = slip_direction_cosines(work.angle, system.axes)
     ax, ay, _, ratio = acceleration_along(system, load, exp(work.log_speed), ex, ey)
     begin_with_acceleration(system, work, ground, ax, ay, STOPPING)
     work.log_ratio, work.first_log_speed, work.fitting_length = log(ratio), work.log_speed, 0.0
@@ -76,17 +78,17 @@ def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> No
 @compiled
 def propose_stretched_length(system: System, work: Workspace) -> float:
     """Return the length of the next step in tau: the longest that resolves time, position and the chain's vibration."""
-    ex, ey = heading(work.angle, system.axes)
+    ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
-    if along > 0.0:  # a slide that gathers speed: the end of the step decides, not its start
+    if along > 0.0:  # the slide gathers speed, so that the end of the step limits its length
         change /= 1.0 + LOG_SPEED_CHANGE_GROWTH
     h = min(work.stretched_length, change / max(abs(along), 1e-300))
     return min(h, MAX_CHAIN_ANGLE / (system.fastest * exp(work.log_speed))) if system.fastest > 0.0 else h
 
 
 @compiled
-def cut_at_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
+def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
     """Return the length of the step up to the next kink or to v_reg, 0 at its start, and the next contact."""
     limit = next_kink(system, work, settings)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * settings.period:
@@ -96,7 +98,7 @@ def cut_at_kink_or_creep(system: System, work: Workspace, settings: RunSettings,
     if system.law != REGULARIZED:
         return h, STOPPING
     level = log(system.v_reg)
-    if lowest(row(work.levels, ())) < level - LEVEL_TOLERANCE:
+    if row_minimum(row(work.levels, ())) < level - LEVEL_TOLERANCE:
         start = max(work.log_speed + work.log_ratio, level)
         portion = locate_level_crossing(system, work, row(work.levels, ()), start, level - 0.5 * LEVEL_TOLERANCE)
         if portion < EARLY_CROSSING:
@@ -138,7 +140,7 @@ def commit_stopping_step(system: System, work: Workspace, settings: RunSettings,
 
 @compiled
 def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: bool) -> bool:
-    """Raise the peaks to those on the arc that is left; return False if the arc decides and may still be `followed`."""
+    """Raise the peaks to those on the rest of the arc; return False if the arc decides and may still be `followed`."""
     # The direction still turns while the speed goes to zero, so every direction between the present one and the one in
     # which it settles belongs to the motion (contact/stop_arc.py; docs/theory.md, supremum). The arc is computed with
     # the forces of this instant. Where it decides a peak, the stop is followed down to MIN_FOLLOWED_SPEED first, so
@@ -164,7 +166,7 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: b
 
 @compiled
 def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -> int:
-    """Return REST or SLIDING at a stop, STOPPING if it goes on; the time left of the slide is in work.early_rest."""
+    """Return REST or SLIDING at a stop, STOPPING before it; set work.early_rest to the time left of the slide."""
     # A platform that friction can hold (excess <= 0) has stopped when the rest of the slide changes nothing: its speed
     # and the time left are small (both bounds go with the root of the tolerance, since the way left is quadratic in
     # them), dampers feel no jump, friction is that of rest, and the arc is known. Under a cutoff the arc does not
@@ -184,11 +186,11 @@ def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -
         if system.rate > 0.0:
             # Friction that grows with the speed: the sign of the acceleration at speed 0 decides. A slide along the
             # drive slows down by friction and does not turn round.
-            ex, ey = heading(work.angle, system.axes)
+            ex, ey = slip_direction_cosines(work.angle, system.axes)
             ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
             along = ax * ex + ay * ey
         return SLIDING if straight and along < 0.0 and speed < MAX_TURNING_POINT_SPEED * unit else STOPPING
-    changing = system.rate * speed > MAX_FRICTION_CHANGE
+    changing = system.rate * speed > NEGLIGIBLE_FRICTION_RISE
     if along >= 0.0 or speed > MAX_FROZEN_TIME * sqrt(settings.tolerance) * settings.period * -along or changing:
         return STOPPING if speed > SMALLEST_SPEED else REST
     if settings.cutoff == 0.0:

@@ -8,24 +8,24 @@ from __future__ import annotations
 
 from math import inf
 
-from reference.solver.chain import move_chain, set_chain_acceleration, set_feedback
+from reference.solver.chain import recover_chain_motion, set_chain_acceleration, set_feedback
 from reference.solver.collocation import A2, NODES, STAGES, A
 from reference.solver.compiled import compiled
 from reference.solver.contact.platform import load_in_state
 from reference.solver.contact.yielding import yielding_motion
-from reference.solver.events import LEVEL, NEVER, expand_level, locate_first_event
+from reference.solver.events import LEVEL_EVENT, NOT_IN_STEP, expand_level, locate_first_event
 from reference.solver.ground import ground_at
 from reference.solver.linear_solve import factorize_all, solve_all
-from reference.solver.polynomial import A_COLUMNS, NODES_ROW, expand, value_at
-from reference.solver.rows import broadcast_like, highest, lowest, put, row
+from reference.solver.polynomial import A_COLUMNS, NODES_ROW, evaluate_polynomial, set_coefficients
+from reference.solver.rows import broadcast_like, put, row, row_maximum, row_minimum
 from reference.solver.step_control import begin_with_acceleration
 from reference.solver.steps import (
     MAX_ITERATIONS,
     ROUNDING_CHANGE,
     SLOW_CONVERGENCE,
-    place_platform,
-    rim_or_unsolved,
+    classify_unsolved_step,
     set_absolute_accelerations,
+    set_platform_motion,
 )
 from reference.solver.system import OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, Load, System
 from reference.solver.work import (
@@ -34,28 +34,28 @@ from reference.solver.work import (
     BOUND,
     DETERMINANT,
     DRIVE,
+    DRIVE_ARGUMENT,
     EXCESS,
     FORCE,
     FORCE_RATE,
     MOTION,
     POSITION,
-    PUSHED,
     REACTION,
     VELOCITY,
     Workspace,
 )
 
-# Step of the difference quotients for Newton's method, as a share of radius, speed, gravity or friction force; and that
-# by the velocity of a platform that does not move, m/s
-DIFFERENCE, LEAST_SPEED = 1e-7, 1e-10
+# Step of the difference quotients for Newton's method, as a share of radius, speed, gravity or friction force; and the
+# step by the velocity of a platform at rest, m/s
+DIFFERENCE_STEP, MIN_SPEED = 1e-7, 1e-10
 FIRST_NODE = float(NODES[0])
-LATE_EVENT = 1e-10  # share of a step behind which an event counts as one at its end
-MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of it
+LATE_EVENT_SHARE = 1e-10  # share of a step: a later event counts as one at its end
+MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of the step
 
 
 @compiled
 def begin_yielding(system: System, work: Workspace, contact: int, slid: bool) -> None:
-    """Set the accelerations in the state at the start of a phase; after a slide, first the size of the force."""
+    """Set the accelerations at the start of a phase; after plastic slip first scale the friction force to its bound."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -73,7 +73,7 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
     """
     Solve for the stage accelerations of the platform and its friction force by Newton's method; return the outcome.
 
-    `load_step` comes before; `a[0]` holds the first guess. The iteration ends as in `solve_moving_step`.
+    `set_step_loads` comes before; `a[0]` holds the first guess. The iteration ends as in `solve_moving_step`.
     """
     set_feedback(system, work, h)
     for axis in range(2):
@@ -96,9 +96,9 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
             return UNSOLVED
         if settled:
             code, _ = set_yielding_residual(system, work, contact, h)
-            move_chain(system, work, h)
+            recover_chain_motion(system, work, h)
             set_absolute_accelerations(system, work, contact)
-            return OPEN if code == SOLVED and lowest(row(work.stage, REACTION)) <= 0.0 else code
+            return OPEN if code == SOLVED and row_minimum(row(work.stage, REACTION)) <= 0.0 else code
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
     return UNSOLVED
@@ -106,10 +106,10 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def set_motion(system: System, work: Workspace, contact: int) -> None:
-    """Set the motion at the stages in `shear` from the arguments there, and reaction and determinant in `stage`."""
+    """Set the motion at the stages in `shear` from its arguments there, and reaction and determinant in `stage`."""
     shear, ground = work.shear, work.ground
     load = Load(
-        row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, PUSHED), row(shear, PUSHED + 1),
+        row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, DRIVE_ARGUMENT), row(shear, DRIVE_ARGUMENT + 1),
         row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3),
     )  # fmt: skip
     ax, ay, reaction, determinant, rate_x, rate_y, limit, size, along = yielding_motion(
@@ -122,7 +122,7 @@ def set_motion(system: System, work: Workspace, contact: int) -> None:
     put(shear, MOTION + 1, ay)
     put(shear, FORCE_RATE, rate_x)
     put(shear, FORCE_RATE + 1, rate_y)
-    put(shear, EXCESS, (size / limit) * (size / limit) - 1.0)  # smooth where the force passes zero
+    put(shear, EXCESS, (size / limit) * (size / limit) - 1.0)  # the square is smooth where the force passes zero
     put(shear, ALONG_FORCE, along)
     put(shear, BOUND, limit)
 
@@ -131,14 +131,14 @@ def set_motion(system: System, work: Workspace, contact: int) -> None:
 def set_yielding_residual(system: System, work: Workspace, contact: int, h: float) -> tuple[int, float]:
     """Set the residual of accelerations and friction force at the stages; return the outcome and their size, m/s^2."""
     stage, shear, right = work.stage, work.shear, work.shear_right
-    place_platform(work, h, 2)
+    set_platform_motion(work, h, 2)
     for axis in range(2):
         put(shear, ARGUMENTS + axis, row(stage, POSITION + axis))
         put(shear, ARGUMENTS + 2 + axis, row(stage, VELOCITY + axis))
-        put(shear, PUSHED + axis, row(stage, DRIVE + axis))
+        put(shear, DRIVE_ARGUMENT + axis, row(stage, DRIVE + axis))
     px, py = row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1)
-    if highest(px * px + py * py) >= system.radius**2:
-        return rim_or_unsolved(system, work), 0.0
+    if row_maximum(px * px + py * py) >= system.radius**2:
+        return classify_unsolved_step(system, work), 0.0
     set_motion(system, work, contact)
     size = 0.0
     for axis in range(2):
@@ -149,8 +149,8 @@ def set_yielding_residual(system: System, work: Workspace, contact: int, h: floa
         missing_q = moved - row(shear, FORCE + axis)
         for m in range(STAGES):
             right[axis * STAGES + m], right[(2 + axis) * STAGES + m] = missing_a[m], missing_q[m]
-        size += highest(abs(row(shear, MOTION + axis)))
-    return (SOLVED if lowest(row(stage, DETERMINANT)) > 0.0 else PAINLEVE), size
+        size += row_maximum(abs(row(shear, MOTION + axis)))
+    return (SOLVED if row_minimum(row(stage, DETERMINANT)) > 0.0 else PAINLEVE), size
 
 
 @compiled
@@ -159,7 +159,7 @@ def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
     shear, slopes = work.shear, work.shear_slopes
     for k in range(4):
         put(slopes, (8, k), row(shear, MOTION + k))
-    speed = abs(row(shear, ARGUMENTS + 2)) + abs(row(shear, ARGUMENTS + 3)) + LEAST_SPEED / DIFFERENCE
+    speed = abs(row(shear, ARGUMENTS + 2)) + abs(row(shear, ARGUMENTS + 3)) + MIN_SPEED / DIFFERENCE_STEP
     bound = row(shear, BOUND)
     for n in range(8):
         size = broadcast_like(min(system.radius, 1.0) if n < 2 else system.gravity, speed)
@@ -167,7 +167,7 @@ def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
             size = speed
         elif n > 5:
             size = bound
-        step, kept = DIFFERENCE * size, row(shear, ARGUMENTS + n)
+        step, kept = DIFFERENCE_STEP * size, row(shear, ARGUMENTS + n)
         put(shear, ARGUMENTS + n, kept + step)
         set_motion(system, work, contact)
         for k in range(4):
@@ -225,7 +225,7 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
     shear = work.shear
     values = row(shear, EXCESS)
     if contact == PLASTIC:
-        expand(row(shear, BOUND), work.powers[1])
+        set_coefficients(row(shear, BOUND), work.powers[1])
         theta = row(NODES_ROW, ())
         growth = broadcast_like(0.0, theta)
         for k in range(STAGES - 1, 0, -1):
@@ -238,45 +238,45 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
 
 @compiled
 def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
-    """Return the share of the step up to the first event in it, 0 for one at its start, NEVER without one."""
+    """Return the share of the step up to the first event in it, 0 for one at its start, NOT_IN_STEP for none."""
     # At the start of a phase the value is zero up to rounding, and the polynomial through the stages misses it there:
     # in the first step the first stage decides. In any other step the polynomial may be positive at its start by error.
     first = expand_event(system, work, contact, h)
     if begun and first > 0.0:
         return 0.0
-    start = value_at(work.powers[0], 0.0)
+    start = evaluate_polynomial(work.powers[0], 0.0)
     if begun or (start > 0.0 and first <= 0.0):
-        return locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, first)
-    return 0.5 * FIRST_NODE if start > 0.0 else locate_first_event(system, work, LEVEL, 1.0, 0.0, start)
+        return locate_first_event(system, work, LEVEL_EVENT, 1.0, FIRST_NODE, first)
+    return 0.5 * FIRST_NODE if start > 0.0 else locate_first_event(system, work, LEVEL_EVENT, 1.0, 0.0, start)
 
 
 @compiled
 def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return how much longer the step must be to end at the event, as a share of it; NEVER where it turns back."""
+    """Return the relative change of the step's length that puts its end at the event; NOT_IN_STEP if it turns back."""
     expand_event(system, work, contact, h)
     slope = 0.0
     for k in range(1, STAGES):
         slope += k * work.powers[0, k]
-    end = value_at(work.powers[0], 1.0)
+    end = evaluate_polynomial(work.powers[0], 1.0)
     if not slope > 0.0:  # such as behind a kink of the bound, where the value jumps
-        return 0.0 if end > 0.0 else NEVER
+        return 0.0 if end > 0.0 else NOT_IN_STEP
     return min(max(-end / slope, -MAX_SHIFT), MAX_SHIFT)
 
 
 @compiled
-def share_before_slowest(system: System, work: Workspace) -> float:
-    """Return the share of the step before the platform is slowest: there a coefficient of the speed may have a kink."""
+def step_share_to_slowest_point(system: System, work: Workspace) -> float:
+    """Return the share of the step up to the smallest speed, at which the friction coefficient may have a kink."""
     shear = work.shear
     gain = row(shear, ARGUMENTS + 2) * row(shear, MOTION) + row(shear, ARGUMENTS + 3) * row(shear, MOTION + 1)
     if system.rate == 0.0 or gain[0] >= 0.0:
         return 1.0
     expand_level(work, gain, 0.0)
-    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, gain[0])
-    return 1.0 if portion > 1.0 - LATE_EVENT else portion
+    portion = locate_first_event(system, work, LEVEL_EVENT, 1.0, FIRST_NODE, gain[0])
+    return 1.0 if portion > 1.0 - LATE_EVENT_SHARE else portion
 
 
 @compiled
 def commit_force(work: Workspace) -> None:
-    """Make the friction force at the end of the step that of the new state."""
+    """Set the friction force of the new state to that at the end of the step."""
     for axis in range(2):
         work.force[axis] = work.shear[FORCE + axis, STAGES - 1]

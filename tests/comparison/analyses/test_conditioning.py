@@ -16,8 +16,8 @@ import multibody
 import reference
 from comparison.analyses.conditioning import analysis
 from comparison.analyses.conditioning.analysis import (
-    FEW,
-    FEW_PERIODS,
+    ENGINE_PERIODS,
+    ENGINE_PHASES,
     QUESTIONS,
     REGULARIZATIONS,
     SPEEDS,
@@ -26,7 +26,7 @@ from comparison.analyses.conditioning.analysis import (
     conditioning_curves,
 )
 from comparison.analyses.conditioning.feature import conditioning_panels, conditioning_tables
-from comparison.analyses.conditioning.statement import ILL, conditioning_line, yielding_line
+from comparison.analyses.conditioning.statement import ILL_CONDITIONED_CHANGE, conditioning_line, yielding_line
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
@@ -101,16 +101,16 @@ def test_the_curve_climbs_to_the_supremum_as_recorded(name: str) -> None:
 
 def test_the_exact_equations_stand_at_few_pairs_of_the_first_periods() -> None:
     scene = load_scene("fig3-I")
-    short = scene.with_values({"duration": FEW_PERIODS * 1.1})  # the slower of 0.9 and 1.1 s
+    short = scene.with_values({"duration": ENGINE_PERIODS * 1.1})  # the slower of 0.9 and 1.1 s
     resolved, _, supremum, _ = conditioning_curves((scene, EXACT, 0))
-    limit = reference.amplification(short, FEW).mu[:, 0]
+    limit = reference.amplification(short, ENGINE_PHASES).mu[:, 0]
     for place, speed in enumerate(SPEEDS):
-        mu = reference.amplification(short, FEW, cutoff=speed).mu[:, 0]
+        mu = reference.amplification(short, ENGINE_PHASES, cutoff=speed).mu[:, 0]
         assert resolved.mean[place] == pytest.approx(mu.mean(), rel=1e-5)
         assert resolved.relative_mean[place] == pytest.approx((mu / limit - 1.0).mean(), abs=1e-5)
         assert resolved.relative_error[place] < 1e-5, "listed pairs have no error of sampling"
     assert (supremum.mean[0], supremum.largest[0]) == pytest.approx((limit.mean(), limit.max()), rel=1e-5)
-    assert supremum.largest_phases[0] == pytest.approx(tuple(FEW[limit.argmax()]))
+    assert supremum.largest_phases[0] == pytest.approx(tuple(ENGINE_PHASES[limit.argmax()]))
     assert (resolved.grid, resolved.pairs, resolved.base) == (0, 3, "exact")
     assert resolved.duration == pytest.approx(short.duration)
 
@@ -152,7 +152,7 @@ def test_the_engine_is_relative_to_the_supremum_of_the_exact_equations(monkeypat
                 assert curve.relative_error[place] == pytest.approx(1e-3 * math.sqrt(2.0) * ratios.mean())
     assert {question[:2] for question in asked} == {("exact", None)}
     assert [question[2] for question in asked] == pytest.approx([3.3] * 2)
-    assert asked[0][3] == FEW.tolist()
+    assert asked[0][3] == ENGINE_PHASES.tolist()
 
 
 def test_a_pair_that_lacks_a_speed_counts_at_none(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -267,7 +267,9 @@ def test_the_sentence_says_what_the_grid_does_not_tell() -> None:
     )
 
 
-@pytest.mark.parametrize(("size", "word"), [(0.9 * ILL, "well"), (1.2 * ILL, "ill")])
+@pytest.mark.parametrize(
+    ("size", "word"), [(0.9 * ILL_CONDITIONED_CHANGE, "well"), (1.2 * ILL_CONDITIONED_CHANGE, "ill")]
+)
 def test_the_supremum_is_well_conditioned_below_a_thousandth(size: float, word: str) -> None:
     [resolved, *rest] = known_curves()
     scaled = tuple(size / 0.052 * each for each in resolved.relative_mean)

@@ -509,7 +509,7 @@ def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypa
 def test_the_plan_and_the_line_before_the_engine_count_the_same_seconds(folder, capsys, monkeypatch):
     """On idle cores, whatever the equations took on this machine: a task of 100 s is not shared by two workers."""
     monkeypatch.setattr(
-        "comparison.analyses.ensemble.analysis.seconds_per_motion",
+        "comparison.analyses.ensemble.analysis.estimate_motion_seconds",
         lambda scene, model: 10.0 if model.side == "reference" else 100.0,
     )
     words = ("mine.toml", "--suite", "suite", "--jobs", "2")

@@ -13,7 +13,7 @@ from studies import solved
 from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
 from comparison.analyses.families.analysis import list_family_demands_over_phases
 from comparison.analyses.families.feature import family_panels
-from comparison.registry import report_of
+from comparison.registry import make_report
 from comparison.result_types import UncertainNumber
 from comparison.study.study import Study
 from comparison.surfaces.distribution import Fractile
@@ -34,7 +34,7 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))
     surfaces = solved(study)
     surfaces["mu"].loc[{"scene": family.scenes[1].name, "model": "translational"}] = np.nan
-    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
+    results = make_report(study, surfaces, {}, [], RUN, families=[family]).results
     curves = {(curve.model, curve.body): curve for curve in results.families[0].curves}
     assert len(curves) == 2 * len(study.hierarchy)
     engine = curves["translational", 1]
@@ -67,7 +67,7 @@ def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
 def test_an_axis_is_logarithmic_over_decades_and_names_a_few(file: Path) -> None:
     family = load_family(file)
     study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
-    results = report_of(study, solved(study), {}, [], RUN, families=[family]).results
+    results = make_report(study, solved(study), {}, [], RUN, families=[family]).results
 
     def axis(*values: float | str) -> dict[str, Any]:
         changed = results.families[0].model_copy(update={"values": list(values)})

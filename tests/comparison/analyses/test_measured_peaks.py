@@ -11,7 +11,7 @@ from comparison.analyses.measured import analysis
 from comparison.analyses.measured.analysis import MeasuredPeaks, _compare_peak, verdict_line, word_measured
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
-from comparison.study.user_models import user_model
+from comparison.study.user_models import make_user_model
 from reference.problem import Scene, load_scene
 
 PHASES = (0.3, 1.1)
@@ -91,7 +91,7 @@ def test_a_record_is_compared_without_phases():
 def test_every_model_with_motions_is_asked_what_a_test_measured_at_its_phases():
     other = peak("drift", 0.01, 0.001, 2, phases=[1.0, 2.0])
     scene = PLAIN.with_values({"measured": [peak("mu", 3.0, 0.1, 1), other]})
-    study = Study((scene,), 1, 1e-3, (EXACT, user_model("mine", {"function": "nowhere:mu"})))
+    study = Study((scene,), 1, 1e-3, (EXACT, make_user_model("mine", {"function": "nowhere:mu"})))
     asked = [(task.argument[1].key, *task.argument[3:]) for task in MeasuredPeaks().tasks(study)]
     assert asked == [("exact", PHASES, [("mu", 1)]), ("exact", (1.0, 2.0), [("drift", 2)])]
     nothing = Study((PLAIN,), 1, 1e-3, MODEL_HIERARCHY)

@@ -7,7 +7,7 @@ import pytest
 from report_texts import Tables
 
 from comparison.analyses.records.feature import FEATURE, list_recorded_motions, word_warnings
-from comparison.report.page import _template_environment
+from comparison.report.page import _make_template_environment
 from comparison.study.records import describe_records
 from reference.problem import GRAVITY, Scene, load_scene
 
@@ -48,7 +48,7 @@ def test_the_table_has_what_was_read_below_its_heads_and_every_warning(tmp_path)
     records = list_recorded_motions(findings, [])  # type: ignore[arg-type]
     assert records is not None
     text = (
-        _template_environment()
+        _make_template_environment()
         .get_template("records/section.html.j2")
         .render(results=SimpleNamespace(records=records), gravity=GRAVITY)
     )

@@ -11,7 +11,7 @@ import xarray as xr
 import reference
 from comparison.analyses.worst_phases import analysis
 from comparison.analyses.worst_phases.feature import _name_reading, _word_kind
-from comparison.runner.task import result_without_value
+from comparison.runner.task import make_failed_result
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
 from comparison.study.study import Study
@@ -145,7 +145,7 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
     study, results = study_of(SHORT), TaskResults()
     tasks = analysis.WorstPhases().tasks(study)
     for task in tasks:
-        results.put(task, result_without_value(Outcome.TIME_LIMIT, "took too long"))
+        results.put(task, make_failed_result(Outcome.TIME_LIMIT, "took too long"))
     rows = analysis.WorstPhases().collect(study, None, results)
     assert len(rows) == len(tasks) + 2  # the engine's rows
     assert all(

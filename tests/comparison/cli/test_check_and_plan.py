@@ -18,7 +18,7 @@ import reference
 from comparison.analyses.demands.analysis import DemandSurfaces
 from comparison.cli.options import parse_options
 from comparison.runner.processes import count_cores
-from comparison.study.costs import seconds_per_motion
+from comparison.study.costs import estimate_motion_seconds
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, check_limits
@@ -179,7 +179,7 @@ def test_the_plan_counts_every_motion_of_the_demands() -> None:
         study = Study((scene,), grid, 1e-3, MODEL_HIERARCHY)
         tasks = DemandSurfaces().tasks(study)
         motions = [(task.argument[1], len(task.argument[3])) for task in tasks]
-        expected = sum(count * seconds_per_motion(scene, model) for model, count in motions)
+        expected = sum(count * estimate_motion_seconds(scene, model) for model, count in motions)
         assert DemandSurfaces().estimate_seconds(study) == pytest.approx(expected)
 
 

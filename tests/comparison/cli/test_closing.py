@@ -22,14 +22,14 @@ from runs import Run
 
 import comparison.run
 from comparison.cli import reports, terminal
-from comparison.cli.computing import run_facts
+from comparison.cli.computing import collect_run_facts
 from comparison.cli.start import Clock
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import make_table
 from comparison.run import main
 from reference.problem import load_scene
 
 
-def next_commands(run: Run) -> list[list[str]]:
+def word_next_commands(run: Run) -> list[list[str]]:
     """The words of the commands that the last lines name."""
     return [shlex.split(line.rpartition(": ")[2]) for line in run.out.splitlines() if line.startswith("Next: ")]
 
@@ -38,13 +38,15 @@ def test_the_next_command_works_as_it_is_printed(
     command: Callable[..., Run], capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     run = command("fig3-I", "--grid=2", "--amplitude", "0.5", hierarchy=errors_in({"spatial": 0.1}))
-    (words,) = next_commands(run)  # no film: it would be of another loading
+    (words,) = word_next_commands(run)  # no film: it would be of another loading
     assert (words[:3], "--grid=2" in words) == (["python", "-m", "comparison.run"], False)
     assert main([*words[3:], "--out", str(tmp_path / "other")], fake_hierarchy(), ThreadPoolExecutor) == 0
     assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
-    assert next_commands(command("synthetic-pair", hierarchy=fake_hierarchy())) == [], "a record has no grid to refine"
+    assert word_next_commands(command("synthetic-pair", hierarchy=fake_hierarchy())) == [], (
+        "a record has no grid to refine"
+    )
     timed = command("fig3-I", "--grid", "2", "--budget", "1000", hierarchy=errors_in({}))
-    assert not any("comparison.run" in words for words in next_commands(timed))
+    assert not any("comparison.run" in words for words in word_next_commands(timed))
 
 
 def test_printed_options_stand_before_scenes_with_a_dash(
@@ -53,14 +55,14 @@ def test_printed_options_stand_before_scenes_with_a_dash(
     monkeypatch.chdir(tmp_path)
     Path("-my scene.toml").write_text(scene_text(), encoding="utf-8")
     words = ["--grid", "2", "--out", str(tmp_path / "report"), "--", "-my scene.toml"]
-    film, finer = next_commands(command(*words, hierarchy=errors_in({"spatial": 0.1})))
+    film, finer = word_next_commands(command(*words, hierarchy=errors_in({"spatial": 0.1})))
     assert film[film.index("multibody.animate") + 1] == "./-my scene.toml"
     assert finer[-5:] == ["--grid", "4", "--plan", "--", "-my scene.toml"]
     assert main(finer[3:], fake_hierarchy(), ThreadPoolExecutor, models={"mine": "user_engines:plain"}) == 0
 
 
 def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str]) -> None:
-    table = new_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
+    table = make_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
     cells = ("like for like", "−0.0051 %", "< 0.0001 %", "0.014 %", "12345")
     table.add_row("building-" + "x" * 71, "2", *cells)
     Console(width=80).print(table)
@@ -80,13 +82,13 @@ def test_the_times_of_a_run_are_the_same_in_every_place(
         return (datetime.now(UTC) - datetime.fromisoformat(began)).total_seconds()
 
     monkeypatch.setattr(reports, "Clock", Told)
-    monkeypatch.setattr(comparison.run, "command_start", lambda: Clock(900.0, 20.0))
+    monkeypatch.setattr(comparison.run, "find_command_start", lambda: Clock(900.0, 20.0))
     run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
     times = summary_of(run.report)["run"]
     assert (times["wall_seconds"], times["processor_seconds"]) == (102.0, 30.0)
     assert "102.0 s of wall time with" in run.out
     assert ago(times["began"]) == pytest.approx(102.0, abs=60.0)
-    facts = run_facts("extremes", Namespace(jobs="3", scheduler=None), ["--a"], time.monotonic() - 90.0)
+    facts = collect_run_facts("extremes", Namespace(jobs="3", scheduler=None), ["--a"], time.monotonic() - 90.0)
     assert (facts["command"], facts["jobs"]) == ("phase-resonance extremes --a", 3)
     assert ago(facts["began"]) == pytest.approx(90.0, abs=60.0)
     assert 90.0 <= facts["seconds"] < 120.0
@@ -133,7 +135,7 @@ def test_the_processor_time_of_processes_that_run_and_that_ended_is_counted() ->
 
 def test_the_film_is_of_the_largest_difference(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "--grid", "4", "--only", "surfaces", hierarchy=distinct_hierarchy())
-    (words,) = (words for words in next_commands(run) if "multibody.animate" in words)
+    (words,) = (words for words in word_next_commands(run) if "multibody.animate" in words)
     phases = grid_phases(4)
     sizes = {
         (key, body, place): abs(size)

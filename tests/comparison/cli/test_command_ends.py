@@ -15,9 +15,9 @@ import pytest
 from places import ROOT
 
 import reference
-from comparison.cli.start import commands, main, run_command
+from comparison.cli.start import list_commands, main, run_command
 
-COMMANDS = commands()
+COMMANDS = list_commands()
 MODULES = ("multibody.animate", "comparison.run")  # started by their own names, too
 BEGIN = """
 import os, signal, sys, types
@@ -148,9 +148,9 @@ def test_workers_of_a_program_elsewhere_import_nothing_there(tmp_path: Path) -> 
     script.parent.mkdir()
     script.write_text(
         "import os\n"
-        "from comparison.runner.processes import process_pool\n"
+        "from comparison.runner.processes import make_process_pool\n"
         "if __name__ == '__main__':\n"
-        "    with process_pool(1) as workers:\n"
+        "    with make_process_pool(1) as workers:\n"
         "        print(workers.submit(os.getenv, 'PYTHONSAFEPATH').result(), os.getenv('PYTHONSAFEPATH'))\n",
         encoding="utf-8",
     )

@@ -20,7 +20,7 @@ from places import ROOT
 import multibody
 import reference
 from comparison.cli import requirement as source
-from comparison.cli.init import TEMPLATE, main, study_files
+from comparison.cli.init import FILES_OF_TEMPLATE, main, make_study_files
 
 
 @pytest.fixture
@@ -37,11 +37,11 @@ def contents(folder: Path) -> set[str]:
 
 
 def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert contents(study) == set(TEMPLATE)
+    assert contents(study) == set(FILES_OF_TEMPLATE)
     template = ROOT / "comparison" / "cli" / "study_template"
-    assert sorted(file.name for file in template.iterdir() if file.is_file()) == sorted(TEMPLATE.values())
+    assert sorted(file.name for file in template.iterdir() if file.is_file()) == sorted(FILES_OF_TEMPLATE.values())
     assert (study / "README.md").read_text(encoding="utf-8").startswith("# my-study\n")
-    assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
+    assert [name for name, content in make_study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
     for name in (".github/workflows/study.yml", ".gitlab-ci.yml"):
         text = (study / name).read_text(encoding="utf-8")
         for command in ("python -m pytest", "phase-resonance run building.toml --grid 8 --check"):
@@ -53,7 +53,9 @@ def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.M
     (here / ".git").mkdir(parents=True)
     before = here.stat().st_ino
     monkeypatch.chdir(here)
-    assert (main(["."]), contents(here), here.stat().st_ino) == (0, set(TEMPLATE), before), "the same directory"
+    assert (main(["."]), contents(here), here.stat().st_ino) == (0, set(FILES_OF_TEMPLATE), before), (
+        "the same directory"
+    )
 
 
 COMMIT = "0123456789abcdef0123456789abcdef01234567"
@@ -82,11 +84,11 @@ def test_the_requirement_is_where_others_find_the_project(
     monkeypatch.setattr(source, "ask_git", lambda folder, verb, *rest: said[verb])
     text = json.dumps(recorded or {})
     monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
-    monkeypatch.setattr(source, "CHECKOUT", tmp_path)
+    monkeypatch.setattr(source, "CHECKOUT_FOLDER", tmp_path)
     if recorded is None:  # not installed: it runs from a checkout
         (tmp_path / "pyproject.toml").touch()
-    assert source.requirement_line() == f"phase-resonance{address}"
-    assert f"\nphase-resonance{address}\n".encode() in study_files("x")["requirements.txt"]
+    assert source.make_requirement_line() == f"phase-resonance{address}"
+    assert f"\nphase-resonance{address}\n".encode() in make_study_files("x")["requirements.txt"]
 
 
 def test_the_script_prints_the_numbers_of_the_worst_phases(

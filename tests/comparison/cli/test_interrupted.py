@@ -30,7 +30,7 @@ from comparison.runner.output import publish_files
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import load_scene
 
 HANGS = 300.0  # s: nothing here takes that long, however busy the machine
@@ -77,8 +77,8 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Sig
     while any(map(still_runs, workers)):
         assert time.monotonic() < end
         time.sleep(0.1)
-    tasks = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("endless", batch=1)))
-    missing = TaskResults(Cache(tmp_path / "report.tiles")).missing(tasks)
+    tasks = make_surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("endless", batch=1)))
+    missing = TaskResults(Cache(tmp_path / "report.tiles")).find_missing(tasks)
     assert {task.argument.model for task in missing} == {"translational", "spatial"}, "the others are whole"
     if number == signal.SIGKILL:
         return
@@ -124,7 +124,7 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     models = "honest", "lies_about_its_error"
     rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
     monkeypatch.setattr(extremes, "COLUMNS", tuple(replace(fake(model), key=model) for model in models))
-    monkeypatch.setattr(extremes, "extreme_cases", lambda: iter(rows))
+    monkeypatch.setattr(extremes, "list_extreme_cases", lambda: iter(rows))
     monkeypatch.chdir(tmp_path)
     words = ["--jobs", "2", "--out", "report"]
     assert extremes.main(words, Interrupted) == 130
@@ -168,7 +168,7 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     fresh = stored(4, "--fresh")
     assert ("only the others are computed" in fresh[0], fresh[1]) == (False, 0)
     hierarchy, scenes = fake_hierarchy(), (load_scene("fig3-I"),)
-    coarse, fine = ([task.key for task in surface_tasks(Study(scenes, n, 1e-3, hierarchy))] for n in (4, 8))
+    coarse, fine = ([task.key for task in make_surface_tasks(Study(scenes, n, 1e-3, hierarchy))] for n in (4, 8))
     out, before, *_ = stored(8)
     assert before == sum(key in coarse for key in fine) > 0
     assert "Level 1 of" not in out, "a level that is done at once has no report of its own"

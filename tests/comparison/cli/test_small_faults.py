@@ -18,7 +18,7 @@ from places import ROOT
 import reference
 from comparison.analyses.ensemble import table as ensemble
 from comparison.cli.arguments import EndedEarlyError, write_and_show
-from comparison.cli.start import commands
+from comparison.cli.start import list_commands
 from reference.problem import load_family
 from reference.problem.scene_file import parse_scene
 
@@ -110,7 +110,7 @@ def test_what_cannot_be_shown_is_written_all_the_same(tmp_path: Path, capsys: py
 @pytest.mark.parametrize("words", [("run", "--grid=--"), ("ensemble", "fig3-I", "--against=--"), ("init", "--ci=--")])
 def test_two_dashes_are_the_value_of_no_option(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     command, *options = words
-    main = import_module(commands()[command].module).main
+    main = import_module(list_commands()[command].module).main
     assert main(options) == 2
     said = capsys.readouterr().err
     assert said == f"command line: argument {options[-1][:-3]}: expected a value, not '--' (--help lists the options)\n"

@@ -17,33 +17,33 @@ import reference
 from comparison.evidence.benchmarks import analysis, readings
 from comparison.evidence.benchmarks.analysis import BenchmarkTable, SideNumbers, _make_benchmark, solve_side
 from comparison.evidence.benchmarks.cases import (
-    LIMITS,
+    MASTODON_EXTREMES,
     BenchmarkCase,
     MotionReading,
     list_cases,
+    load_mastodon_case,
     load_shipped_scene,
-    mastodon_case,
 )
 from comparison.evidence.benchmarks.command import main, print_benchmarks
 from comparison.evidence.benchmarks.table import (
-    FRICTION,
-    MODEL,
+    FRICTION_EXPLANATION,
+    MODEL_EXPLANATION,
     STORED,
     Benchmarks,
-    Number,
     PublishedNumber,
+    SideNumber,
     verdict_line,
-    with_error,
     word_page,
     word_published_number,
+    word_with_error,
 )
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
-CASES = list_cases()
+STATEMENT_CASES = list_cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
-INPUT = Path(os.environ.get("PHASE_RESONANCE_MASTODON", "mastodon-fp-seismic-input.csv"))
-BY_NAME = {case.scene.name: case for case in CASES}
+INPUT_CAUSE = Path(os.environ.get("PHASE_RESONANCE_MASTODON", "mastodon-fp-seismic-input.csv"))
+BY_NAME = {case.scene.name: case for case in STATEMENT_CASES}
 
 
 @pytest.mark.parametrize("name", BY_NAME)
@@ -61,7 +61,10 @@ def _every_number_is_met_or_explained(table: Benchmarks) -> None:
         assert each.seconds[ENGINE] > 0.0
         for row in each.rows:
             assert row.numbers[EQUATIONS].verdict == MET, (each.name, row)
-            assert row.numbers[ENGINE].verdict == MET or row.numbers[ENGINE].explanation == FRICTION, (each.name, row)
+            assert row.numbers[ENGINE].verdict == MET or row.numbers[ENGINE].explanation == FRICTION_EXPLANATION, (
+                each.name,
+                row,
+            )
 
 
 def test_a_side_that_fails_costs_the_others_nothing():
@@ -82,27 +85,27 @@ def test_the_engine_meets_all_published_numbers(within):
             within(abs(found.value - row.published) / max(found.error + row.uncertainty, 1e-300), 1.0)
 
 
-@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
+@pytest.mark.skipif(not INPUT_CAUSE.exists(), reason="the input motion of MASTODON's test is not shipped")
 def test_both_sides_meet_mastodon_within_three_percent():
     """To 3 mm, as it was read, by the small equations; without heating they are 15 to 83 mm smaller."""
-    case = mastodon_case(INPUT)
+    case = load_mastodon_case(INPUT_CAUSE)
     for row in computed(BenchmarkTable([case])).benchmarks[0].rows:
         equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
         assert equations.verdict == engine.verdict
-        assert equations.verdict == MET or equations.explanation == MODEL
+        assert equations.verdict == MET or equations.explanation == MODEL_EXPLANATION
         assert 0.975 < equations.value / row.published < 1.0
         assert abs(engine.value - smoothed.value) <= engine.error + smoothed.error, "both sides agree"
     cold = case.scene.with_values({"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}})
     heated, plain = (
-        1e3 * np.array(readings.position_ranges(reference.trajectory(each, (0.0, 0.0), "small", tolerance=1e-5)))
+        1e3 * np.array(readings.find_position_ranges(reference.trajectory(each, (0.0, 0.0), "small", tolerance=1e-5)))
         for each in (case.scene, cold)
     )
-    assert np.abs(heated - LIMITS).max() < 3.1
-    assert (np.abs(plain - LIMITS) > 15.0).all()
+    assert np.abs(heated - MASTODON_EXTREMES).max() < 3.1
+    assert (np.abs(plain - MASTODON_EXTREMES) > 15.0).all()
 
 
 def test_the_error_covers_that_of_few_instants(monkeypatch):
-    monkeypatch.setattr(analysis, "SAMPLES", 201)
+    monkeypatch.setattr(analysis, "READ_SAMPLES", 201)
     solved, known = solve_side((BY_NAME["sdnd104-15"], EQUATIONS)), BY_NAME["sdnd104-15"].published[0].published
     assert 1e-4 < abs(solved.values[0] - known) <= solved.errors[0] < 0.01
 
@@ -113,7 +116,7 @@ def _words(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]
         "b",
         "c",
         [PublishedNumber("x", "mm", 1.0, 0.01)],
-        MotionReading(readings.mean_period),
+        MotionReading(readings.compute_mean_period),
         load_shipped_scene("pendulum"),
     )
     case = replace(case, difference=difference)
@@ -126,16 +129,22 @@ def test_a_number_is_met_within_both_errors():
     near, far = (1.005, 1e-3), (1.2, 1e-3)
     assert _words(equations=near, smoothed=near, engine=near)[ENGINE] == "met"
     assert _words(equations=(1.0105, 1e-3), smoothed=far, engine=far)[EQUATIONS] == "met"
-    assert _words(equations=near, smoothed=far, engine=(1.2015, 1e-3))[ENGINE] == f"not met (by +20 %): {FRICTION}"
+    assert (
+        _words(equations=near, smoothed=far, engine=(1.2015, 1e-3))[ENGINE]
+        == f"not met (by +20 %): {FRICTION_EXPLANATION}"
+    )
     assert _words(equations=near, smoothed=near, engine=far)[ENGINE] == "not met (by +20 %): not explained"
     assert _words(equations=far, smoothed=far, engine=far)[EQUATIONS] == "not met (by +20 %): not explained"
     low = (0.8, 1e-3)
-    assert _words("heating", equations=low, smoothed=far, engine=far)[EQUATIONS] == f"not met (by −20 %): {MODEL}"
+    assert (
+        _words("heating", equations=low, smoothed=far, engine=far)[EQUATIONS]
+        == f"not met (by −20 %): {MODEL_EXPLANATION}"
+    )
     nothing = (math.nan, math.nan)
     assert _words(equations=nothing, smoothed=far, engine=(1.0, math.nan)) == {
-        EQUATIONS: "not compared", SMOOTHED: f"not met (by +20 %): {FRICTION}", ENGINE: "not compared",
+        EQUATIONS: "not compared", SMOOTHED: f"not met (by +20 %): {FRICTION_EXPLANATION}", ENGINE: "not compared",
     }  # fmt: skip
-    assert with_error(Number(2.02423, 3e-4, "met")) == "2.0242 ± 3e-04"
+    assert word_with_error(SideNumber(2.02423, 3e-4, "met")) == "2.0242 ± 3e-04"
 
 
 def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
@@ -168,7 +177,7 @@ def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys):
 
 def test_the_page_in_docs_has_every_benchmark():
     text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
-    for case in CASES:
+    for case in STATEMENT_CASES:
         section = text.split(f"\n## {case.title}\n", 1)[1].split("\n## ", 1)[0]
         assert f"Source: {case.source}. Evidence for: {case.evidence}." in section
         assert f"v_reg of the engine: {case.regularization:g} m/s" in section
@@ -195,14 +204,14 @@ def test_every_number_stands_under_its_side(capsys):
 def test_the_largest_error_names_its_side_and_is_the_largest_share_not_the_largest_number():
     (known,) = known_benchmarks().benchmarks
     (row,) = known.rows[:1]
-    met = Number(row.published, 1e-6, MET)
+    met = SideNumber(row.published, 1e-6, MET)
 
     def off(share, published):
-        return Number(published * (1.0 + share), 1e-9, NOT_MET)
+        return SideNumber(published * (1.0 + share), 1e-9, NOT_MET)
 
     force = replace(row, quantity="force", published=2e4, uncertainty=1.0, numbers={})
     one = replace(row, numbers={EQUATIONS: off(-0.05, row.published), SMOOTHED: met, ENGINE: met})
-    numbers = {EQUATIONS: Number(2e4, 1.0, MET), SMOOTHED: off(0.5, 2e4), ENGINE: off(0.02, 2e4)}
+    numbers = {EQUATIONS: SideNumber(2e4, 1.0, MET), SMOOTHED: off(0.5, 2e4), ENGINE: off(0.02, 2e4)}
     line = verdict_line(Benchmarks([replace(known, rows=[replace(force, numbers=numbers), one])], {}))
     assert "2 met, 2 not met (largest: frame, isolation period, equations, −5 %), 0 not compared" in line
     numbers = {**numbers, ENGINE: off(0.2, 2e4)}
@@ -213,15 +222,15 @@ def test_the_largest_error_names_its_side_and_is_the_largest_share_not_the_large
 @pytest.mark.parametrize(
     ("number", "code", "said"),
     [
-        (Number(2.0242, 1e-6, MET), 0, "2 met, 0 not met, 0 not compared"),
+        (SideNumber(2.0242, 1e-6, MET), 0, "2 met, 0 not met, 0 not compared"),
         (
-            Number(2.0, 1e-3, NOT_MET, FRICTION),
+            SideNumber(2.0, 1e-3, NOT_MET, FRICTION_EXPLANATION),
             0,
             "1 met, 1 not met (largest: frame, isolation period, engine, −1.2 %),",
         ),
-        (Number(2.0, 1e-3, NOT_MET, MODEL), 0, f"1 not met: {MODEL}."),
-        (Number(2.0, 1e-3, NOT_MET), 1, "1 not met and not explained."),
-        (Number(None, None, NOT_COMPARED), 1, "1 met, 0 not met, 1 not compared"),
+        (SideNumber(2.0, 1e-3, NOT_MET, MODEL_EXPLANATION), 0, f"1 not met: {MODEL_EXPLANATION}."),
+        (SideNumber(2.0, 1e-3, NOT_MET), 1, "1 not met and not explained."),
+        (SideNumber(None, None, NOT_COMPARED), 1, "1 met, 0 not met, 1 not compared"),
     ],
 )
 def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, monkeypatch, tmp_path, capsys):

@@ -15,24 +15,30 @@ from terminal_tables import rows_under
 from comparison.cli import computing
 from comparison.evidence.claims import table as table_module  # table: what a test made
 from comparison.evidence.claims.checks import StatementVerdict, count_peaks
-from comparison.evidence.claims.claims import CLAIMS, Claim
+from comparison.evidence.claims.claims import CLAIMS, PaperStatement
 from comparison.evidence.claims.command import main
-from comparison.evidence.claims.evidence import MOTIONS, CaseInReading, Evidence, gather_evidence
+from comparison.evidence.claims.evidence import MOTION_PHASES, CaseInReading, Evidence, gather_evidence
 from comparison.evidence.claims.feature import FEATURE
-from comparison.evidence.claims.peaks_and_valleys import Counts
-from comparison.evidence.claims.readings import AS_INTEGRATED, CASES, LITERAL_SUPREMUM, READINGS, effective_reading
-from comparison.evidence.claims.smoothness import Bend
-from comparison.evidence.claims.table import Claims, ClaimTable, claims_line, surfaces_of_study, table_of
+from comparison.evidence.claims.peaks_and_valleys import PeakCounts
+from comparison.evidence.claims.readings import (
+    AS_INTEGRATED,
+    LITERAL_SUPREMUM,
+    READINGS,
+    STATEMENT_CASES,
+    effective_reading,
+)
+from comparison.evidence.claims.smoothness import SharpestCurvature
+from comparison.evidence.claims.table import Claims, ClaimTable, make_claim_table, select_study_surfaces, word_claims
 from comparison.evidence.convergence.analysis import Convergence
-from comparison.evidence.forced_ratios import forced_ratios
+from comparison.evidence.forced_ratios import compute_forced_ratios
 from comparison.evidence.scaling.analysis import Scaling
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import SMALL
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import label_surfaces, surface_tasks
-from comparison.verdicts import MEANING, MET, NOT_COMPARED, NOT_MET, Verdict
+from comparison.surfaces.surfaces import label_surfaces, make_surface_tasks
+from comparison.verdicts import MEANING_OF_VERDICT, MET, NOT_COMPARED, NOT_MET, Verdict
 from reference import amplification, modes, trajectory
 from reference.problem import builtin_scenes, load_scene
 
@@ -40,11 +46,13 @@ Array = NDArray[np.float64]
 N = 16
 PAPERS = Study(tuple(map(load_scene, builtin_scenes())), 4, 1e-3)  # every scene that the statements are about
 A1, A2 = np.meshgrid(*[2.0 * np.pi * np.arange(N) / N] * 2, indexing="ij")
-SMOOTH, FOLD = Bend(2.0, (0.0, 0.0)), Bend(1.0, (0.5, 1.0))
+SMOOTH, FOLD = SharpestCurvature(2.0, (0.0, 0.0)), SharpestCurvature(1.0, (0.5, 1.0))
 RESONANT = ((0.9, 1.0), (1.1, 1.0))  # s: both harmonics at T_c (1 -+ 0.1)
 
 
-def _seen(mu_1: Array, mu_2: Array, bend: Bend = FOLD, apart: float = 1.0, swing: float = 0.01) -> Evidence:
+def _seen(
+    mu_1: Array, mu_2: Array, bend: SharpestCurvature = FOLD, apart: float = 1.0, swing: float = 0.01
+) -> Evidence:
     mu = np.stack([mu_1, mu_2], axis=-1)
     return Evidence(mu, 1e-4, ("ok",), (bend, bend), (apart, apart), swing, RESONANT)
 
@@ -65,7 +73,7 @@ PAPER: Mapping[str, Evidence] = {  # surfaces as the paper describes them
 }
 
 
-def _claim(about: str, words: str) -> Claim:
+def _claim(about: str, words: str) -> PaperStatement:
     return next(claim for claim in CLAIMS if claim.figure == about and words in claim.says)
 
 
@@ -80,7 +88,7 @@ FOUND = {
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda c: f"{c.figure}: {c.says}")
-def test_every_claim_holds_on_surfaces_as_described(claim: Claim) -> None:
+def test_every_claim_holds_on_surfaces_as_described(claim: PaperStatement) -> None:
     verdict = claim.verdict(PAPER)
     assert verdict == StatementVerdict(MET, FOUND.get(claim.says, verdict.reason))
 
@@ -177,20 +185,22 @@ def test_a_verdict_without_its_reason_is_refused() -> None:
 
 def _table(integrated: str, supremum: str) -> ClaimTable:
     """A table of verdicts, a letter for each statement: + met, - not met, ? not compared."""
-    words: Mapping[str, Verdict] = dict(zip("+-?", MEANING))
+    words: Mapping[str, Verdict] = dict(zip("+-?", MEANING_OF_VERDICT))
     columns = zip((AS_INTEGRATED, LITERAL_SUPREMUM), (integrated, supremum))
-    return table_of({r.name: [StatementVerdict(words[c], f"{k}{c}") for k, c in enumerate(row)] for r, row in columns})
+    return make_claim_table(
+        {r.name: [StatementVerdict(words[c], f"{k}{c}") for k, c in enumerate(row)] for r, row in columns}
+    )
 
 
 KNOWN = _table("+++++++---------", "+++++++++-------")
 
 
 def test_the_line_counts_each_reading_by_its_name() -> None:
-    assert claims_line(KNOWN) == (
+    assert word_claims(KNOWN) == (
         "Of the paper's 16 statements about its figures, with the parameters as printed, 7 are met as integrated and 9 "
         "as literal supremum; its plots were not available, and the text at hand names no authors and no year."
     )
-    assert "9 are met as integrated and 7 as literal supremum;" in claims_line(
+    assert "9 are met as integrated and 7 as literal supremum;" in word_claims(
         _table(*("+" * k + "-" * (16 - k) for k in (9, 7)))
     )
 
@@ -198,7 +208,7 @@ def test_the_line_counts_each_reading_by_its_name() -> None:
 def test_the_page_says_the_same_in_both_places() -> None:
     results = SimpleNamespace(claims=KNOWN)
     assert FEATURE.section is not None
-    assert FEATURE.section.lead(results) == claims_line(KNOWN)
+    assert FEATURE.section.lead(results) == word_claims(KNOWN)
     assert FEATURE.section.verdict(results) == "of 16 statements, 7 are met as integrated and 9 as literal supremum"
 
 
@@ -208,8 +218,8 @@ def test_what_is_not_compared_is_neither_met_nor_not_met() -> None:
         "as integrated": {"met": 5, "not met": 9, "not compared": 2},
         "literal supremum": {"met": 6, "not met": 9, "not compared": 1},
     }
-    assert "5 are met as integrated and 6 as literal supremum, 2 not compared (as integrated)," in claims_line(lacking)
-    assert ", 1 not compared (literal supremum);" in claims_line(lacking)
+    assert "5 are met as integrated and 6 as literal supremum, 2 not compared (as integrated)," in word_claims(lacking)
+    assert ", 1 not compared (literal supremum);" in word_claims(lacking)
 
 
 def test_every_statement_has_its_own_verdicts_with_their_reasons() -> None:
@@ -240,10 +250,14 @@ def test_a_reading_is_judged_by_its_own_surfaces(monkeypatch: pytest.MonkeyPatch
 
 def test_readings_share_every_surface_they_can() -> None:
     for case in ("fig4-viscous", "fig3-II oscillator"):
-        assert {effective_reading(reading, CASES[case]()) for reading in READINGS} == {LITERAL_SUPREMUM}
-    assert effective_reading(AS_INTEGRATED, CASES["fig4-dry"]()) == AS_INTEGRATED
+        assert {effective_reading(reading, STATEMENT_CASES[case]()) for reading in READINGS} == {LITERAL_SUPREMUM}
+    assert effective_reading(AS_INTEGRATED, STATEMENT_CASES["fig4-dry"]()) == AS_INTEGRATED
     asked = [task.argument for task in Claims(N).tasks(PAPERS)]
-    assert len(asked) == len({(question.case, question.reading.cutoff) for question in asked}) == 2 * len(CASES) - 2
+    assert (
+        len(asked)
+        == len({(question.case, question.reading.cutoff) for question in asked})
+        == 2 * len(STATEMENT_CASES) - 2
+    )
 
 
 def _planted_result(batch: Batch) -> BatchResult:
@@ -258,20 +272,20 @@ def test_the_surfaces_of_the_study_are_used_where_it_has_the_grid() -> None:
     """Every second phase of a finer study; not of another grid, a model that is missing or a scene that was changed."""
     scenes = tuple(load_scene(name) for name in builtin_scenes())
     study = Study(scenes, 8, 1e-3, (SMALL,))
-    batches = [task.argument for task in surface_tasks(study)]
+    batches = [task.argument for task in make_surface_tasks(study)]
     surfaces = label_surfaces(study, batches, [_planted_result(batch) for batch in batches])
     for case in ("fig3-I", "fig4-viscous"):
-        known = surfaces_of_study(study, surfaces, case, LITERAL_SUPREMUM, 4)
+        known = select_study_surfaces(study, surfaces, case, LITERAL_SUPREMUM, 4)
         assert known is not None
         found = surfaces["mu"].sel(scene=case, model="small").values[:2, ::2, ::2]
         assert np.array_equal(known.mu, np.moveaxis(found, 0, -1), equal_nan=True)
         assert (known.case, known.mu.shape, known.error, known.statuses) == (case, (4, 4, 2), 0.01, ("ok",))
-    assert surfaces_of_study(study, surfaces, "fig3-I", LITERAL_SUPREMUM, 3) is None
-    assert surfaces_of_study(study, surfaces, "fig3-I", AS_INTEGRATED, 4) is None
-    assert surfaces_of_study(study, surfaces, "fig3-I alone", LITERAL_SUPREMUM, 4) is None
-    assert surfaces_of_study(study, None, "fig3-I", LITERAL_SUPREMUM, 4) is None
+    assert select_study_surfaces(study, surfaces, "fig3-I", LITERAL_SUPREMUM, 3) is None
+    assert select_study_surfaces(study, surfaces, "fig3-I", AS_INTEGRATED, 4) is None
+    assert select_study_surfaces(study, surfaces, "fig3-I alone", LITERAL_SUPREMUM, 4) is None
+    assert select_study_surfaces(study, None, "fig3-I", LITERAL_SUPREMUM, 4) is None
     changed = tuple(scene.with_values({"duration": 19.0}) for scene in scenes)
-    assert surfaces_of_study(replace(study, scenes=changed), surfaces, "fig3-I", LITERAL_SUPREMUM, 4) is None
+    assert select_study_surfaces(replace(study, scenes=changed), surfaces, "fig3-I", LITERAL_SUPREMUM, 4) is None
     tasks = {(t.argument.case, t.argument.reading): t.argument.known for t in Claims(4).tasks(study, surfaces)}
     assert tasks["fig3-I", LITERAL_SUPREMUM] is not None
     assert tasks["fig3-I", AS_INTEGRATED] is None
@@ -297,7 +311,7 @@ def test_the_command_prints_the_table(monkeypatch, capsys, tmp_path, out):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setattr(table_module, "gather_evidence", _known_evidence)
-    monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
+    monkeypatch.setattr(computing, "make_compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
     assert main(["--jobs", "2", "--grid", "16", "--out", out], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
     rows = rows_under(printed, "as integrated", "literal supremum")
@@ -307,7 +321,7 @@ def test_the_command_prints_the_table(monkeypatch, capsys, tmp_path, out):
     assert printed.splitlines()[-1].startswith("Of the paper's 16 statements")
     assert "16 are met as integrated and 14 as literal supremum;" in printed
     ratios = [row for row in rows_under(printed, "ratio", "without decay") if row["scene"] == "fig3-II"]
-    expected = forced_ratios(load_scene("fig3-II"))
+    expected = compute_forced_ratios(load_scene("fig3-II"))
     assert [row["ratio"] for row in ratios] == [f"{each.ratio:.2f}" for each in expected]
     assert [row["without decay"] for row in ratios] == [f"{each.steady:.2f}" for each in expected]
     stores = {".": "here.tiles", "report": "here/report.tiles"}
@@ -321,9 +335,9 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
     assert (dry.error_message, dry.mu.shape) == ("", (4, 4, 2))
     assert max(dry.apart) < 1e-9
     scene, unequal = load_scene("fig4-dry"), load_scene("fig3-I")
-    reach = amplification(scene, MOTIONS, "small", full=True).displacement.max()
+    reach = amplification(scene, MOTION_PHASES, "small", full=True).displacement.max()
     assert dry.swing == pytest.approx((reach / scene.radius) ** 2, rel=1e-3)
-    moved = [trajectory(unequal, phase, equations="small").position[..., :2] for phase in MOTIONS]
+    moved = [trajectory(unequal, phase, equations="small").position[..., :2] for phase in MOTION_PHASES]
     apart = [np.abs(each[..., 0] - each[..., 1]).max(axis=0) / np.abs(each).max(axis=(0, 2)) for each in moved]
     assert len({*np.argmax(apart, axis=0)}) == 2, "each body has a worst motion of its own"
     integrated, supremum = (gather_evidence(CaseInReading("fig3-I", reading, 4)) for reading in READINGS)
@@ -337,7 +351,7 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
 
 def test_peaks_that_only_the_cut_square_has_are_as_drawn() -> None:
     """One peak at the corner is four where the square is cut, and none on the profile."""
-    found = count_peaks(Evidence(CORNERS[..., None], 1e-4, ("ok",)), Counts(4, 1))
+    found = count_peaks(Evidence(CORNERS[..., None], 1e-4, ("ok",)), PeakCounts(4, 1))
     assert found == StatementVerdict(MET, "only as drawn: periodic 1 and 1; drawn 4 and 1; profile 0 and 0")
 
 
@@ -347,28 +361,28 @@ def test_a_range_of_a_twentieth_of_the_mean_or_of_the_errors_is_flat(half: float
 
 
 def test_the_platform_alone_is_loaded_close_to_its_own_period() -> None:
-    alone = CASES["fig3-I alone"]()
+    alone = STATEMENT_CASES["fig3-I alone"]()
     gaps = np.array(alone.excitation.periods) / float(modes(alone).period[0, 0]) - 1.0
     assert gaps == pytest.approx([-0.1, 0.1])
-    oscillator = CASES["fig3-II oscillator"]()
+    oscillator = STATEMENT_CASES["fig3-II oscillator"]()
     assert (oscillator.isolator.period, oscillator.friction_coefficient) == (1.5, 0.0), "T_3x of the second body"
 
 
 def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:
     scene = load_scene("fig3-II")
-    for each in forced_ratios(scene):
+    for each in compute_forced_ratios(scene):
         soft = {"x": 1.5, "y": 1.2}[each.axis]
         s = complex(-0.3 / each.period, 2.0 * np.pi / each.period)
         assert each.steady == pytest.approx(1.0 / abs(1.0 - (soft / each.period) ** 2))
         assert each.ratio == pytest.approx(1.0 / abs(1.0 + (s * soft / (2.0 * np.pi)) ** 2))
-    assert [round(each.steady, 2) for each in forced_ratios(scene) if each.axis == "y"] == [1.29, 5.26]
+    assert [round(each.steady, 2) for each in compute_forced_ratios(scene) if each.axis == "y"] == [1.29, 5.26]
     body = scene.bodies[1].model_dump(exclude_none=True)
     light = scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True), body, {**body, "mass": 1e-9}]})
-    two = [each.ratio for each in forced_ratios(scene)]
-    three = [each.ratio for each in forced_ratios(light)]
+    two = [each.ratio for each in compute_forced_ratios(scene)]
+    three = [each.ratio for each in compute_forced_ratios(light)]
     assert three[::2] == pytest.approx(two, rel=1e-6)
     assert three[1::2] == pytest.approx([each**2 for each in two], rel=1e-6), "each body drives the next alike"
-    assert forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
+    assert compute_forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
 
 
 def test_the_fold_of_the_denominator_is_in_viscous_surfaces() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy, sliding
 
-from comparison.evidence.effective.analysis import PHASES, read_back, values_of_scene
+from comparison.evidence.effective.analysis import PHASES, read_scene_values, read_values_back
 from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
@@ -20,7 +20,7 @@ def _model(**settings: object) -> Model:
 
 
 def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
-    values = read_back((load_scene("fig3-I"), _model(**TRUE)))
+    values = read_values_back((load_scene("fig3-I"), _model(**TRUE)))
     assert values.error_message == ""
     found = [values.radius, values.mass, values.contact, values.friction]
     assert found == pytest.approx([TRUE["radius"], TRUE["mass"], TRUE["mass"] * 9.81, TRUE["friction"]], rel=1e-9)
@@ -36,8 +36,8 @@ def jolted(scene: Scene, phase: Sequence[float], **values: float) -> Trajectory:
 
 def test_one_instant_tells_nothing_of_the_friction() -> None:
     model = replace(_model(**TRUE), trajectory="test_effective:jolted")
-    assert read_back((load_scene("fig3-I"), model)).friction == pytest.approx(TRUE["friction"], rel=1e-9)
-    in_oil = read_back((load_scene("fig4-viscous"), _model(**TRUE)))
+    assert read_values_back((load_scene("fig3-I"), model)).friction == pytest.approx(TRUE["friction"], rel=1e-9)
+    in_oil = read_values_back((load_scene("fig4-viscous"), _model(**TRUE)))
     assert in_oil.friction == pytest.approx(TRUE["friction"], rel=1e-9), "over the speed"
 
 
@@ -53,11 +53,13 @@ def test_of_friction_that_varies_the_fast_one_under_the_weight_is_read(law: dict
     scene = load_scene("fig3-I").with_values({"isolator.friction": law, "duration": 3.0})
     scene = scene.with_values({"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [3.0, 0.0]]})
     fast = law.get("fast", law["slow"])
-    assert values_of_scene(scene).friction == fast
-    assert read_back((scene, EXACT)).friction == pytest.approx(fast, rel=1e-5)
+    assert read_scene_values(scene).friction == fast
+    assert read_values_back((scene, EXACT)).friction == pytest.approx(fast, rel=1e-5)
     if "rate" in law:
         slowly = scene.with_values({"isolator.friction.rate": 0.1})
-        assert np.isnan(read_back((slowly, EXACT)).friction), "a motion that sees no fast friction does not tell it"
+        assert np.isnan(read_values_back((slowly, EXACT)).friction), (
+            "a motion that sees no fast friction does not tell it"
+        )
 
 
 def test_the_scene_states_what_the_motion_is_held_against() -> None:
@@ -65,7 +67,7 @@ def test_the_scene_states_what_the_motion_is_held_against() -> None:
     scene = load_scene("fig3-II").with_values({"excitation.amplitudes": upward, "duration": 2.0})
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     expected = [scene.radius, 0.1, 2.0, 2.0 * (9.81 + ground[2]), np.linalg.norm(ground)]
-    for values in (values_of_scene(scene), read_back((scene, EXACT))):
+    for values in (read_scene_values(scene), read_values_back((scene, EXACT))):
         told = [values.radius, values.friction, values.mass, values.contact, values.acceleration]
         assert told == pytest.approx(expected, rel=1e-6), values.model
 
@@ -78,7 +80,7 @@ def test_a_record_is_read_to_its_end(tmp_path: Path) -> None:
     table = load_scene("fig3-I").model_dump(exclude_none=True) | {"duration": 10.0}
     table["excitation"] = {"record": str(tmp_path / "late.csv")}
     scene = Scene.model_validate(table)
-    values = read_back((scene, EXACT))
+    values = read_values_back((scene, EXACT))
     assert (values.radius, values.friction) == pytest.approx((scene.radius, 0.1), rel=1e-6)
 
 
@@ -92,7 +94,7 @@ def test_a_record_is_read_to_its_end(tmp_path: Path) -> None:
     ids=["fails", "ends early", "never moves"],
 )
 def test_a_motion_that_tells_nothing_has_no_value(model: Model, error_message: str, mass: float) -> None:
-    values = read_back((load_scene("fig3-I"), model))
+    values = read_values_back((load_scene("fig3-I"), model))
     assert values.error_message == error_message
     assert np.isnan([values.radius, values.friction]).all()
     assert [values.mass, values.contact] == pytest.approx([mass, 9.81 * mass], rel=1e-12, nan_ok=True)
@@ -102,18 +104,18 @@ def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
     platform, body = load_scene("fig3-I").model_dump(exclude_none=True)["bodies"]
     bodies = [platform, {**body, "damping": 0.2}, {**body, "damping": [0.7, 0.3], "height": 2.0 * body["height"]}]
     scene = load_scene("fig3-I").with_values({"bodies": bodies, "duration": 2.0})
-    assert values_of_scene(scene).damping == 0.7
+    assert read_scene_values(scene).damping == 0.7
     models = {model.key: model for model in MODEL_HIERARCHY}
     for key in ("small", "exact", "regularised", "translational"):
-        assert read_back((scene, models[key])).damping == pytest.approx(0.7, rel=1e-3), key
-    assert np.isnan(read_back((load_scene("fig3-I").with_values({"duration": 2.0}), models["exact"])).damping)
+        assert read_values_back((scene, models[key])).damping == pytest.approx(0.7, rel=1e-3), key
+    assert np.isnan(read_values_back((load_scene("fig3-I").with_values({"duration": 2.0}), models["exact"])).damping)
 
 
 def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
     bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
     scene = load_scene("fig3-I").with_values({"duration": 2.0, "bodies.1.period": None, "bodies.1.bars": bars})
-    assert values_of_scene(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
+    assert read_scene_values(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
     for model in (*MODEL_HIERARCHY[-2:], SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL):
         own = scene.softened() if "softened" in model.settings else scene
-        assert read_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key
-    assert np.isnan(values_of_scene(load_scene("fig3-I")).stiffness)
+        assert read_values_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key
+    assert np.isnan(read_scene_values(load_scene("fig3-I")).stiffness)

@@ -16,9 +16,9 @@ from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import CellVerdict
-from comparison.evidence.extremes.rows import extreme_cases
-from comparison.evidence.extremes.scenes import scene
-from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
+from comparison.evidence.extremes.rows import list_extreme_cases
+from comparison.evidence.extremes.scenes import make_plain_scene
+from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
 
@@ -49,7 +49,7 @@ def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
     assert found["honest"][0] == CellVerdict.CONVERGED
 
 
-AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
+AGAINST_A_RULE = replace(PLAIN, scene=make_plain_scene(friction=-0.1))
 
 
 @pytest.mark.parametrize(
@@ -75,13 +75,13 @@ AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
     ],
 )
 def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
-    cell = analysis.solve_cell(analysis.Cell(row, column))
+    cell = analysis.solve_cell(analysis.MatrixCell(row, column))
     assert (cell.verdict, reason in cell.reason) == (verdict, True), cell.reason
 
 
 def test_the_equations_fail_at_no_extreme():
     groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
-    chosen = [row for row in analysis.select_quick(list(extreme_cases())) if row.group in groups]
+    chosen = [row for row in analysis.select_quick(list(list_extreme_cases())) if row.group in groups]
     assert {row.group for row in chosen} == groups
     for cell in analysis.list_cells(chosen):
         entry = analysis.solve_cell(cell)
@@ -111,24 +111,26 @@ QUANTITIES = {
 
 def test_a_row_has_the_quantity_that_it_names():
     seen = set()
-    for row in extreme_cases():
+    for row in list_extreme_cases():
         number = row.title.replace("-g exactly", "9.81").partition(",")[0]
         if row.group in QUANTITIES and re.fullmatch(r"[-+.\de]+|inf", number) and not row.invalid:
-            found = QUANTITIES[row.group](analysis.read_scene(row.scene))
+            found = QUANTITIES[row.group](analysis.make_extreme_scene(row.scene))
             assert found == pytest.approx(float(number), rel=1e-2), row.name
             seen.add(row.group)
         for key in ("regularization", "cutoff", "contact_stiffness", "step", "tolerance"):
             if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
                 assert row.settings[key] == pytest.approx(float(row.title)), row.name
     assert seen == {*QUANTITIES}
-    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(list(extreme_cases()))}
+    asked = {
+        ((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(list(list_extreme_cases()))
+    }
     assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    extremes = analysis.Extremes(analysis.select_quick(list(extreme_cases())), limit=120.0)
-    matrix = computed(extremes, process_pool)
+    extremes = analysis.Extremes(analysis.select_quick(list(list_extreme_cases())), limit=120.0)
+    matrix = computed(extremes, make_process_pool)
     assert [
         (row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(CellVerdict.FAILED)
     ] == []
@@ -139,7 +141,7 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
     columns = tuple(replace(fake(model), key=model) for model in ("calls_nan_ok", "unable", "at_the_rim", "honest"))
     plain = replace(PLAIN, columns=tuple(each.key for each in columns))
     monkeypatch.setattr("comparison.evidence.extremes.command.COLUMNS", columns)
-    monkeypatch.setattr("comparison.evidence.extremes.command.extreme_cases", lambda: iter([plain]))
+    monkeypatch.setattr("comparison.evidence.extremes.command.list_extreme_cases", lambda: iter([plain]))
     assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
     limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
     assert limit == "limit: anything plain, unable: step limit"
@@ -151,7 +153,7 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    brief, asked = analysis.read_scene(scene(duration=0.5)), {}
+    brief, asked = analysis.make_extreme_scene(make_plain_scene(duration=0.5)), {}
     usual = multibody.levels(brief, "translational", 1e-2, 1e-3)[0]
     monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(first=levels[0]))
     amplification(brief, [(0.3, 1.1)], contact_stiffness=1e4)
@@ -167,26 +169,29 @@ def test_the_engine_does_the_work_that_a_row_allows(monkeypatch: pytest.MonkeyPa
     asked: list[Any] = []
     monkeypatch.setattr(analysis, "import_function", lambda path: lambda *given, **settings: asked.append(settings))
     column = replace(fake("honest"), settings={"max_work": 6e5})
-    analysis.solve_cell(analysis.Cell(replace(PLAIN, max_work=123.0), column))
+    analysis.solve_cell(analysis.MatrixCell(replace(PLAIN, max_work=123.0), column))
     assert asked == [{"max_work": 123.0, "tolerance": 1e-3}]
 
 
 def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
     monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
-    assert analysis.solve_cell(analysis.Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
-    assert "gives up" not in analysis.solve_cell(analysis.Cell(PLAIN, fake("honest"))).reason
+    assert analysis.solve_cell(analysis.MatrixCell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
+    assert "gives up" not in analysis.solve_cell(analysis.MatrixCell(PLAIN, fake("honest"))).reason
 
 
 def test_a_value_with_an_error_as_large_as_itself_is_not_confirmed() -> None:
     mu, status = np.array([[1.0, 2.0]]), (Outcome.TOLERANCE_NOT_MET.value,)
-    assert [analysis.has_claim(analysis.Reply(mu, share * mu, status)) for share in (1.0, 0.9)] == [False, True]
+    assert [analysis.makes_checkable_claim(analysis.ModelAnswer(mu, share * mu, status)) for share in (1.0, 0.9)] == [
+        False,
+        True,
+    ]
 
 
 def test_a_motion_that_leaves_the_model_is_refused() -> None:
     mu, verdicts = np.full((1, 2), np.nan), {}
     for outcome in Outcome:
-        reply = analysis.Reply(mu, mu, (outcome.value,))
-        verdicts.setdefault(str(analysis.judge_reply(reply, [reply], 1e-3, False, ()).verdict), set()).add(
+        reply = analysis.ModelAnswer(mu, mu, (outcome.value,))
+        verdicts.setdefault(str(analysis.judge_answer(reply, [reply], 1e-3, False, ()).verdict), set()).add(
             outcome.value
         )
     physics = {"rim reached", "travel reached", "contact lost", "overturned", "painleve paradox"}
@@ -196,10 +201,10 @@ def test_a_motion_that_leaves_the_model_is_refused() -> None:
 
 def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
     reply, known = (
-        analysis.Reply(np.array([[10.0 + off, 1.0 + 0.1 * off]]), np.array([[error, 0.01 * error]]), ("ok",))
+        analysis.ModelAnswer(np.array([[10.0 + off, 1.0 + 0.1 * off]]), np.array([[error, 0.01 * error]]), ("ok",))
         for off, error in ((0.05, 0.1), (0.0, 0.0))
     )
-    entry = analysis.judge_reply(reply, [known], 1e-1, False, ())
+    entry = analysis.judge_answer(reply, [known], 1e-1, False, ())
     assert (entry.verdict, entry.reason[:14]) == ("FAILED", "mu_2 is off by"), "mu_1 is off by more, and allowed to be"
 
 
@@ -217,16 +222,17 @@ def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
 )
 def test_an_error_half_of_what_it_should_be_fails(off: float, claimed: float, finer: float, verdict: str) -> None:
     mu = np.array([[1.0, 2.0], [1.0, 2.0]])
-    reply = analysis.Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off]], claimed * mu, ("ok", "ok"))
+    reply = analysis.ModelAnswer(mu * [[1.0, 1.0], [1.0, 1.0 + off]], claimed * mu, ("ok", "ok"))
     assert (
-        analysis.judge_reply(reply, [analysis.Reply(mu, finer * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict
+        analysis.judge_answer(reply, [analysis.ModelAnswer(mu, finer * mu, ("ok", "ok"))], 1e-2, False, ()).verdict
+        == verdict
     )
 
 
 @pytest.mark.parametrize("error", [(-1e-5, 1e-5), (1e-5, -1e-5), (1e-5, np.nan), (1e-5, 3e-3)])
 def test_an_error_estimate_that_is_none_of_one_body_fails(error: tuple[float, float]) -> None:
     mu, ok = np.array([[1.0, 2.0]]), (Outcome.OK.value,)
-    finer = analysis.Reply(mu, 1e-6 * mu, ok)
-    verdicts = [analysis.judge_reply(analysis.Reply(mu, np.array([each]), ok), [finer], 1e-3, False, ()).verdict
+    finer = analysis.ModelAnswer(mu, 1e-6 * mu, ok)
+    verdicts = [analysis.judge_answer(analysis.ModelAnswer(mu, np.array([each]), ok), [finer], 1e-3, False, ()).verdict
                 for each in (error, (1e-5, 1e-5))]  # fmt: skip
     assert verdicts == [CellVerdict.FAILED, CellVerdict.CONVERGED]

@@ -13,11 +13,11 @@ import pytest
 from runs import Here
 from scipy.io import savemat
 
-from comparison.evidence.benchmarks.cases import mastodon_case
+from comparison.evidence.benchmarks.cases import load_mastodon_case
 from comparison.evidence.validation import files
 from comparison.evidence.validation.command import main
-from comparison.evidence.validation.files import DECAY, LARGE
-from comparison.evidence.validation.table import Found
+from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE
+from comparison.evidence.validation.table import ExperimentFindings
 from reference.problem import SceneError
 
 X, Y = "s_b_250g_x.mat", "s_b_250g_y.mat"
@@ -36,14 +36,14 @@ def pair(t: Any = TIME, x: Any = PLATE, y: Any = BASE, other_time: Any = None) -
 
 
 def decay(time: Any = INSTANTS, values: Any = SWING) -> dict[str, dict[str, Any]]:
-    return {DECAY: {"Theta1": {"time": time, "signals": {"values": values}}}}
+    return {DECAY_FILE: {"Theta1": {"time": time, "signals": {"values": values}}}}
 
 
 def large(time: Any = INSTANTS, values: Any = SWING) -> dict[str, dict[str, Any]]:
     cells = np.empty((1, 1), dtype=object)
     times, angles = cells.copy(), cells.copy()
     times[0, 0], angles[0, 0] = time, np.vstack([values, values])
-    return {LARGE: {"Time_id": times, "Time_vad": times, "Y_id": angles, "Y_vad": angles}}
+    return {LARGE_SWING_FILE: {"Time_id": times, "Time_vad": times, "Y_id": angles, "Y_vad": angles}}
 
 
 HOSTILE = {
@@ -67,16 +67,19 @@ HOSTILE = {
     "infinity": (pair(x=np.where(PLATE > 1.0, np.inf, PLATE)), X, "x must be finite"),
     "other times": (pair(other_time=2.0 * TIME), Y, "t must be the same"),
     "a hundredth of a cycle": (pair(y=np.cos(0.02 * TIME)), Y, "y must"),
-    "a decay at rest": (decay(values=np.full(20000, np.pi)), DECAY, "Theta1.values must move"),
-    "a decay of noise": (decay(values=np.resize(NOISE, 20000)), DECAY, ""),
-    "a decay of booleans": (decay(values=SWING > 3.0), DECAY, ""),
-    "a decay in centuries": (decay(time=1e9 * INSTANTS), DECAY, "Theta1.time must span"),
-    "a decay of huge angles": (decay(values=1e300 * SWING), DECAY, "Theta1.values must be a motion"),
-    "a decay that turns once": (decay(values=3.2 + 0.1 * np.sin(0.07 * INSTANTS)), DECAY, "turning points"),
-    "no signals": ({DECAY: {"Theta1": {"time": INSTANTS, "signals": 1.0}}}, DECAY, "Theta1 must be"),
-    "large swings at rest": (large(values=np.full(20000, 3.0)), LARGE, "Time must rise"),
-    "large swings twice": (large(), LARGE, "Time must rise"),
-    "cells of text": ({LARGE: dict.fromkeys(("Time_id", "Time_vad", "Y_id", "Y_vad"), "swing")}, LARGE, "must be"),
+    "a decay at rest": (decay(values=np.full(20000, np.pi)), DECAY_FILE, "Theta1.values must move"),
+    "a decay of noise": (decay(values=np.resize(NOISE, 20000)), DECAY_FILE, ""),
+    "a decay of booleans": (decay(values=SWING > 3.0), DECAY_FILE, ""),
+    "a decay in centuries": (decay(time=1e9 * INSTANTS), DECAY_FILE, "Theta1.time must span"),
+    "a decay of huge angles": (decay(values=1e300 * SWING), DECAY_FILE, "Theta1.values must be a motion"),
+    "a decay that turns once": (decay(values=3.2 + 0.1 * np.sin(0.07 * INSTANTS)), DECAY_FILE, "turning points"),
+    "no signals": ({DECAY_FILE: {"Theta1": {"time": INSTANTS, "signals": 1.0}}}, DECAY_FILE, "Theta1 must be"),
+    "large swings at rest": (large(values=np.full(20000, 3.0)), LARGE_SWING_FILE, "Time must rise"),
+    "large swings twice": (large(), LARGE_SWING_FILE, "Time must rise"),
+    "cells of text": (
+        {LARGE_SWING_FILE: dict.fromkeys(("Time_id", "Time_vad", "Y_id", "Y_vad"), "swing")},
+        LARGE_SWING_FILE, "must be",
+    ),
 }  # fmt: skip
 
 
@@ -143,10 +146,10 @@ def bomb(count: int) -> bytes:
 def test_a_file_that_ends_its_reader_ends_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], make: Callable[[], bytes], said: str
 ) -> None:
-    (tmp_path / DECAY).write_bytes(make())
+    (tmp_path / DECAY_FILE).write_bytes(make())
     code, lines = ending(tmp_path, {}, capsys)
     assert (code, len(lines)) == (2, 1)
-    assert f"{DECAY}: {said}" in lines[0]
+    assert f"{DECAY_FILE}: {said}" in lines[0]
 
 
 CSV = "time [s],ax [m/s^2],ay [m/s^2],az [m/s^2]\n" + "\n".join(f"{0.01 * n:.2f},{n % 7},-0.5,1e-3" for n in range(60))
@@ -169,7 +172,9 @@ def test_a_damaged_measured_file_is_read_or_refused_in_one_line(
 ) -> None:
     """Two hundred damaged files, the same every time; what is read is not compared."""
     monkeypatch.setattr(files, "Workers", Here)
-    monkeypatch.setattr("comparison.evidence.validation.command._compare_file", lambda *rest: Found([], [], [], [], []))
+    monkeypatch.setattr(
+        "comparison.evidence.validation.command._compare_file", lambda *rest: ExperimentFindings([], [], [], [], [])
+    )
     monkeypatch.setattr("comparison.evidence.validation.command.describe_provenance", dict)
     chance, endings = random.Random(5), Counter()
     for content in (pair(), decay(INSTANTS[:600], SWING[:600])):
@@ -191,5 +196,5 @@ def test_a_damaged_input_of_mastodon_is_refused_in_one_line(tmp_path: Path) -> N
     for _ in range(200):
         file.write_bytes(damaged(CSV.encode(), chance))
         with pytest.raises(SceneError) as refused:
-            mastodon_case(file)
+            load_mastodon_case(file)
         assert str(refused.value).isprintable()

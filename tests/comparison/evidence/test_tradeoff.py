@@ -14,9 +14,16 @@ from scipy.stats import linregress
 
 from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
 from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, join_results, make_entry, sample_phases
-from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, make_tall, series_with_slope
-from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, list_settings
-from comparison.evidence.tradeoff.trade import error_of_share, is_unbeaten, load_trades, with_pareto_fronts
+from comparison.evidence.tradeoff.growth import (
+    QUANTITIES,
+    STORED,
+    CostGrowth,
+    fit_slope,
+    make_cost_series,
+    split_upper_body,
+)
+from comparison.evidence.tradeoff.settings import QUESTIONS, REFERENCE_RUN, Setting, TradeoffQuestion, list_settings
+from comparison.evidence.tradeoff.trade import find_error_quantile, is_pareto_optimal, load_trades, mark_pareto_fronts
 from comparison.study.batches import import_function
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
@@ -24,18 +31,18 @@ from reference.problem import Amplification, Scene, load_scene
 SCENE = load_scene("fig3-I")
 
 
-SETTING = Setting("exact", "one", "step", "", 1.0, False, False, RUN, {}, 1.0)
+SETTING = Setting("exact", "one", "step", "", 1.0, False, False, REFERENCE_RUN, {}, 1.0)
 
 
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
     pairs = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 1e-4), (2.5, 2e-3), (1.0, 1e-1), (4.0, float("inf"))]
-    assert [is_unbeaten(pair, pairs) for pair in pairs] == [True, True, True, False, False, False]
-    assert is_unbeaten(pairs[0], [pairs[0]] * 2), "two that are alike"
+    assert [is_pareto_optimal(pair, pairs) for pair in pairs] == [True, True, True, False, False, False]
+    assert is_pareto_optimal(pairs[0], [pairs[0]] * 2), "two that are alike"
 
 
 def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
-    assert error_of_share(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
-    assert error_of_share(np.array([np.nan]), 0.5) is None
+    assert find_error_quantile(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
+    assert find_error_quantile(np.array([np.nan]), 0.5) is None
     share = np.arange(101.0)[:, None]
     shares = make_entry(SETTING, SettingResult(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
     assert (shares.median, shares.most, shares.error_estimate) == ([50.0], [95.0], [95.0])
@@ -52,7 +59,7 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
             (1.0, 0.1),
         )
     )
-    marked = with_pareto_fronts([good, lost, uneven, replace(other, model_error=True)], 1)
+    marked = mark_pareto_fronts([good, lost, uneven, replace(other, model_error=True)], 1)
     assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,), (False,)]
     assert lost.answered == 2
     assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
@@ -76,7 +83,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
             ("v_reg", 0.1, (0.0, 0.0)),
         )
     ]
-    found = analysis._count_answers(QUESTIONS[0], SettingResult(mu, share * mu, 6.0, np.nan), entries)
+    found = analysis._make_solved_question(QUESTIONS[0], SettingResult(mu, share * mu, 6.0, np.nan), entries)
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
     assert found.checks == [
@@ -92,26 +99,30 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
     ids=str,
 )
 def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str, friction: object) -> None:
-    for function in ("state_derivative", "state_derivatives", "exact_acceleration"):  # not compiled
+    for function in ("compute_state_derivative", "compute_state_derivatives", "exact_acceleration"):  # not compiled
         monkeypatch.setattr(outside, function, getattr(outside, function).py_func)
     bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
     values = {"duration": 0.8, "bodies": bodies} | ({"isolator.friction": friction} if friction else {})
     scene = load_scene(name).with_values(values).with_amplitude(3.0)
     expected = amplification(scene, [(0.3, 1.1)], regularization=None if scene.lubricated else 1e-2)
-    found = outside.factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
+    found = outside.solve_factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
     np.testing.assert_allclose(found, expected.mu, rtol=2e-6)
 
 
 def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
     short, phases = load_scene("fig3-I").with_values({"duration": 0.5}), [(0.3, 1.1)]
     expected = amplification(short, phases, regularization=1e-3).mu
-    loose, tight = (single_runs.reference_run(short, phases, inside, regularization=1e-3) for inside in (1e-3, 1e-8))
+    loose, tight = (
+        single_runs.run_reference_once(short, phases, inside, regularization=1e-3) for inside in (1e-3, 1e-8)
+    )
     assert np.abs(tight[0] / expected - 1.0).max() < 1e-5
     assert 0.5 > loose[1] > tight[1] > 1e-4, "mean steps, s"
-    usual, coarse = (np.abs(single_runs.engine_run(short, phases, "translational", 1e-3, step) / expected - 1.0).max()
-                     for step in (1.0, 16.0))  # fmt: skip
+    runs = (single_runs.run_engine_once(short, phases, "translational", 1e-3, step) for step in (1.0, 16.0))
+    usual, coarse = (np.abs(run / expected - 1.0).max() for run in runs)
     assert usual < 1e-3 < coarse
-    assert np.abs(single_runs.constant_step_run(short, phases, "trapezoidal", 5e-4, 1e-3) / expected - 1.0).max() < 5e-3
+    assert (
+        np.abs(single_runs.run_at_constant_step(short, phases, "trapezoidal", 5e-4, 1e-3) / expected - 1.0).max() < 5e-3
+    )
 
 
 def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
@@ -145,7 +156,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: known)
-    monkeypatch.setattr(analysis, "questions_of", lambda scene: [question])
+    monkeypatch.setattr(analysis, "list_questions", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
     (first,) = load_trades(tmp_path / "out")
@@ -173,7 +184,7 @@ def test_a_known_slope_is_found_in_the_larger_half() -> None:
 
 
 def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
-    scene = make_tall(SCENE, 6)
+    scene = split_upper_body(SCENE, 6)
     heights = [body.height for body in scene.bodies]
     assert (len(heights), heights) == (6, sorted(heights))
     assert scene.isolator.ring >= 6.0
@@ -203,16 +214,16 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
     monkeypatch.setattr(growth, "measure_setting", measured)
     few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
     monkeypatch.setattr(growth, "QUANTITIES", few)
-    *bodies, pairs = computed(Growth(SCENE))
+    *bodies, pairs = computed(CostGrowth(SCENE))
     assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
     assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
 
 
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
-    bodies = series_with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
-    workers = series_with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
+    bodies = make_cost_series("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
+    workers = make_cost_series("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
     monkeypatch.setattr(command, "compute_tasks", lambda *rest: None)
-    monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
+    monkeypatch.setattr(CostGrowth, "collect", lambda *rest: [bodies])
     monkeypatch.setattr(command, "measure_by_workers", lambda *rest: workers)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
@@ -229,4 +240,6 @@ def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(growth, "count_cores", lambda: 3)
     series = growth.measure_by_workers(SCENE, ThreadPoolExecutor)
     assert list(series.values) == [1.0, 2.0, 3.0]
-    assert len(calls) == 3 * growth.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"
+    assert len(calls) == 3 * growth.WORKER_CALLS + 2 * (1 + 2 + 3), (
+        "the same work for all, and two calls to warm each up"
+    )

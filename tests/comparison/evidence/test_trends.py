@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 import multibody
 import reference
 from comparison.evidence.convergence import analysis as convergence
-from comparison.evidence.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
-from comparison.evidence.scaling.analysis import PRINTED, STEP, Scaling, scale_scene
+from comparison.evidence.convergence.analysis import CONVERGENCE_CASES, PENETRATIONS, Convergence, fit_limit_trends
+from comparison.evidence.scaling.analysis import EXACT_MINUS_SMALL, SMALL_SCALE_DIFFERENCE, Scaling, scale_scene
 from comparison.evidence.trends import Trend, fit_slope, fit_trend, word_trends
 from comparison.study.shorten import shorten_scene
 from comparison.study.study import Study
@@ -146,7 +146,9 @@ def test_a_geometric_step_has_the_exponent_two(monkeypatch: pytest.MonkeyPatch) 
     trends = _found(monkeypatch, lambda s: -0.03 * s**2)
     assert len(trends) == 2 * 2 * 2, "supremum and resolved, two bodies, two trends"
     assert {trend.verdict for trend in trends} == {"like the power 2"}
-    of_step, of_small = ([each for each in trends if each.what.startswith(what)] for what in (STEP, PRINTED))
+    of_step, of_small = (
+        [each for each in trends if each.what.startswith(what)] for what in (EXACT_MINUS_SMALL, SMALL_SCALE_DIFFERENCE)
+    )
     for each in of_step:
         share = 0.5 if each.what.endswith("resolved peak") else 1.0
         assert each.medians == pytest.approx([share * 0.03 * s**2 for s in SCALES], rel=1e-9)
@@ -160,7 +162,9 @@ def test_a_step_enters_the_slope_where_known_to_a_fifth(monkeypatch: pytest.Monk
     """Errors of 3e-4 on both sides: 4.2e-4 together, a fifth of 2.1e-3. At s = 1/4 both differences are 1.9e-3."""
     monkeypatch.setattr(reference, "amplification", _model(lambda s: 0.03 * s**2, 3e-4))
     points = {(trend.what.split(",")[0], trend.points) for trend in collected(Scaling(), _study("fig3-I"))}
-    assert points == {(STEP, 4 * 2), (PRINTED.split(",")[0], 0)}, "of four phase pairs; one value has no slope"
+    assert points == {(EXACT_MINUS_SMALL, 4 * 2), (SMALL_SCALE_DIFFERENCE.split(",")[0], 0)}, (
+        "of four phase pairs; one value has no slope"
+    )
 
 
 def test_a_lubricated_scene_has_one_peak_and_a_heated_one_no_scaling(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -210,8 +214,8 @@ def test_a_lubricated_scene_has_only_the_limit_of_the_contact(monkeypatch: pytes
         sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
         return sizes, 1e-3 * np.abs(sizes)
 
-    limits = [limit._replace(parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
-    monkeypatch.setattr(convergence, "LIMITS", limits)
+    limits = [limit._replace(parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in CONVERGENCE_CASES]
+    monkeypatch.setattr(convergence, "CONVERGENCE_CASES", limits)
     trends = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
     assert [trend.scene for trend in trends] == ["fig3-I"] * 8 + ["fig4-viscous"] * 2
     assert [trend.body for trend in trends] == [1, 2] * 5
@@ -235,10 +239,10 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
     monkeypatch.setattr(reference, "amplification", _regularized(power, 4.0))
     monkeypatch.setattr(multibody, "amplification", _regularized(power))
     for number in (0, 2):  # the equations and the engine, against the resolved peak
-        trends = limit_trends((load_scene("fig3-I"), number))
+        trends = fit_limit_trends((load_scene("fig3-I"), number))
         assert {each.verdict for each in trends} == {says}
         assert [each.exponent for each in trends] == pytest.approx([power] * 2, abs=1e-6)
-    against_supremum = limit_trends((load_scene("fig3-I"), 1))[0]
+    against_supremum = fit_limit_trends((load_scene("fig3-I"), 1))[0]
     assert against_supremum.verdict.startswith("hardly falls")
     speeds = against_supremum.parameter
     assert against_supremum.medians == pytest.approx([1.0 - (3.0 + v**power) / 4.0 for v in speeds], rel=1e-9)
@@ -246,8 +250,8 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
 
 def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Second body of fig3-II: 8e-5 of mu at 3e-3 of rho; what is of higher order there is a tenth of it."""
-    monkeypatch.setattr(convergence, "FEWEST_PERIODS", 2.0)
-    trend = limit_trends((load_scene("fig3-II"), 3))[1]
+    monkeypatch.setattr(convergence, "CONSTANT_STEP_PERIODS", 2.0)
+    trend = fit_limit_trends((load_scene("fig3-II"), 3))[1]
     assert trend.verdict == "like the power 1"
     assert trend.medians[0] == pytest.approx(8.4e-5, rel=0.2)
     assert trend.exponent == pytest.approx(1.0, abs=0.15)
@@ -256,7 +260,7 @@ def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.Mon
 @pytest.mark.long
 def test_regularization_is_of_first_order() -> None:
     scene = load_scene("fig3-II")
-    resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
+    resolved, supremum = (fit_limit_trends((scene, number)) for number in (0, 1))
     assert [trend.verdict for trend in resolved] == ["like the power 1"] * 2
     assert supremum[0].verdict.startswith("hardly falls")
     assert supremum[1].verdict == "falls"
@@ -277,7 +281,7 @@ def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch,
     """A method of this order that is off by 1 % with the coarser steps."""
 
     def stepped(scene: Scene, v_reg: float, penetration: float, factor: int) -> Array:
-        return np.full((len(convergence.FEW), 2), 3.0 * (1.0 + 0.01 / factor**order))
+        return np.full((len(convergence.ENGINE_PHASES), 2), 3.0 * (1.0 + 0.01 / factor**order))
 
     monkeypatch.setattr(convergence, "_solve_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", _regularized(60.0))
@@ -290,7 +294,7 @@ def test_the_error_of_a_constant_step_has_that_of_the_equations_and_that_of_the_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def stepped(scene: Scene, v_reg: float, penetration: float, factor: int) -> Array:
-        return np.full((len(convergence.FEW), 2), 4.0 if factor == 1 else 4.0 + 4.0 * penetration)
+        return np.full((len(convergence.ENGINE_PHASES), 2), 4.0 if factor == 1 else 4.0 + 4.0 * penetration)
 
     def exact(scene: Scene, phases: Array, **settings: float) -> Amplification:
         mu = np.full((len(phases), 2), 4.0)
@@ -299,5 +303,5 @@ def test_the_error_of_a_constant_step_has_that_of_the_equations_and_that_of_the_
     monkeypatch.setattr(convergence, "_solve_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", exact)
     _, errors = convergence._compare_stiff_contacts(load_scene("fig3-I"))
-    expected = np.hypot(convergence.SAFETY * np.array(PENETRATIONS), 0.01)
+    expected = np.hypot(convergence.STEP_ERROR_FACTOR * np.array(PENETRATIONS), 0.01)
     assert errors == pytest.approx(np.broadcast_to(expected[:, None], errors.shape), rel=1e-12)

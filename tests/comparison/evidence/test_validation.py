@@ -18,10 +18,10 @@ from scipy.special import ellipk
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.evidence.validation import command, frame, pendulum, table
 from comparison.evidence.validation.command import compare_folder, main
-from comparison.evidence.validation.cycles import SPEED, WIDTH
-from comparison.evidence.validation.feature import experiment_panels
-from comparison.evidence.validation.files import DECAY, LARGE, Shaken, read_folder
-from comparison.evidence.validation.table import COVERAGE, LAW, Validation, load_record
+from comparison.evidence.validation.cycles import REST_SPEED, VELOCITY_HALF_WIDTH
+from comparison.evidence.validation.feature import make_experiment_panels
+from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE, FrameRun, read_folder
+from comparison.evidence.validation.table import COVERAGE_FACTOR, LAW_CAUSE, Validation, load_record
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
@@ -75,34 +75,37 @@ def test_the_equations_predict_a_run_of_an_independent_program(tmp_path: Path):
     save(tmp_path, 450, offset=-0.15)
     cycles = frame.fold_run(read_folder(tmp_path).runs[0])
     assert cycles.frequency == pytest.approx(FREQUENCY, abs=1e-5)
-    found = np.mean([frame.read_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
-    computed = frame.read_quantities(cycles, frame.compute_motion(EQUATIONS, cycles, frame.Setup(ratio=RATIO))).values
+    found = np.mean([frame.measure_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
+    computed = frame.read_quantities(
+        cycles, frame.compute_frame_motion(EQUATIONS, cycles, frame.Setup(ratio=RATIO))
+    ).values
     assert computed[:2] == pytest.approx(found[:2], rel=5e-4)  # without the damper: 5e-3
     assert computed[2:] == pytest.approx(found[2:], abs=0.2)
 
 
 def test_the_numbers_of_a_known_cycle_are_read():
-    turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
+    turn = np.arange(frame.CYCLE_SAMPLES) * 360.0 / frame.CYCLE_SAMPLES
     motion = np.interp(turn, [0.0, 70.0, 150.0, 250.0, 330.0, 360.0], [1.5, 1.5, -1.5, -1.5, 1.5, 1.5])
-    half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
+    half_range, rms, rest, starts, stops = frame.measure_cycle(motion, 1.0)
     assert half_range == 1.5
     assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
-    width, top = 360.0 * WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
-    early = width * (1.0 - 2.0 * SPEED / top)
+    # Velocity: a mean over twice the width
+    width, top = 360.0 * VELOCITY_HALF_WIDTH / frame.CYCLE_SAMPLES, 3.0 / (80.0 / 360.0)
+    early = width * (1.0 - 2.0 * REST_SPEED / top)
     assert (starts, stops) == pytest.approx((70.0 - early, 150.0 + early), abs=0.2)
     assert rest == pytest.approx(100.0 * (200.0 - 4.0 * early) / 360.0, abs=0.2)
-    at_rest = frame.read_cycle(0.05 * np.sin(np.linspace(0.0, 6.283, frame.SAMPLES)), 1.0)
+    at_rest = frame.measure_cycle(0.05 * np.sin(np.linspace(0.0, 6.283, frame.CYCLE_SAMPLES)), 1.0)
     assert [at_rest[0], at_rest[2]] == pytest.approx([0.05, 100.0], rel=1e-3)
     assert np.isnan(at_rest[3:]).all(), "nothing starts or stops"
 
 
 def test_phases_of_both_directions_have_their_middle_on_the_circle():
     """The plate goes back from 350 to 60 degrees, fastest at the end of a turn, and forth from 190 to 240."""
-    turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
+    turn = np.arange(frame.CYCLE_SAMPLES) * 360.0 / frame.CYCLE_SAMPLES
     ends = [0, 60, 61, 189, 190, 240, 241, 349, 350, 358, 360]
     speed = np.interp(turn, ends, [-1, -0.8, 0, 0, 1, 1, 0, 0, -1.5, -1.5, -1])
     speed[speed > 0.0] *= -speed[speed < 0.0].sum() / speed[speed > 0.0].sum()  # the cycle closes
-    *_, starts, stops = frame.read_cycle(np.cumsum(speed), 1.0)
+    *_, starts, stops = frame.measure_cycle(np.cumsum(speed), 1.0)
     assert (starts + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=8.0)
     assert stops == pytest.approx(60.0, abs=8.0)
 
@@ -111,16 +114,16 @@ def test_a_run_is_folded_at_the_turns_of_its_base():
     """Base and second harmonic, 7 and 0.2 mm, the latter behind by 40 degrees; the plate is behind the base by 50."""
     time, turn = np.arange(2501) / RATE, 2.0 * math.pi * FREQUENCY * np.arange(2501) / RATE + 1.0
     base = 7.0 * np.cos(turn) + 0.2 * np.cos(2.0 * turn - np.radians(40.0))
-    cycles = frame.fold_run(Shaken(0.25, time, 3.0 * np.cos(turn - np.radians(50.0)), base))
+    cycles = frame.fold_run(FrameRun(0.25, time, 3.0 * np.cos(turn - np.radians(50.0)), base))
     assert (cycles.frequency, cycles.amplitude) == pytest.approx((FREQUENCY, 7.0), rel=1e-6)
     assert cycles.second == pytest.approx(0.2 * np.exp(-1j * np.radians(40.0)), abs=1e-6)
-    expected = 3.0 * np.cos(2.0 * math.pi * np.arange(frame.SAMPLES) / frame.SAMPLES - np.radians(50.0))
+    expected = 3.0 * np.cos(2.0 * math.pi * np.arange(frame.CYCLE_SAMPLES) / frame.CYCLE_SAMPLES - np.radians(50.0))
     assert cycles.mean == pytest.approx(expected - expected.mean(), abs=2e-3)
 
 
 def test_the_scene_of_a_run_has_the_force_of_disc_and_base():
-    cycles = frame.Cycles(Shaken(0.25, *np.zeros((3, 1))), np.zeros((4, frame.SAMPLES)), 1.0, 2.0, 0.3 + 0.4j)
-    scene, phases = frame.scene_of(cycles, frame.Setup(disc=1.1, ratio=0.2, scale=1.5, second=0.5))
+    cycles = frame.Cycles(FrameRun(0.25, *np.zeros((3, 1))), np.zeros((4, frame.CYCLE_SAMPLES)), 1.0, 2.0, 0.3 + 0.4j)
+    scene, phases = frame.make_frame_scene(cycles, frame.Setup(disc=1.1, ratio=0.2, scale=1.5, second=0.5))
     law, weight = scene.dry_friction, scene.total_mass * 9.81
     assert law.slow * weight == pytest.approx(0.2 * 1.1 * 0.25 * 9.81)
     assert weight / scene.radius == pytest.approx(STIFFNESS)
@@ -134,35 +137,35 @@ def test_the_scene_of_a_run_has_the_force_of_disc_and_base():
 def test_the_numbers_of_a_motion_have_its_errors():
     accuracy = SimpleNamespace(coarser=[[1.5, 2.5], [3.0, 7.0]], error_of=lambda value, others: sum(others) - 2 * value)
     motion = SimpleNamespace(status="ok", accuracy=accuracy)
-    found = table.values_of_motion(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
+    found = table.read_motion_values(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
     assert (found.values.tolist(), found.errors.tolist()) == ([1.0, 2.0], [2.5, 5.5])
     ended = SimpleNamespace(status="rim reached", accuracy=accuracy)
-    assert np.isnan(np.concatenate(table.values_of_motion(ended, np.asarray, 2))).all()
+    assert np.isnan(np.concatenate(table.read_motion_values(ended, np.asarray, 2))).all()
 
 
 def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     """In place of the equations a cycle 10 scale cos - 8 ratio disc sin, mm; ratios as the power 0.15 of the weight."""
-    turn = 2.0 * np.pi * np.arange(frame.SAMPLES) / frame.SAMPLES
+    turn = 2.0 * np.pi * np.arange(frame.CYCLE_SAMPLES) / frame.CYCLE_SAMPLES
 
     def cycle(setup: frame.Setup) -> np.ndarray:
         return 10.0 * setup.scale * np.cos(turn) - 8.0 * setup.ratio * setup.disc * np.sin(turn)
 
-    def folded(run: Shaken) -> frame.Cycles:
+    def folded(run: FrameRun) -> frame.Cycles:
         ratio = RATIO * (run.weight / 0.25) ** 0.15
         motions = [cycle(frame.Setup(ratio=ratio + change)) for change in (5e-4, -5e-4, 5e-4, -5e-4)]
         return frame.Cycles(run, np.array(motions), 1.0, 2.0, 0.02)
 
     def read(cycles: frame.Cycles, setup: frame.Setup) -> table.ComputedValues:
-        return table.ComputedValues(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
+        return table.ComputedValues(frame.measure_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
 
     for name, known in (
         ("fold_run", folded),
-        ("compute_motion", lambda side, cycles, setup: setup),
+        ("compute_frame_motion", lambda side, cycles, setup: setup),
         ("read_quantities", read),
     ):
         monkeypatch.setattr(frame, name, known)
-    monkeypatch.setattr(frame, "last_cycle", lambda motion, frequency: cycle(motion))
-    found = frame.compare_frame([Shaken(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
+    monkeypatch.setattr(frame, "read_last_cycle", lambda motion, frequency: cycle(motion))
+    found = frame.compare_frame([FrameRun(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
     rows = {(each.experiment, each.name): each for each in found.quantities}
     uses = {title: each.use for (title, name), each in rows.items() if name == "half range"}
     plain = [f"frame, {grams} g" for grams in (250, 350, 450)]
@@ -180,7 +183,7 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     at = [ratio * (1.0 + spread / RATIO) ** (1.0 - share), ratio * (1.0 + spread / (RATIO * 1.8**0.15)) ** share]
     changed = [{"ratio": each} for each in at] + [{"disc": 1.01}, {"scale": 1.01}]
     begin, *shifted = (
-        frame.read_cycle(cycle(frame.Setup(**{"ratio": ratio, **each})), 1.0)[3] for each in ({}, *changed)
+        frame.measure_cycle(cycle(frame.Setup(**{"ratio": ratio, **each})), 1.0)[3] for each in ({}, *changed)
     )
     starts = rows["frame, 350 g, friction of the load", "phase of the starts"]
     assert starts.inputs == pytest.approx(math.hypot(*(each - begin for each in shifted)), rel=5e-3), (
@@ -188,13 +191,13 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     )
     phase = rows["frame, 350 g", "phase of the starts"]
     assert phase.sides[EQUATIONS].verdict == NOT_MET
-    assert phase.cause.startswith(f"{LAW}: gone with the ratio of this run, 0.252")
+    assert phase.cause.startswith(f"{LAW_CAUSE}: gone with the ratio of this run, 0.252")
     assert abs(loaded.sides[EQUATIONS].error) < 0.05 * abs(constant.sides[EQUATIONS].error)
     for place, (grams, fitted) in ((-2, (250, 0.24)), (-1, (450, RATIO * 1.8**0.15))):
         source = f"fitted to the motion of the run with {grams} g; its scatter over the cycles"
         assert found.inputs[place] == f"frame: friction ratio {fitted:.5g} ± {spread:.2g} ({source})"
     (plot, *_), titles = (
-        experiment_panels(Validation([], [], [], [], found.curves, {})),
+        make_experiment_panels(Validation([], [], [], [], found.curves, {})),
         ("phase of the base, deg", "top plate, mm"),
     )
     assert (plot["title"], plot["plot"]["x"]["title"], plot["plot"]["y"]["title"]) == ("frame, 250 g", *titles)
@@ -222,7 +225,7 @@ def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
     angle = middle + (0.0659 - (number + 0.5) * loss) * np.cos(np.pi * time / half)
     angle[number >= 13] = angle[number < 13][-1]
     values = math.pi + step * np.round(angle / step)
-    savemat(tmp_path / DECAY, {"Theta1": {"time": time, "signals": {"values": values}}})
+    savemat(tmp_path / DECAY_FILE, {"Theta1": {"time": time, "signals": {"values": values}}})
     swing = read_folder(tmp_path).decay
     np.testing.assert_allclose(swing.angle, values - math.pi, atol=1e-12)
     found = pendulum.compare_decay(swing)
@@ -240,8 +243,8 @@ def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
 
 
 def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
-    mean = pendulum._uncertainty_of_mean(np.array([1.0, 3.0, 1.0, 3.0]))
-    assert mean == pytest.approx(COVERAGE * np.sqrt(4.0 / 3.0) / 2.0), "scatter over the root of the count"
+    mean = pendulum._compute_uncertainty_of_mean(np.array([1.0, 3.0, 1.0, 3.0]))
+    assert mean == pytest.approx(COVERAGE_FACTOR * np.sqrt(4.0 / 3.0) / 2.0), "scatter over the root of the count"
     rate, amplitude, time = np.pi / 0.39, 1.6, 0.0
     instants, angles = [], []
     while amplitude > 0.2:
@@ -256,10 +259,10 @@ def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
         kind = ("id", "vad")[number // 2]
         angle = math.pi + np.interp(even[part], instants, angles)
         cells[f"Time_{kind}"][number % 2], cells[f"Y_{kind}"][number % 2] = even[part], np.array([angle, 0.0 * angle])
-    savemat(tmp_path / LARGE, cells)
+    savemat(tmp_path / LARGE_SWING_FILE, cells)
     swing = read_folder(tmp_path).large
     np.testing.assert_allclose(swing.angle, np.interp(even, instants, angles), atol=1e-12)
-    found = pendulum.compare_large(swing)
+    found = pendulum.compare_large_swings(swing)
     for each in found.quantities:
         assert abs(each.sides[EQUATIONS].error) < 2e-4 * each.measured, each
         assert abs(each.sides[ENGINE].error) < 4e-4 * each.measured, each
@@ -274,7 +277,7 @@ def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
     save(tmp_path, 250)
     save(tmp_path, 450, offset=0.3)
     table = compare_folder(tmp_path)
-    assert len(table.measured_quantities) == 10
+    assert len(table.compare_quantities) == 10
     assert table.counts()[MET] == 20
     assert "ratio of this run alone is 0.240" in table.facts[1]
 
@@ -283,7 +286,7 @@ def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
 @pytest.mark.skipif(not MEASURED, reason="PHASE_RESONANCE_MEASURED names no folder with the published files")
 def test_the_recorded_table_is_that_of_the_published_files():
     table = compare_folder(Path(MEASURED))
-    new = {(each.experiment, each.name): each for each in table.measured_quantities}
+    new = {(each.experiment, each.name): each for each in table.compare_quantities}
     for each in load_record().quantities:
         again = new[each.experiment, each.name]
         assert again.measured == pytest.approx(each.measured, rel=1e-6)
@@ -325,8 +328,8 @@ def make(folder: Path) -> Path:
         (lambda folder: (folder / Y).unlink(), "s_b_250g_y.mat is missing"),
         (lambda folder: savemat(folder / X, {"t": np.arange(700.0), "x": np.zeros((700, 3))}), "x must be one column"),
         (lambda folder: (folder / Y).write_bytes(b"MATLAB 5.0" + bytes(range(256)) * 4), "must be a MATLAB file"),
-        (lambda folder: savemat(folder / DECAY, {"Theta1": np.zeros(800)}), "Theta1 must be a structure"),
-        (lambda folder: savemat(folder / LARGE, dict.fromkeys(PARTS, 1.0)), "must be"),
+        (lambda folder: savemat(folder / DECAY_FILE, {"Theta1": np.zeros(800)}), "Theta1 must be a structure"),
+        (lambda folder: savemat(folder / LARGE_SWING_FILE, dict.fromkeys(PARTS, 1.0)), "must be"),
         (lambda folder: [file.unlink() for file in folder.iterdir()], "holds none of the measured files"),
         (lambda folder: folder.rename(folder.with_name("other")), "must be a folder"),
         (lambda folder: [save(make(folder / part), 350) for part in "ab"], "must hold each file once: also a/s_b_350"),
@@ -346,7 +349,7 @@ def test_wrong_files_end_in_one_line(tmp_path, capsys, monkeypatch, spoil, said)
 
 def test_a_side_without_a_value_is_an_exit_code(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     first, *rest = load_record().quantities
-    nothing = table.Comparison(None, None, None, None, NOT_COMPARED)
+    nothing = table.SideComparison(None, None, None, None, NOT_COMPARED)
     lacking = replace(first, sides={**first.sides, ENGINE: nothing})
     for quantities, code in ((load_record().quantities, 0), ([lacking, *rest], 1)):
         table_of_folder = replace(load_record(), quantities=quantities)
@@ -357,11 +360,11 @@ def test_a_side_without_a_value_is_an_exit_code(monkeypatch: pytest.MonkeyPatch,
 def test_a_comparison_error_is_within_all_uncertainties():
     """0.03, 0.04 and 0.12 make 0.13: 0.125 is within, 0.135 is not; any two of them make less than 0.127."""
     one = np.ones(2)
-    data = table.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
+    data = table.MeasuredData(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
     values = np.array([1.1285, 1.135])
     answers = dict.fromkeys((EQUATIONS, ENGINE), table.ComputedValues(values, np.array([0.03, 0.03])))
     varied = [values + 0.024, values - 0.032]
-    first, second = table.measured_quantities("run", data, answers, varied, lambda k, allowed: "why")
+    first, second = table.compare_quantities("run", data, answers, varied, lambda k, allowed: "why")
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [MET, NOT_MET]
     assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])
     assert first.sides[EQUATIONS].validation == pytest.approx(0.13)

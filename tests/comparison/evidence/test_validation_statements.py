@@ -10,8 +10,8 @@ import pytest
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.table import (
     STORED,
-    Comparison,
     MeasuredQuantity,
+    SideComparison,
     Validation,
     load_record,
     verdict_line,
@@ -19,7 +19,7 @@ from comparison.evidence.validation.table import (
 from comparison.verdicts import judge_error
 
 LOADED = ", friction of the load"
-Change = Callable[[Comparison], Comparison]
+Change = Callable[[SideComparison], SideComparison]
 
 
 def changed(experiment: str, name: str, change: Change, sides: tuple[str, ...] = (EQUATIONS, ENGINE)) -> Validation:
@@ -35,14 +35,14 @@ def changed(experiment: str, name: str, change: Change, sides: tuple[str, ...] =
 
 
 def of_error(factor: float) -> Change:
-    def change(found: Comparison) -> Comparison:
+    def change(found: SideComparison) -> SideComparison:
         error = factor * found.error
         return replace(found, error=error, verdict=judge_error(error, found.validation))
 
     return change
 
 
-def without_uncertainty(found: Comparison) -> Comparison:
+def without_uncertainty(found: SideComparison) -> SideComparison:
     return replace(found, validation=None, verdict="not compared")
 
 
@@ -67,7 +67,7 @@ def test_what_is_validated_follows_the_record(planted: str) -> None:
 def test_both_sides_are_worded_equations_first() -> None:
     def both(equations: float, engine: float) -> str:
         sides = {
-            side: Comparison(1.0 + error, error, 0.0, 0.1, judge_error(error, 0.1))
+            side: SideComparison(1.0 + error, error, 0.0, 0.1, judge_error(error, 0.1))
             for side, error in ((EQUATIONS, equations), (ENGINE, engine))
         }
         return MeasuredQuantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()

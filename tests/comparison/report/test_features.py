@@ -33,7 +33,7 @@ FEATURE = Feature(
     "ratio",
     (RATIO,),
     section=Section("Ratio of the factors"),
-    figures=lambda report: {"ratio.txt": str(len(RATIO.of(report.results))).encode()},
+    figures=lambda report: {"ratio.txt": str(len(RATIO.read_from(report.results))).encode()},
 )
 ''',
     "section.html.j2": '{% for ratio in results.ratio %}<p class="ratio">{{ ratio }}</p>{% endfor %}',
@@ -53,8 +53,8 @@ def load_without(copy, keys):
     comparison.__path__.insert(0, str(copy))
     import reference
     from comparison.cli import start
-    start.PACKAGE = copy
-    commands = start.commands
+    start.PACKAGE_FOLDER = copy
+    commands = start.list_commands
     from comparison.run import main
     from comparison import registry
     from comparison.report.writing import write_report
@@ -70,7 +70,7 @@ def load_without(copy, keys):
     surfaces = label_surfaces(study, [], [])
     for name, value in {"mu": 2.0, "error": 1e-9, "status": "ok"}.items():
         surfaces[name][:] = value
-    report = registry.report_of(study, surfaces, {}, [], RUN, families=())
+    report = registry.make_report(study, surfaces, {}, [], RUN, families=())
     place = copy / "report"
     place.mkdir()
     write_report(place, report)

@@ -17,8 +17,8 @@ from report_texts import data_of, page_of
 from runs import quick_figures
 
 import comparison.registry
-from comparison.cli.reports import CompleteLevel, Reports
-from comparison.json_file import json_text
+from comparison.cli.reports import CompleteLevel, ReportWriter
+from comparison.json_file import format_json
 from comparison.registry import FEATURES
 from comparison.report import page, writing
 from comparison.report.results import Results
@@ -68,12 +68,12 @@ def places() -> Iterator[Place]:
                 yield Place(section, "verdict", f"verdict of section {section.name}")
             if section.lead:
                 yield Place(section, "lead", "sentences of sections")
-    for name, said in {"netcdf": "surfaces.nc", "summary_text": "summary.md", "junit": "junit.xml",
-                       "schema_json": "summary.schema.json"}.items():  # fmt: skip
+    for name, said in {"netcdf": "surfaces.nc", "render_summary_text": "summary.md", "junit": "junit.xml",
+                       "format_schema": "summary.schema.json"}.items():  # fmt: skip
         yield Place(writing, name, said)
     yield Place(Results, "as_json", "summary.json")
-    for name, said in {"word_verdict": "verdict", "_alert_groups": "alerts", "scale_of": "summary",
-                       "page_data": "surfaces"}.items():  # fmt: skip
+    for name, said in {"word_verdict": "verdict", "_group_alerts": "alerts", "make_common_scale": "summary",
+                       "collect_page_data": "surfaces"}.items():  # fmt: skip
         yield Place(page, name, said)
 
 
@@ -106,9 +106,9 @@ def last_report(tmp_path_factory: pytest.TempPathFactory) -> Last:
     """A report with every section that has known results, and what writes it again."""
     place, calls = tmp_path_factory.mktemp("lost") / "report", []
     leave_beside(place, FILES, "fig3-I")
-    write = Reports.write
+    write = ReportWriter.write
 
-    def remember(self: Reports, complete: CompleteLevel, runner: Runner) -> Results:
+    def remember(self: ReportWriter, complete: CompleteLevel, runner: Runner) -> Results:
         calls.append(partial(write, self, complete, runner))
         return calls[-1]()
 
@@ -117,7 +117,7 @@ def last_report(tmp_path_factory: pytest.TempPathFactory) -> Last:
         known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED}
         known |= {"assumptions": known_assumptions(), **known_others()}
         analyses_are(patch, **known)
-        patch.setattr(Reports, "write", remember)
+        patch.setattr(ReportWriter, "write", remember)
         family = place.with_name("family.toml")
         family.write_text(scene_text("fig3-I", FAMILY), encoding="utf-8")
         words = ["fig3-I", str(family), "--grid", "2", "--out", str(place)]
@@ -180,6 +180,6 @@ def test_data_of_a_feature_that_fail_cost_neither_the_surfaces_nor_those_of_othe
 
 
 def test_what_json_cannot_hold_is_null() -> None:
-    assert json.loads(json_text({"a": float("nan"), "b": [1.5, (float("inf"), {"c": -float("inf")})]})) == {
+    assert json.loads(format_json({"a": float("nan"), "b": [1.5, (float("inf"), {"c": -float("inf")})]})) == {
         "a": None, "b": [1.5, [None, {"c": None}]],
     }  # fmt: skip

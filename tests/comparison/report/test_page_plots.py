@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from comparison.evidence.tradeoff.feature import tradeoff_answers, tradeoff_panels
-from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
-from comparison.evidence.trend_feature import trend_panels
+from comparison.evidence.tradeoff.feature import make_tradeoff_panels, word_fastest_methods
+from comparison.evidence.tradeoff.trade import MeasuredSetting, SceneTrade, SolvedQuestion
+from comparison.evidence.trend_feature import make_trend_panels
 from comparison.evidence.trends import Trend
 from comparison.report.glossary import GLOSSARY, explain_words
-from comparison.report.page import content_policy
+from comparison.report.page import make_content_policy
 from comparison.report.panels import MAX_CURVES
 
 
@@ -18,9 +18,9 @@ def _entry(method: str, seconds: float, error: float, value: float = 1e-3) -> Me
     )
 
 
-QUESTION = Answered("exact", "exact equations", 4, "itself", 1e-9, [])
+QUESTION = SolvedQuestion("exact", "exact equations", 4, "itself", 1e-9, [])
 SLOW, FAST = _entry("slow", 0.2, 1e-7, 1e-7), _entry("fast", 0.01, 5e-4)
-TRADE = Trade("fig3-I", "Case I", "0", 2, [QUESTION], [SLOW, FAST], {})
+TRADE = SceneTrade("fig3-I", "Case I", "0", 2, [QUESTION], [SLOW, FAST], {})
 
 
 def test_the_answer_is_the_cheapest_method_within_the_error() -> None:
@@ -32,13 +32,13 @@ def test_the_answer_is_the_cheapest_method_within_the_error() -> None:
         ([quick], ["for 1e-03 ask quick, tolerance 0.001 (1 ms, no error estimate)"]),
         ([none], ["for 1e-02 none; for 1e-03 none; for 1e-04 none; for 1e-06 none."]),
     ):
-        [answer] = tradeoff_answers(replace(TRADE, entries=entries))
+        [answer] = word_fastest_methods(replace(TRADE, entries=entries))
         assert [text for text in answers if text not in answer["text"]] == [], answer
 
 
 def test_no_panel_has_more_curves_than_can_be_told_apart() -> None:
     many = [_entry(f"method {number}", 0.1, 1e-3) for number in range(9)]
-    panels = tradeoff_panels(replace(TRADE, entries=many))
+    panels = make_tradeoff_panels(replace(TRADE, entries=many))
     assert [len(panel["plot"]["series"]) for panel in panels] == [MAX_CURVES] * 2, "the platform and the last body"
     lines = [line for each in panels for line in each["plot"]["series"]]
     assert all(line["y"] == [1e-3] for line in lines), "what 95 % of the points meet"
@@ -52,7 +52,7 @@ def test_trends_of_a_scene_and_parameter_share_a_panel() -> None:
     )  # fmt: skip
     softer = replace(trend, what="engine, contact", exponent=float("nan"), parameter=(3e-3, 1e-3))
     other = replace(trend, scene="fig4-dry")
-    first, second, third = trend_panels([other, trend, *[softer] * (MAX_CURVES + 1)], "")
+    first, second, third = make_trend_panels([other, trend, *[softer] * (MAX_CURVES + 1)], "")
     assert [each["title"] for each in (second, third)] == ["fig3-I", "fig4-dry"]
     assert first["title"] == f"fig3-I, {MAX_CURVES} of {MAX_CURVES + 1} differences: the table has all"
     assert [each["plot"]["x"]["title"] for each in (first, second)] == ["penetration, ρ", "v_reg, m/s"]
@@ -68,6 +68,6 @@ def test_a_word_of_the_glossary_is_explained_where_it_is_first() -> None:
 
 
 def test_the_policy_names_script_and_style_by_their_hash() -> None:
-    policy = content_policy("", "")  # of the empty text: the well-known digest of nothing
+    policy = make_content_policy("", "")  # of the empty text: the well-known digest of nothing
     assert policy.count("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='") == 2
     assert "default-src 'none'" in policy

@@ -10,7 +10,7 @@ from printed_pages import A4, BEYOND, CUT, DOT, MARGIN, Printed, as_printed, let
 from report_texts import page_of
 
 from comparison.registry import StudyResults
-from comparison.surfaces.statements import CELLS
+from comparison.surfaces.statements import CELL_WORDINGS
 
 PAGES = {"index.html": range(5, 21), "verification.html": range(2, 9)}  # how many may be printed
 
@@ -36,7 +36,7 @@ def test_the_first_sheet_has_the_verdict_and_the_whole_table(finished: Path, pri
     headlines = [line for scene in results.scenes for line in scene.headlines]
     assert len(headlines) == 4
     for line in headlines:
-        for word in vars(CELLS).values():
+        for word in vars(CELL_WORDINGS).values():
             assert letters(word(line)) in sheet, word.__name__
     verdict = page_of(finished).split('<p class="answer">')[1].split("<")[0]
     assert letters(verdict) in sheet

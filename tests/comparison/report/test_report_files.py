@@ -39,8 +39,8 @@ def test_a_report_is_exactly_its_parts(finished: Path) -> None:
 def test_every_file_says_how_long_the_study_took_and_how_it_was_made(finished: Path) -> None:
     run = summary_of(finished)["run"]
     known = run | {"wall_seconds": 1.5, "processor_seconds": 2.25, "jobs": 1}
-    assert Run.model_validate(known).took == "1.5 s of wall time with 1 worker, 2.2 s of processor time"
-    took = Run.model_validate(run).took
+    assert Run.model_validate(known).word_run_times == "1.5 s of wall time with 1 worker, 2.2 s of processor time"
+    took = Run.model_validate(run).word_run_times
     for name in ("index.html", "summary.md"):
         assert took in (finished / name).read_text(encoding="utf-8")
     with xr.open_dataset(finished / "surfaces.nc", engine="h5netcdf") as surfaces:

@@ -12,15 +12,15 @@ from rich.console import Console
 
 from comparison.cli.closing import _print_differences
 from comparison.report import page
-from comparison.report.page import _alert_groups, _template_environment, word_measurements
+from comparison.report.page import _group_alerts, _make_template_environment, word_measurements
 from comparison.report.results import VALIDATED_BRIEFLY
 from comparison.report.scene_result import ModelOutcome
-from comparison.report.summary_text import summary_text
+from comparison.report.summary_text import render_summary_text
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.differences import Difference, GridMean
 from comparison.surfaces.headline import Effect
 from comparison.surfaces.waterfall import WaterfallBar
-from comparison.surfaces.waterfall_chart import log_scale
+from comparison.surfaces.waterfall_chart import make_log_scale
 
 NAN = math.nan
 ROW = Difference(
@@ -35,12 +35,14 @@ ROW = Difference(
 
 def tables_of(section: str, **context: Any) -> Tables:
     titles = {"small": "small equations", "spatial": "spatial engine"}
-    template = _template_environment().get_template(f"sections/{section}.html.j2")
+    template = _make_template_environment().get_template(f"sections/{section}.html.j2")
     return Tables(template.render({"titles": titles, **context}))
 
 
 def test_a_difference_has_mean_spread_95_percent_and_maximum_below_their_heads() -> None:
-    tables = tables_of("differences", results=SimpleNamespace(phased=True), rows=[ROW], dots=log_scale([0.021, 0.041]))
+    tables = tables_of(
+        "differences", results=SimpleNamespace(phased=True), rows=[ROW], dots=make_log_scale([0.021, 0.041])
+    )
     assert tables.rows(0) == [{
         "scene": "tower", "body": "2", "difference": "like for like", "mean, 95 %, maximum": "", "mean": "−2.1 %",
         "standard deviation": "5.2 %", "95 %": "3.1 %", "maximum": "4.1 %",
@@ -120,9 +122,9 @@ def test_the_tables_of_summary_md_have_their_numbers_below_their_heads() -> None
     results = SimpleNamespace(
         scenes=[scene], phased=[scene], grid=8, gate="All hold.", broken=[], alerts=[], absent={}, faults=[],
         measurements="nothing was measured", scenes_with=lambda name: [scene], models=models,
-        run=SimpleNamespace(command="run", took="1 s", began="now", provenance={}),
+        run=SimpleNamespace(command="run", word_run_times="1 s", began="now", provenance={}),
     )  # fmt: skip
-    text = summary_text(results)  # type: ignore[arg-type]
+    text = render_summary_text(results)  # type: ignore[arg-type]
     assert markdown(text, "Differences")[0] == {
         "scene": "tower", "body": "2", "difference": "like for like", "mean": "−2.1 %", "standard deviation": "5.2 %",
         "95 %": "3.1 %", "maximum": "4.1 %", "at (α₁, α₂)": "(90°, 45°)", "beyond u\\_D": "62 %", "no value": "5 of 61",
@@ -138,7 +140,7 @@ def alert(scene: str, kind: Any, level: Any = "amber", advice: str = "") -> Aler
 
 def test_alerts_of_a_kind_are_counted_together_and_never_across_kinds() -> None:
     listed = [alert("a", "limit", "red"), alert("b", "swing"), alert("c", "swing"), alert("d", "swing", advice="other")]
-    found = [(each["level"], each["title"], each["lines"]) for each in _alert_groups(SimpleNamespace(alerts=listed))]  # type: ignore[arg-type]
+    found = [(each["level"], each["title"], each["lines"]) for each in _group_alerts(SimpleNamespace(alerts=listed))]  # type: ignore[arg-type]
     assert found == [
         ("red", "1 acceptance limit broken", ["a: text of a"]),
         ("amber", "2 wide swings of the platform", ["b: text of b", "c: text of c"]),
@@ -151,7 +153,7 @@ def test_the_answers_stand_below_their_heads_and_beside_their_labels() -> None:
     cells = SimpleNamespace(**{name: lambda line, name=name: f"<{name} {line.body}>" for name in names})
     scene = SimpleNamespace(name="tower", title="", headlines=[SimpleNamespace(name="platform", body=1)])
     results = SimpleNamespace(scenes=[scene], phased=True, gate="", engine_lines=[])
-    template = _template_environment().get_template("sections/summary.html.j2")
+    template = _make_template_environment().get_template("sections/summary.html.j2")
     text = template.render(results=results, cells=cells, second_title="SECOND", drawn=[])
     less = "less the paper's equations, relative to these, as integrated"
     assert Tables(text).rows(0) == [{
@@ -172,8 +174,8 @@ def test_the_answers_stand_below_their_heads_and_beside_their_labels() -> None:
 def test_the_answers_name_exudyn_only_where_an_engine_takes_part(monkeypatch: pytest.MonkeyPatch) -> None:
     for sides, name in ((("equations", "engine"), "Exudyn"), (("equations", "user"), "the last model")):
         models = [SimpleNamespace(side=side) for side in sides]
-        monkeypatch.setattr(page, "models_in_use", lambda study, models=models: models)
-        assert page.name_second(SimpleNamespace()) == name  # type: ignore[arg-type]
+        monkeypatch.setattr(page, "list_models_in_use", lambda study, models=models: models)
+        assert page.name_second_model(SimpleNamespace()) == name  # type: ignore[arg-type]
 
 
 def test_a_record_has_value_error_step_and_its_error_below_their_heads() -> None:
@@ -192,8 +194,8 @@ def test_a_record_has_value_error_step_and_its_error_below_their_heads() -> None
 
 
 def test_what_was_measured_is_said_with_what_the_study_adds() -> None:
-    assert word_measurements(SimpleNamespace(clauses=[])) == VALIDATED_BRIEFLY  # type: ignore[arg-type]
-    assert word_measurements(SimpleNamespace(clauses=["one", "two"])) == f"{VALIDATED_BRIEFLY}; one; two"  # type: ignore[arg-type]
+    assert word_measurements(SimpleNamespace(measurement_clauses=[])) == VALIDATED_BRIEFLY  # type: ignore[arg-type]
+    assert word_measurements(SimpleNamespace(measurement_clauses=["one", "two"])) == f"{VALIDATED_BRIEFLY}; one; two"  # type: ignore[arg-type]
 
 
 def test_a_body_is_drawn_where_any_bar_is_seen() -> None:

@@ -13,20 +13,20 @@ from rich.console import Console
 from runs import RUN, Run
 from studies import solved
 
-from comparison.registry import EVERYTHING, report_of
-from comparison.report.junit import junit_xml
-from comparison.report.summary_text import summary_text
-from comparison.runner.progress import show_progress, wide_console
+from comparison.registry import EVERYTHING, make_report
+from comparison.report.junit import format_limits_as_junit
+from comparison.report.summary_text import render_summary_text
+from comparison.runner.progress import make_wide_console, show_progress
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.figures.file_names import name_figure_file
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
 from reference.problem import Scene, load_scene
 from reference.support.drawing import escape_for_matplotlib
 
 
 def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
-    assert figure_file("a[b=0.02]", "paper") == "a[b=0.02]-paper.png"
-    long = [figure_file("é" * 150 + end, "body1", "total") for end in "ab"]
+    assert name_figure_file("a[b=0.02]", "paper") == "a[b=0.02]-paper.png"
+    long = [name_figure_file("é" * 150 + end, "body1", "total") for end in "ab"]
     assert len(set(long)) == 2, "two long names are two files"
     assert all(len(name.encode()) <= 255 and name.endswith("-body1-total.png") for name in long)
 
@@ -46,7 +46,7 @@ def test_brackets_in_names_and_titles_are_printed(command: Callable[..., Run], t
 
 
 def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) -> None:
-    wide_console().print("[red]a[/b] :warning:")
+    make_wide_console().print("[red]a[/b] :warning:")
     assert capsys.readouterr().out == "[red]a[/b] :warning:\n"
     console = Console(width=80, force_terminal=True)
     with console.capture() as shown, show_progress(console, 1.0, 1) as display:
@@ -61,11 +61,11 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     study = Study((scene,), 2, 1e-3, fake_hierarchy(), selection=EVERYTHING)
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
-    results = report_of(study, surfaces, {}, [], RUN, families=[]).results
+    results = make_report(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
-    suites = ElementTree.fromstring(junit_xml(results).encode())
+    suites = ElementTree.fromstring(format_limits_as_junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
-    text = summary_text(results)
+    text = render_summary_text(results)
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
     assert "`` run `a` ``" in text
     assert text.count("| 2 of 4 |") == 2, "totals of two bodies, whose status is ok"

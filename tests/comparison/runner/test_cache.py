@@ -28,28 +28,28 @@ from runs import no_executor
 
 import multibody.models.engine
 from comparison.analyses.motions.analysis import MotionPlace, StoredMotion
-from comparison.evidence.claims.table import paper_complete
-from comparison.registry import ANALYSES, EVERYTHING, first_tasks
-from comparison.runner.cache import MAGIC, Cache, CacheKey
+from comparison.evidence.claims.table import has_every_paper_scene
+from comparison.registry import ANALYSES, EVERYTHING, list_first_tasks
+from comparison.runner.cache import FILE_SIGNATURE, Cache, CacheKey
 from comparison.runner.environment import (
     describe_provenance,
-    environment_fingerprint,
-    source_digest,
-    task_environment_fingerprint,
+    fingerprint_environment,
+    fingerprint_task_environment,
+    hash_source,
 )
 from comparison.runner.runner import Runner
-from comparison.runner.task import Task, TaskResult, execute, fingerprint
+from comparison.runner.task import Task, TaskResult, describe_contents, execute_task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import Outcome, Scene, builtin_scenes, load_scene
 
 SCENE = load_scene("fig3-I")
 
 
 def _batch_task(**changed: Any) -> Task:
-    return surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
+    return make_surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
 
 
 def _task(scene: Scene = SCENE, *rest: Any) -> Task:
@@ -81,30 +81,32 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
     keys = {name: other.key for name, other in tasks.items()}
     assert len(set(keys.values())) == len(keys)
     assert _batch_task(scenes=(renamed,)).key == batch.key, "a name is no number"
-    assert fingerprint(replace(model, most=8)) == fingerprint(model), "a study with another grid asks it the same"
+    assert describe_contents(replace(model, most=8)) == describe_contents(model), (
+        "a study with another grid asks it the same"
+    )
     monkeypatch.delenv("EXUDYN_MODULE", raising=False)
     with monkeypatch.context() as patch:
         patch.setenv("EXUDYN_MODULE", "fast")
         assert {_batch_task().key, _task().key}.isdisjoint(keys.values())
     assert describe_provenance()["exudyn module"] == multibody.models.engine.MODULE
-    before = fingerprint(model)
-    for name in ("_version_of", "source_digest"):
+    before = describe_contents(model)
+    for name in ("_version_of", "hash_source"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
             assert {_batch_task().key, _task().key}.isdisjoint(keys.values()), name
-            assert fingerprint(model) != before
+            assert describe_contents(model) != before
 
 
 def test_a_key_names_versions_and_sources_and_a_report_the_commit(monkeypatch: pytest.MonkeyPatch) -> None:
     everywhere = {"python", "machine", "exudyn module", "exudyn", "llvmlite", "numba", "numpy", "scipy"}
     shared = {"source of reference.problem", "source of comparison.study.batches"}
-    engine = environment_fingerprint("multibody:amplification")
+    engine = fingerprint_environment("multibody:amplification")
     assert set(engine) == everywhere | shared | {"source of multibody"}
     assert (engine["python"], engine["numpy"]) == (platform.python_version(), np.__version__)
-    of_user = set(environment_fingerprint("comparison.study.user_models:amplification"))
+    of_user = set(fingerprint_environment("comparison.study.user_models:amplification"))
     assert of_user == everywhere | shared | {"source of comparison.study.user_models"}
     sources = "reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording"
-    assert set(task_environment_fingerprint("comparison.surfaces.figures.pictures")) == (
+    assert set(fingerprint_task_environment("comparison.surfaces.figures.pictures")) == (
         everywhere | {"matplotlib", "pillow", "xarray"} | {f"source of {name}" for name in sources}
         | {"source of comparison.surfaces.figures"}
     )  # fmt: skip
@@ -123,12 +125,12 @@ def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.Mo
     for file in (inner, inner.parent / "__init__.py", tmp_path / "some_model" / "__init__.py"):
         file.write_text("a = 1\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
-    source_digest.cache_clear()
-    before = source_digest("some_model")
+    hash_source.cache_clear()
+    before = hash_source("some_model")
     inner.write_text("a = 2\n", encoding="utf-8")
-    source_digest.cache_clear()
-    assert source_digest("some_model") != before != "absent"
-    assert source_digest("no_such_package") == "absent"
+    hash_source.cache_clear()
+    assert hash_source("some_model") != before != "absent"
+    assert hash_source("no_such_package") == "absent"
 
 
 def _on_disk(folder: Path) -> int:
@@ -139,7 +141,7 @@ def _on_disk(folder: Path) -> int:
 
 def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def trim(limit: int) -> None:
-        monkeypatch.setattr("comparison.runner.cache.LIMIT", limit)
+        monkeypatch.setattr("comparison.runner.cache.MAX_CACHE_BYTES", limit)
         store.trim([needed])
 
     needed, old, new = (CacheKey(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old", "new"))
@@ -150,7 +152,7 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path, mon
     sizes = [_on_disk(tmp_path / key.group) for key in (needed, old, new)]
     aside, young = (tmp_path / new.group / f".phase-resonance-{name}" for name in ("1-x", "2-y"))
     for file, age in ((aside, 4000.0), (young, 3000.0)):
-        file.write_bytes(MAGIC + b"torn")
+        file.write_bytes(FILE_SIGNATURE + b"torn")
         os.utime(file, (time.time() - age,) * 2)
     trim(2 * sum(sizes))
     assert (aside.exists(), young.exists()) == (False, True), "what a killed run left long ago goes"
@@ -214,7 +216,7 @@ def test_an_answer_is_kept_to_the_last_bit_and_a_damaged_one_is_mended(tmp_path:
     assert pickle.dumps(second[task].value) == pickle.dumps(first[task].value) == pickle.dumps(motion(task.argument))
     assert TaskResults(Cache(tmp_path)).holds(task)
     fresh = TaskResults(Cache(tmp_path), fresh=True)
-    assert (fresh.holds(task), fresh.missing([task])) == (False, [task])
+    assert (fresh.holds(task), fresh.find_missing([task])) == (False, [task])
     (file,) = tmp_path.glob("*/*.result")
     content, number = file.read_bytes(), np.float64(0.1).tobytes()
     assert number in content
@@ -241,24 +243,24 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
     Runner(results, 2, ThreadPoolExecutor).run(tasks)
     failed = "1", Outcome.SOLVER_FAILED, "RuntimeError: singular"
     assert [results.value(task, on_failure) for task in tasks] == [failed, 2]
-    assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:1], "the next run tries them again"
+    assert TaskResults(Cache(tmp_path)).find_missing(tasks) == tasks[:1], "the next run tries them again"
     assert len(list(tmp_path.glob("*/*.result"))) == 1, "no file is left of them"
     assert results.parts["scaling test"].tasks == 2
 
 
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3, selection=EVERYTHING)
-    tasks = first_tasks(study, ANALYSES)
-    assert paper_complete(study)
+    tasks = list_first_tasks(study, ANALYSES)
+    assert has_every_paper_scene(study)
     assert len({task.key for task in tasks}) == len(tasks)
     assert {task.stage for task in tasks} == {
         "effective values", "conditioning", "scaling test", "convergence", "assumptions",
     }  # fmt: skip
-    assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
+    assert not has_every_paper_scene(Study(study.scenes[:1], 6, 1e-3))
 
 
 def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
-    assert 0.0 <= execute(Task(len, "abc", "test")).cost < 0.1 < time.process_time()
+    assert 0.0 <= execute_task(Task(len, "abc", "test")).cost < 0.1 < time.process_time()
 
 
 KEY = CacheKey('{"a": 1}', "0" * 64, "result")
@@ -302,7 +304,7 @@ VALUE = Outer(
 
 def forged(key: CacheKey, content: bytes) -> bytes:
     """A file with a right checksum."""
-    return MAGIC + hashlib.sha256(key.name.encode() + b"\0" + content).digest() + content
+    return FILE_SIGNATURE + hashlib.sha256(key.name.encode() + b"\0" + content).digest() + content
 
 
 def test_every_kind_of_value_comes_back_to_the_last_bit(tmp_path: Path) -> None:
@@ -347,7 +349,7 @@ def test_a_forged_file_with_a_right_checksum_is_not_taken(
     cache = Cache(tmp_path)
     cache.put(KEY, VALUE)
     file = tmp_path / KEY.name
-    text, _, arrays = file.read_bytes()[len(MAGIC) + 32 :].partition(b"\n")
+    text, _, arrays = file.read_bytes()[len(FILE_SIGNATURE) + 32 :].partition(b"\n")
     file.write_bytes(forged(KEY, text + b"\n" + arrays))
     assert cache.get(KEY, Outer) is not None, "unchanged, a forgery is as good as the original"
     content = forge(text, arrays)
@@ -366,12 +368,12 @@ def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
 
 
 def test_a_batch_of_another_shape_or_ok_without_numbers_is_computed_again(tmp_path: Path) -> None:
-    task = surface_tasks(Study((SCENE,), 2, 1e-3, fake_hierarchy()))[0]
+    task = make_surface_tasks(Study((SCENE,), 2, 1e-3, fake_hierarchy()))[0]
     whole = execute_batch(task.argument)
 
     def is_taken(**changed: object) -> bool:
         Cache(tmp_path).put(task.key, (replace(whole, **changed), 0.0))
-        return TaskResults(Cache(tmp_path)).missing([task]) == []
+        return TaskResults(Cache(tmp_path)).find_missing([task]) == []
 
     assert is_taken()
     for name in ("mu", "error", "status", "instant", "displacement"):

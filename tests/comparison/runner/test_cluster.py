@@ -22,17 +22,17 @@ from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import batch_results, surface_tasks
+from comparison.surfaces.surfaces import collect_batch_results, make_surface_tasks
 from reference.problem import load_scene
 
 
 def _results(executor: Pool, done: Callable[[int], object] = lambda count: None) -> list[tuple[bytes | list[str], ...]]:
     """The engine's surface to the last bit; `done` is told how many batches are."""
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("uneven", batch=1))
-    tasks = [task for task in surface_tasks(study) if task.argument.model == "translational"]
+    tasks = [task for task in make_surface_tasks(study) if task.argument.model == "translational"]
     results, count = TaskResults(), iter(range(1, len(tasks) + 1))
     Runner(results, 2, executor, Display(1.0, 2, lambda display: done(next(count)))).run(tasks)
-    batches = batch_results(tasks, results)
+    batches = collect_batch_results(tasks, results)
     return [(each.mu.tobytes(), each.error.tobytes(), each.instant.tobytes(), each.status) for each in batches]
 
 
@@ -60,7 +60,7 @@ class Lost(ThreadPoolExecutor):
     def start(self, call: Callable[[], Any], seconds: float | None, group: str) -> Future[Any]:
         self.begun += 1
         if self.begun > 5:
-            raise ExecutorLostError(dask.GONE)
+            raise ExecutorLostError(dask.CONNECTION_LOST)
         return self.submit(call)
 
 
@@ -116,8 +116,8 @@ def serve(answer: bytes) -> Iterator[str]:
 def test_no_scheduler_is_a_wrong_option(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
-    assert dask.LONGEST_KNOCK < 15.0
-    monkeypatch.setattr(dask, "LONGEST_KNOCK", 1.5)
+    assert dask.MAX_CONNECT_SECONDS < 15.0
+    monkeypatch.setattr(dask, "MAX_CONNECT_SECONDS", 1.5)
     with serve(ANSWERS[kind]) if kind in ANSWERS else nullcontext(kind) as address:
         run = command("fig3-I", "--scheduler", address, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.err.count("\n")) == (2, 1)
@@ -134,7 +134,7 @@ def test_a_scheduler_and_a_number_of_processes_exclude_each_other(command: Calla
 def test_workers_with_other_code_are_refused(
     workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("comparison.runner.environment._version_of", lambda name: "9.9")
+    monkeypatch.setattr("comparison.runner.environment._read_version", lambda name: "9.9")
     run = command("fig3-I", "--scheduler", workers.address, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.err.count("\n")) == (2, 1)
     assert "here it is 9.9: install the same" in run.err
@@ -144,7 +144,7 @@ def test_a_task_that_killed_every_worker_it_was_on_has_died_as_often() -> None:
     remote: Future[Any] = Future()
     remote.set_exception(KilledWorker("task", SimpleNamespace(address="tcp://there"), 3))
     answer: Future[Any] = Future()
-    dask._pass_on(remote, answer)
+    dask._copy_outcome(remote, answer)
     error = answer.exception()
     assert isinstance(error, WorkerDiedError)
     assert error.times == 4

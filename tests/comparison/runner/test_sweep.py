@@ -24,17 +24,17 @@ from comparison.runner.processes import (
     Pool,
     TimeLimitError,
     WorkerDiedError,
-    one_thread_each,
+    limit_child_threads,
+    make_process_pool,
     open_executor,
-    process_pool,
 )
 from comparison.runner.runner import Runner
-from comparison.runner.task import GIVEN_UP, Task, TaskResult
+from comparison.runner.task import GIVEN_UP_MESSAGE, Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
-from comparison.study.user_models import user_model
-from comparison.surfaces.surfaces import batch_results, surface_tasks
+from comparison.study.user_models import make_user_model
+from comparison.surfaces.surfaces import collect_batch_results, make_surface_tasks
 from reference.problem import Outcome, load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
@@ -44,7 +44,9 @@ def _tasks(folder: Path, *names: str) -> list[Task]:
     return [Task(counted, str(folder / name), "test", needs_compiled_reference=False) for name in names]
 
 
-def _run(tasks: list[Task], make: Pool = process_pool, jobs: int = 2, folder: Path | None = None) -> list[TaskResult]:
+def _run(
+    tasks: list[Task], make: Pool = make_process_pool, jobs: int = 2, folder: Path | None = None
+) -> list[TaskResult]:
     results = TaskResults(folder and Cache(folder / "cache"))
     Runner(results, jobs, make).run(tasks)
     return [results[task] for task in tasks]
@@ -67,7 +69,7 @@ def test_libraries_of_a_worker_use_one_thread_unless_the_user_says_otherwise(mon
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("MKL_NUM_THREADS", "3")
-    one_thread_each()
+    limit_child_threads()
     assert [os.environ[f"{name}_NUM_THREADS"] for name in ("OMP", "OPENBLAS", "MKL")] == ["1", "1", "3"]
 
 
@@ -85,14 +87,19 @@ class Deadly(ThreadPoolExecutor):
 @pytest.mark.parametrize("batch", [2, 16])
 def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
     hierarchy = [model for model in fake_hierarchy(batch=batch, gap=0.0) if model.key == "translational"]
-    tasks, results = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)), TaskResults(Cache(tmp_path))
+    tasks, results = (
+        make_surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)),
+        TaskResults(Cache(tmp_path)),
+    )
     Runner(results, 2, Deadly).run(tasks)
-    found = batch_results(tasks, results)
+    found = collect_batch_results(tasks, results)
     assert [outcome for result in found for outcome in result.status] == ["ok"] * 15 + ["worker died"]
     expected = np.concatenate([execute_batch(task.argument).mu for task in tasks])
     np.testing.assert_array_equal(np.concatenate([result.mu for result in found])[:15], expected[:15])
     assert found[-1].error_message == "the worker process died 2 times (exit code 7)"
-    assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[-1:], "only the batch that lost a point is tried again"
+    assert TaskResults(Cache(tmp_path)).find_missing(tasks) == tasks[-1:], (
+        "only the batch that lost a point is tried again"
+    )
 
 
 def test_halves_of_a_batch_are_its_points_in_order() -> None:
@@ -138,7 +145,7 @@ def test_a_lent_executor_that_breaks_ends_the_run_in_one_line(tmp_path: Path, br
         with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as error_message:
             Runner(results, 1, lent).run(tasks)
     assert "\n" not in str(error_message.value)
-    assert results.missing(tasks) == tasks[0 if broken_before else 1 :], "what had arrived was kept"
+    assert results.find_missing(tasks) == tasks[0 if broken_before else 1 :], "what had arrived was kept"
 
 
 def test_an_executor_ends_with_the_block_that_it_was_made_for() -> None:
@@ -207,7 +214,7 @@ def test_a_repeated_run_waits_for_a_hang_only_if_it_allows_more(tmp_path: Path) 
     assert first == again == shorter
     (longer,) = _run([task(2.0)], Limited, folder=tmp_path)
     assert longer.error_message == "no answer within 2 s"
-    assert TaskResults(Cache(tmp_path / "cache")).missing([task(None)]), "without a limit it may take any time"
+    assert TaskResults(Cache(tmp_path / "cache")).find_missing([task(None)]), "without a limit it may take any time"
 
 
 def test_a_silent_process_is_waited_for_by_its_limit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -241,7 +248,7 @@ def test_a_process_runs_the_tasks_of_one_group(monkeypatch: pytest.MonkeyPatch) 
         def end(self) -> None: ...
 
     monkeypatch.setattr(processes, "_Process", Numbered)
-    with process_pool(1) as pool:
+    with make_process_pool(1) as pool:
         assert [pool.start(str, group=group).result() for group in ("", "a", "", "b", "a")] == [0, 1, 0, 2, 1]
 
 
@@ -274,14 +281,14 @@ def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
 
 def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
-    model = user_model("mine", {"function": "user_engines:plain"})
-    tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
+    model = make_user_model("mine", {"function": "user_engines:plain"})
+    tasks = make_surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
     results = _run(tasks, Limited, jobs=1, folder=tmp_path)
     assert [result.outcome for result in results] == [*[Outcome.TIME_LIMIT] * 3, Outcome.NOT_ASKED]
-    assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]
-    assert TaskResults(Cache(tmp_path / "cache")).missing(tasks) == tasks[3:]
+    assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP_MESSAGE]
+    assert TaskResults(Cache(tmp_path / "cache")).find_missing(tasks) == tasks[3:]
     monkeypatch.setattr(Limited, "error", WorkerDiedError)
-    assert _run(tasks, Limited, jobs=1)[-1].error_message == GIVEN_UP, "also one that ends its process"
+    assert _run(tasks, Limited, jobs=1)[-1].error_message == GIVEN_UP_MESSAGE, "also one that ends its process"
 
 
 COMPILED = threading.Event()

@@ -19,11 +19,11 @@ from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
 from comparison.runner.cache import Cache, CacheKey, locate_store
-from comparison.runner.manifest import MANIFEST, Own, list_foreign_files, manifest_json, read_manifest
+from comparison.runner.manifest import MANIFEST, OwnedFile, format_manifest, list_foreign_files, read_manifest
 from comparison.runner.output import (
-    clear_dead,
     publish_files,
     refuse_foreign_files,
+    remove_abandoned_reports,
     replace_report,
     resolve_destination,
 )
@@ -77,13 +77,13 @@ def test_what_appears_in_out_meanwhile_stays(
 def test_a_study_says_where_its_report_went_instead(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write = reports.report_of
+    write = reports.make_report
 
     def meanwhile(*arguments: object, **options: object) -> object:
         mine(tmp_path / "report" / "thesis.txt")
         return write(*arguments, **options)
 
-    monkeypatch.setattr(reports, "report_of", meanwhile)
+    monkeypatch.setattr(reports, "make_report", meanwhile)
     run = command(*SMALL)
     assert (run.code, run.err.count("\n"), is_mine(tmp_path / "report" / "thesis.txt")) == (0, 1, True)
     assert "'thesis.txt' there is not a file of this study" in run.err
@@ -160,8 +160,8 @@ def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, monkeypatch: py
 def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> None:
     put(tmp_path / "report")
     thesis = mine(tmp_path / "thesis.txt")
-    own = Own("comparison.run", (hashlib.sha256(thesis.read_bytes()).hexdigest(),))
-    tampered = manifest_json(read_manifest(tmp_path / "report") | {"../thesis.txt": own})
+    own = OwnedFile("comparison.run", (hashlib.sha256(thesis.read_bytes()).hexdigest(),))
+    tampered = format_manifest(read_manifest(tmp_path / "report") | {"../thesis.txt": own})
     (tmp_path / "report" / MANIFEST).write_bytes(tampered)
     assert put(tmp_path / "report")[0] == tmp_path / "report"
     assert is_mine(thesis)
@@ -174,7 +174,7 @@ def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path, mo
     photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
     files = [mine(photos / "a.jpg"), mine(photos / "b.batch"), mine(tmp_path / "e.tiles" / old.group / "c.batch")]
     (tmp_path / "e.tiles" / "link").symlink_to(photos)
-    monkeypatch.setattr("comparison.runner.cache.LIMIT", 0)
+    monkeypatch.setattr("comparison.runner.cache.MAX_CACHE_BYTES", 0)
     cache.trim([needed])
     assert all(map(is_mine, files))
     assert not (tmp_path / "e.tiles" / old.name).exists(), "what is the study's own is"
@@ -271,7 +271,7 @@ def test_a_report_that_cannot_be_finished_leaves_the_old_one(
     def breaks(*rest: object) -> str:
         raise error  # the surfaces, the summary and the figures are written by then
 
-    monkeypatch.setattr(page, "page_data", breaks)
+    monkeypatch.setattr(page, "collect_page_data", breaks)
     run = command(*SMALL, "--tolerance", "2e-3")
     assert (run.code, run.err.count("\n")) == (code, 1)
     assert {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()} == before
@@ -299,12 +299,12 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
             os.write(begins, b"x")
             signal.pause()
     os.read(begun, 1)
-    clear_dead(tmp_path / "report")
+    remove_abandoned_reports(tmp_path / "report")
     assert len(list(tmp_path.iterdir())) == 3, "it lives"
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
     assert len(list(tmp_path.iterdir())) == 3
-    clear_dead(tmp_path / "report")
+    remove_abandoned_reports(tmp_path / "report")
     assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(alike)
     assert all(is_mine(tmp_path / name / "old" / "photo.jpg") for name in alike)
 

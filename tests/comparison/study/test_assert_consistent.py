@@ -11,7 +11,7 @@ from known_analyses import answering, with_engine_off_by
 
 import reference
 from comparison.study.batches import execute_batch
-from comparison.study.user_models import LAWS
+from comparison.study.user_models import REFERENCE_MODEL_KEYS
 from comparison.testing import assert_consistent
 from reference.problem import Scene, SceneError
 
@@ -104,7 +104,7 @@ def off_by(factor: float, law: str, missing: int = 0, status: str = "ok"):  # ty
     return engine
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", REFERENCE_MODEL_KEYS)
 def test_a_user_engine_is_compared_with_the_equations_of_its_law(law: str) -> None:
     limits = {"like_for_like": 1e-4, "like_for_like_maximum": 1e-4, "grid": 2, "law": law}
     assert_consistent(SHORT, **limits, engine=off_by(1.0, law))
@@ -114,10 +114,10 @@ def test_a_user_engine_is_compared_with_the_equations_of_its_law(law: str) -> No
     assert all(line.endswith(" (error unknown)") for line in lines)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", REFERENCE_MODEL_KEYS)
 def test_no_other_law_is_taken_for_that_of_an_engine(law: str) -> None:
     scene = SHORT.with_values({"duration": 6.0})  # with stops, which tell the readings apart
-    for other in [other for other in LAWS if other != law]:
+    for other in [other for other in REFERENCE_MODEL_KEYS if other != law]:
         lines = failure(scene, like_for_like_maximum=1e-4, grid=2, law=other, engine=off_by(1.0, law))
         assert "your engine" in lines[0]
 

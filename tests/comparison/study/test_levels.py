@@ -26,11 +26,11 @@ from comparison.runner.progress import Deadline, Display, TimeUpError, show_prog
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.levels import levels_of
+from comparison.study.levels import make_levels
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study, levels_of_phases, nested_grids
-from comparison.study.user_models import user_model
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.study.user_models import make_user_model
+from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import load_scene
 from reference.support.command import StoppedError
 
@@ -42,7 +42,7 @@ STOP = 60  # results stored within the second level: the first has 20
 @pytest.fixture
 def command(command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command with a few large batches; every level gets a report, however soon it is done."""
-    monkeypatch.setattr(reports, "PATIENCE", 0.0)
+    monkeypatch.setattr(reports, "MIN_REPORT_INTERVAL", 0.0)
     return partial(command, hierarchy=fake_hierarchy(batch=36))
 
 
@@ -53,9 +53,9 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
     assert all(fine % coarse == 0 and fine > coarse for coarse, fine in itertools.pairwise(chain))
     assert [(level <= number).sum() for number in range(len(chain))] == list(chain)
     study = Study(SCENES, grid, 1e-3, MODEL_HIERARCHY)
-    found = levels_of(study, {"motions": 3})
+    found = make_levels(study, {"motions": 3})
     assert found[-1].study is study
-    asked = [{task.key for task in surface_tasks(level.study)} for level in found]
+    asked = [{task.key for task in make_surface_tasks(level.study)} for level in found]
     assert all(coarse <= fine for coarse, fine in itertools.pairwise(asked))
     for level in found:
         axis = {model.key: len(level.study.phase_indices(model)) for model in level.study.hierarchy}
@@ -63,9 +63,9 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
 
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
-    models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
+    models = [*MODEL_HIERARCHY, make_user_model("mine", {"function": "user_engines:plain"})]
     study = Study((load_scene("fig3-I"),), 48, 1e-3, models, selection=registry.EVERYTHING)
-    first, second, last = (level.study for level in registry.study_levels(study))
+    first, second, last = (level.study for level in registry.make_study_levels(study))
     grids = [[len(study.phase_indices(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
     assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
     why = "follows at a later level of the study"
@@ -77,14 +77,14 @@ def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
 def test_each_level_has_a_whole_report_that_names_it(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write, seen = reports.Reports.write, []
+    write, seen = reports.ReportWriter.write, []
 
-    def noting(self: reports.Reports, complete: reports.CompleteLevel, *rest: Any, **more: Any) -> Any:
+    def noting(self: reports.ReportWriter, complete: reports.CompleteLevel, *rest: Any, **more: Any) -> Any:
         said = write(self, complete, *rest, **more)
         seen.append((summary_of(self.place), xr.load_dataset(self.place / "surfaces.nc"), page_of(self.place)))
         return said
 
-    monkeypatch.setattr(reports.Reports, "write", noting)
+    monkeypatch.setattr(reports.ReportWriter, "write", noting)
     run = command(*WORDS)
     assert run.code == 0
     for number, grid, (summary, surfaces, page) in zip((1, 2, 3), (8, 24, 24), seen, strict=True):
@@ -197,7 +197,7 @@ def test_work_is_counted_once_in_phase_pairs_and_tasks_of_its_weight() -> None:
     said: list[tuple[str, float]] = []
     display = Display(100.0, 1, lambda display: said.append((display.text.rsplit(",", 1)[0], display.done)))
     tasks = [Task(math.sqrt, number, "roots", seconds) for number, seconds in ((1.0, 1.0), (4.0, 4.0))]
-    batches = surface_tasks(Study(SCENES[:1], 2, 1e-3, fake_hierarchy(batch=3)[:1]))
+    batches = make_surface_tasks(Study(SCENES[:1], 2, 1e-3, fake_hierarchy(batch=3)[:1]))
     runner = Runner(
         TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0, "small equations, literal supremum": 40.0}
     )

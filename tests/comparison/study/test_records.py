@@ -6,9 +6,9 @@ from studies import solved
 
 import multibody
 from comparison.analyses.motions.analysis import choose_places
-from comparison.registry import ANALYSES, EVERYTHING, first_tasks
-from comparison.study.batches import refusal_of
-from comparison.study.costs import seconds_per_point
+from comparison.registry import ANALYSES, EVERYTHING, list_first_tasks
+from comparison.study.batches import find_refusal
+from comparison.study.costs import estimate_point_seconds
 from comparison.study.models import (
     MODEL_HIERARCHY,
     SOFTENED_SPATIAL,
@@ -17,7 +17,7 @@ from comparison.study.models import (
     pairs_of,
     with_steps_of_scenes,
 )
-from comparison.study.reductions import list_omissions
+from comparison.study.reductions import list_skipped_computations
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.missing_values import advise_on_outcome
@@ -27,9 +27,9 @@ from reference.problem import Outcome, Scene, load_scene
 
 def test_what_needs_phases_is_not_asked_of_a_record():
     study = Study((load_scene("synthetic-pair"),), 4, 1e-3, selection=EVERYTHING)
-    assert {task.stage for task in first_tasks(study, ANALYSES)} == {"effective values"}
+    assert {task.stage for task in list_first_tasks(study, ANALYSES)} == {"effective values"}
     assert Pictures().tasks(study, label_surfaces(study, [], [])) == []
-    assert list_omissions(study) == []
+    assert list_skipped_computations(study) == []
     (place,) = choose_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
 
@@ -61,15 +61,15 @@ def test_a_softened_step_has_phases_and_cost_of_its_model() -> None:
     scene = on_bars()
     *_, spatial, softened = with_steps_of_scenes(MODEL_HIERARCHY, [scene])
     assert softened.most == spatial.most
-    assert seconds_per_point(scene, softened) == pytest.approx(0.22 / 20.0), "1 s of 20, two bodies"
+    assert estimate_point_seconds(scene, softened) == pytest.approx(0.22 / 20.0), "1 s of 20, two bodies"
     taller = PLAIN.with_values({"bodies": [*PLAIN.bodies, PLAIN.bodies[-1]]})
-    assert seconds_per_point(taller, spatial) == pytest.approx(1.5 * 0.22)
+    assert estimate_point_seconds(taller, spatial) == pytest.approx(1.5 * 0.22)
 
 
 def test_bars_that_buckle_cost_no_other_model() -> None:
     scene = on_bars(**BARE, **{"bodies.1.bars.bending_stiffness": 0.2})
     hierarchy = with_steps_of_scenes(MODEL_HIERARCHY, [scene])
-    assert "buckle sideways" in refusal_of(scene, SOFTENED_TRANSLATIONAL, 1e-3)
+    assert "buckle sideways" in find_refusal(scene, SOFTENED_TRANSLATIONAL, 1e-3)
     study = Study((scene,), 1, 1e-3, models_of(scene, hierarchy)[5:])
     finite = np.isfinite(solved(study)["mu"])
     assert [bool(finite.sel(model=model.key).all()) for model in study.hierarchy] == [True, True, False]

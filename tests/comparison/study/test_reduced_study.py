@@ -11,8 +11,8 @@ from runs import RUN
 from studies import solved
 
 import multibody
-from comparison.registry import report_of
-from comparison.study.batches import execute_batch, refusal_of
+from comparison.registry import make_report
+from comparison.study.batches import execute_batch, find_refusal
 from comparison.study.models import (
     EXACT,
     MODEL_HIERARCHY,
@@ -22,10 +22,10 @@ from comparison.study.models import (
     SPATIAL,
     TRANSLATIONAL,
     Model,
+    applies_to_no_scene,
     models_of,
-    no_scene,
 )
-from comparison.study.reductions import list_omissions
+from comparison.study.reductions import list_skipped_computations
 from comparison.study.study import Study
 from reference.problem import Scene, load_scene
 from reference.problem.reductions import is_mirror_symmetric
@@ -80,7 +80,7 @@ def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
     fewer, reduced = surfaces(scene, [EXACT], full=False)
     assert (whole, fewer) == (GRID**2, GRID)
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
-    (row,) = list_omissions(Study((scene,), GRID, 1e-3, [EXACT]))
+    (row,) = list_skipped_computations(Study((scene,), GRID, 1e-3, [EXACT]))
     why = "a harmonic without amplitude: its phase changes nothing"
     assert row[:3] == ("mirrored phases, all but 1/4", "all models", why)
 
@@ -102,7 +102,7 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
     for full in (False, True):
         batches = Study((short(),), GRID, 1e-3, full=full).batches()
         assert all(batch.settings.get("full", False) == full for batch in batches)
-        told = refusal_of(short(), replace(TRANSLATIONAL, refusal="fake_models:says_what_it_is_asked"), 1e-4, full)
+        told = find_refusal(short(), replace(TRANSLATIONAL, refusal="fake_models:says_what_it_is_asked"), 1e-4, full)
         asked = {"model": "translational", "regularization": 1e-3, "tolerance": 1e-4}
         assert told == str(asked | ({"full": True} if full else {}))
 
@@ -110,20 +110,20 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     platform = {**load_scene("fig3-I").model_dump(exclude_none=True)["bodies"][0], "height": 0.0}
     scene = short(isolator={"friction": 0.0}).with_values({"bodies": [platform]})
-    assert [(row.what, row.models) for row in list_omissions(Study((scene,), GRID, 1e-3))] == [
+    assert [(row.what, row.models) for row in list_skipped_computations(Study((scene,), GRID, 1e-3))] == [
         ("mirrored phases, all but 1/4", "all models"),
         ("laws of friction", "small-resolved, resolved, small-regularised, regularised"),
         ("every run but one per harmonic", "small"),
         ("rotations, all supports but one", "spatial"),
     ]
-    assert list_omissions(Study((scene,), GRID, 1e-3, full=True)) == []
-    (_, *plane) = list_omissions(Study((load_scene("fig4-dry"),), GRID, 1e-3))
+    assert list_skipped_computations(Study((scene,), GRID, 1e-3, full=True)) == []
+    (_, *plane) = list_skipped_computations(Study((load_scene("fig4-dry"),), GRID, 1e-3))
     assert [(row.what, row.models) for row in plane] == [
         ("motion across its plane", "small, exact, small-resolved, resolved, small-regularised, regularised"),
         ("motion across its plane, of the bodies", "translational"),
     ]
     twins = tuple(load_scene("fig3-I").with_values({"name": name}) for name in "ab")
-    (row,) = list_omissions(Study(twins, GRID, 1e-3))
+    (row,) = list_skipped_computations(Study(twins, GRID, 1e-3))
     assert row.scenes == ("a", "b")
 
 
@@ -142,7 +142,7 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
     assert len(odd.solved(odd.scenes[0], EXACT)) == 25, "an odd grid is computed in full"
     few = replace(odd, grid=7, hierarchy=[replace(EXACT, most=4)])
     assert len(few.solved(few.scenes[0], few.hierarchy[0])) == 16, "the last phase and the first are closer"
-    plain = replace(EXACT, symmetric=no_scene)
+    plain = replace(EXACT, symmetric=applies_to_no_scene)
     assert len(study.solved(load_scene("fig3-I"), plain)) == GRID**2
     uneven = load_scene("fig3-I").with_values({"isolator.supports": 3})
     assert len(replace(study, hierarchy=[SPATIAL]).solved(uneven, SPATIAL)) == GRID**2
@@ -151,7 +151,7 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
 def test_the_report_counts_what_a_model_computed() -> None:
     models = [replace(model, symmetric=is_mirror_symmetric) for model in fake_hierarchy()]
     study = Study((load_scene("fig3-I"),), GRID, 1e-3, models)
-    [scene] = report_of(study, solved(study), {}, [], RUN, families=[]).results.scenes
+    [scene] = make_report(study, solved(study), {}, [], RUN, families=[]).results.scenes
     assert {(row.points, row.computed) for row in scene.models.values()} == {(16, 4)}
 
 

@@ -12,7 +12,7 @@ from report_texts import both_pages, schema_errors, summary_of
 from runs import Run
 
 from comparison.cli.options import parse_options
-from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, first_tasks, select_analyses
+from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, list_first_tasks, select_analyses
 from comparison.runner.cache import CacheKey
 from comparison.runner.task import Task
 from comparison.study.selection import make_selection, select_names
@@ -41,7 +41,7 @@ def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
     def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[CacheKey]]:
         part = replace(study, selection=make_selection(SELECTABLE, study.scenes, only, skip))
         pictures = Pictures().tasks(part, label_surfaces(study, [], []))
-        return first_tasks(part, select_analyses(part)), {task.key for task in pictures}
+        return list_first_tasks(part, select_analyses(part)), {task.key for task in pictures}
 
     every, all_pictures = tasks(None, None)
     for analysis, stage in STAGES.items():
@@ -122,7 +122,7 @@ def test_claims_are_of_the_papers_scenes(command: Callable[..., Run], tmp_path: 
     assert make_selection(SELECTABLE, [mine], ["claims"], None).has("claims", "mine")
     skipped = make_selection(SELECTABLE, [mine], None, ["claims", "demands"])
     assert not skipped.has("claims", "mine")
-    assert [skipped.why_absent(key) for key in ("claims", "demands")] == ["not asked for"] * 2
+    assert [skipped.explain_absence(key) for key in ("claims", "demands")] == ["not asked for"] * 2
     assert summary_of(command(files[0], *GRID).report)["absent"] == {
         "claims": "of the paper's scenes; --only claims makes it of others",
         "demands": "on request; --also demands makes it",

@@ -21,24 +21,24 @@ from runs import Run
 from studies import body_comparisons, difference_rows, solved
 
 import reference
-from comparison.cli.user_models import as_words, look_at, user_models
+from comparison.cli.user_models import inspect_in_worker, load_user_models, word_engine_options
 from comparison.evidence.extremes.analysis import list_cells
-from comparison.evidence.extremes.columns import user_column
-from comparison.evidence.extremes.rows import extreme_cases
+from comparison.evidence.extremes.columns import make_user_column
+from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
-from comparison.evidence.tradeoff.feature import tradeoff_panels
+from comparison.evidence.tradeoff.feature import make_tradeoff_panels
 from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
-from comparison.runner.environment import engine_fingerprint, source_digest
-from comparison.runner.processes import process_pool
+from comparison.runner.environment import fingerprint_engine, hash_source
+from comparison.runner.processes import make_process_pool
 from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
 from comparison.study.study import Study
-from comparison.study.user_models import LAWS, amplification, user_model
-from comparison.surfaces.budget import budget_entries
+from comparison.study.user_models import REFERENCE_MODEL_KEYS, amplification, make_user_model
+from comparison.surfaces.budget import list_budget_entries
 from comparison.surfaces.headline import make_headline
-from comparison.surfaces.missing_values import list_missing_values, study_of_results
-from comparison.surfaces.surfaces import surface_tasks
+from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
+from comparison.surfaces.surfaces import make_surface_tasks
 from comparison.surfaces.waterfall import make_waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
@@ -54,14 +54,14 @@ ASKS = user_engines.asks_us_wrongly.__code__.co_firstlineno + 3
 
 
 def supplied(function: str, name: str = "mine", like: str = "regularised") -> Model:
-    return user_model(name, {"function": f"user_engines:{function}"}, like)
+    return make_user_model(name, {"function": f"user_engines:{function}"}, like)
 
 
 def studied(*models: Model) -> tuple[Study, xr.Dataset]:
     """A study with models of known answer and these, computed here."""
     study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
     surfaces = solved(study)
-    return study_of_results(study, surfaces), surfaces
+    return leave_out_empty_models(study, surfaces), surfaces
 
 
 def test_the_engine_of_the_documentation_appears_in_the_report(
@@ -155,7 +155,7 @@ def test_what_cannot_be_imported_or_called_is_named(
     (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
     (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
     monkeypatch.syspath_prepend(str(tmp_path))
-    said, _ = look_at(path)
+    said, _ = inspect_in_worker(path)
     assert said.startswith(fault)
     assert "\n" not in said
 
@@ -165,14 +165,14 @@ def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: p
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
     with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
-        user_models(["mine=engine_that_leaves:f"])
+        load_user_models(["mine=engine_that_leaves:f"])
 
 
 def test_functions_are_used_from_python_by_their_place() -> None:
-    words = as_words({"a": user_engines.plain, "b": "user_engines:raises@exact"})
+    words = word_engine_options({"a": user_engines.plain, "b": "user_engines:raises@exact"})
     assert words == ["--model", "a=user_engines:plain", "--model", "b=user_engines:raises@exact"]
     with pytest.raises(SceneError, match=r"models: a = '.*<lambda>': worker processes import an engine by its name"):
-        as_words({"a": lambda scene, phases: None})
+        word_engine_options({"a": lambda scene, phases: None})
 
 
 @pytest.mark.parametrize("form", ["plain", "with_error", "as_object", "as_full_object", "as_list"])
@@ -232,7 +232,7 @@ def test_values_that_are_none_are_never_ok(monkeypatch: pytest.MonkeyPatch) -> N
     assert 7.5 <= cost < 8.5, "what its processes cost is its own"
 
 
-@pytest.mark.parametrize("like", LAWS)
+@pytest.mark.parametrize("like", REFERENCE_MODEL_KEYS)
 def test_the_documentation_names_every_argument(like: str) -> None:
     table = DOCS.read_text(encoding="utf-8").split("| by name | passed | value |")[1].split("\n\n")[0]
     rows = {line.split("`")[1]: line for line in table.splitlines()[2:]}
@@ -258,12 +258,12 @@ def test_a_user_engine_changes_no_other_number(function: str) -> None:
     study, surfaces = studied(supplied(function))
     others = [model.key for model in alone.hierarchy]
     xr.testing.assert_identical(surfaces.sel(model=others), without)
-    entries = [budget_entries(body_comparisons(*each)) for each in ((study, surfaces), (alone, without))]
+    entries = [list_budget_entries(body_comparisons(*each)) for each in ((study, surfaces), (alone, without))]
     assert repr(entries[0]) == repr(entries[1])  # repr: NaN is not equal to itself
     theirs = [row for row in difference_rows(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(difference_rows(alone, without))
-    keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
-    assert keys == [task.key for task in surface_tasks(alone)]
+    keys = [task.key for task in make_surface_tasks(study) if task.argument.model != "mine"]
+    assert keys == [task.key for task in make_surface_tasks(alone)]
     assert {gap.model for gap in list_missing_values(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
@@ -446,7 +446,7 @@ def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tm
 
 def test_it_is_compared_with_the_model_of_its_law() -> None:
     wet = load_scene("fig4-viscous")
-    for like in LAWS:
+    for like in REFERENCE_MODEL_KEYS:
         dry_pairs, wet_pairs = (
             {pair.key: pair.first.key for pair in pairs_of(scene, [*fake_hierarchy(), supplied("plain", like=like)])}
             for scene in (SCENE, wet)
@@ -461,21 +461,21 @@ def test_its_results_belong_to_its_source_and_its_helpers(tmp_path: Path, monkey
     for helper, engine in (("1", "1"), ("2", "1"), ("2", "2"), ("2", "2")):
         (tmp_path / "its_helper.py").write_text(f"NUMBER = {helper}\n")
         (tmp_path / "its_engine.py").write_text(f"import json, numpy\nimport its_helper\nNUMBER = {engine}\n")
-        source_digest.cache_clear()
-        seen.append(engine_fingerprint("its_engine"))
+        hash_source.cache_clear()
+        seen.append(fingerprint_engine("its_engine"))
     assert seen[2] == seen[3]
     assert len({json.dumps(about, sort_keys=True) for about in seen}) == 3
     assert set(seen[0]) == {"numpy", "source of its_engine", "source of its_helper"}
     (tmp_path / "its_folder").mkdir()  # without __init__.py
     (tmp_path / "its_folder" / "inner.py").write_text("import reference\n")
-    assert {"source of its_folder.inner", "source of reference"} <= set(engine_fingerprint("its_folder.inner"))
+    assert {"source of its_folder.inner", "source of reference"} <= set(fingerprint_engine("its_folder.inner"))
 
 
 @pytest.mark.long
 def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]) -> None:
     engines = ("prints", "computes-for-ever", "waits-for-ever", "leaves", "spoils-its-process")
     words = [word for name in engines for word in ("--model", f"{name}=user_engines:{name.replace('-', '_')}")]
-    run = command("fig3-I", "--grid", "2", *words, *ONLY, "--model-limit", "2", executor=process_pool)
+    run = command("fig3-I", "--grid", "2", *words, *ONLY, "--model-limit", "2", executor=make_process_pool)
     assert run.code == 0
     assert "noise" not in run.out + run.err
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
@@ -486,20 +486,20 @@ def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]
 
 
 def test_extremes_of_its_law_concern_a_user_engine() -> None:
-    every = list(extreme_cases())
-    met = {cell.row.name for cell in list_cells(every, [user_column(supplied("plain"))])}
+    every = list(list_extreme_cases())
+    met = {cell.row.name for cell in list_cells(every, [make_user_column(supplied("plain"))])}
     alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
     assert met == alike
 
 
 def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
-        model = user_model("mine", {"function": "user_engines:plain", "names": names}, like)
+        model = make_user_model("mine", {"function": "user_engines:plain", "names": names}, like)
         return [(one.question, one.value, one.against is None) for one in list_user_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
-    models = (user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
+    models = (make_user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
     tasks = TradeOff([SCENE], True, models).tasks()
     mine = [task.timeout / len(task.argument.phases) for task in tasks if task.group]
     assert set(mine) == {7.0}
@@ -507,7 +507,9 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
 
 def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: [])
-    monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
+    monkeypatch.setattr(
+        analysis, "list_questions", lambda scene: [one for one in QUESTIONS if one.key == "regularised"]
+    )
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})
     (measured,) = computed(TradeOff([scene], True, models), lambda jobs: ThreadPoolExecutor(1))
@@ -517,5 +519,5 @@ def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatc
     assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
     assert good.error_estimate == [None, None], "it states none"
     assert good.pareto_front == (True, True)
-    curves = {line["name"] for each in tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
+    curves = {line["name"] for each in make_tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
     assert curves == {good.method}, "one without an answer has no curve"

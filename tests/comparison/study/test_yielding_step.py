@@ -19,7 +19,7 @@ from comparison.study.models import (
     with_steps_of_scenes,
 )
 from comparison.study.study import Study
-from comparison.study.user_models import user_model
+from comparison.study.user_models import make_user_model
 from reference.problem import load_scene
 from reference.problem.readings import DEFAULT_V_C
 
@@ -73,5 +73,5 @@ def test_words_are_those_of_the_law() -> None:
     ("like", "partner"), [("small-resolved", "small"), ("exact", "exact"), ("regularised", "exact")]
 )
 def test_an_engine_of_the_user_is_compared_under_the_same_law(like: str, partner: str) -> None:
-    engine = user_model("mine", {"function": "mine:amplification"}, like)
+    engine = make_user_model("mine", {"function": "mine:amplification"}, like)
     assert partner_of(engine, SOFT, HIERARCHY).key == partner

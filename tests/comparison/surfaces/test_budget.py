@@ -17,15 +17,15 @@ from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.budget import TOTAL, BudgetEntry, budget_entries, closure_error
+from comparison.surfaces.budget import TOTAL, BudgetEntry, compute_closure_error, list_budget_entries
 from comparison.surfaces.differences import Difference
 from comparison.surfaces.missing_values import list_missing_values
-from comparison.surfaces.model_difference import RESOLVED, ModelDifference
+from comparison.surfaces.model_difference import RESOLVED_RATIO, ModelDifference
 from reference.problem import builtin_scenes, load_scene
 
 
 def _table(study: Study, surfaces: xr.Dataset) -> dict[str, BudgetEntry]:
-    return {entry.step: entry for entry in budget_entries(body_comparisons(study, surfaces)) if entry.body == 1}
+    return {entry.step: entry for entry in list_budget_entries(body_comparisons(study, surfaces)) if entry.body == 1}
 
 
 def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
@@ -47,13 +47,13 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
 def test_a_budget_without_a_step_does_not_close() -> None:
     study, surfaces = planted_study({"resolved": 0.02})
     comparison = BodyComparison(study, surfaces, study.scenes[0], 1)
-    assert closure_error(comparison) < 1e-14
-    comparison.__dict__["chain_pairs"] = comparison.chain_pairs[1:]
-    assert closure_error(comparison) == pytest.approx(0.02)
+    assert compute_closure_error(comparison) < 1e-14
+    comparison.__dict__["consecutive_model_pairs"] = comparison.consecutive_model_pairs[1:]
+    assert compute_closure_error(comparison) == pytest.approx(0.02)
     surfaces["mu"].loc[{"model": "resolved", "alpha1": 0.0, "alpha2": np.pi}] *= 1.32 / 1.02
     broken = BodyComparison(study, surfaces, study.scenes[0], 1)
-    broken.__dict__["chain_pairs"] = broken.chain_pairs[1:]
-    assert closure_error(broken) == pytest.approx(0.32), "the largest of all phase pairs"
+    broken.__dict__["consecutive_model_pairs"] = broken.consecutive_model_pairs[1:]
+    assert compute_closure_error(broken) == pytest.approx(0.32), "the largest of all phase pairs"
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
@@ -171,7 +171,7 @@ def _broken(found: Solved) -> list[str]:
 def _steps(found: Solved, body: int) -> list[tuple[str, ModelDifference]]:
     """The differences of neighbors in the chain by the key of the second, and the total."""
     comparison = BodyComparison(*found, found[0].scenes[0], body)
-    pairs = [(pair.second.key, pair) for pair in comparison.chain_pairs]
+    pairs = [(pair.second.key, pair) for pair in comparison.consecutive_model_pairs]
     return [(key, comparison.difference(pair)) for key, pair in [*pairs, (TOTAL, comparison.total_pair)]]
 
 
@@ -180,7 +180,7 @@ def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
     moved = {}
     for (key, before), (_, after) in zip(_steps(sound, body), _steps(wrong, body), strict=True):
         change = after.size - before.size
-        if (np.abs(change) > RESOLVED * np.hypot(before.uncertainty, after.uncertainty)).any():
+        if (np.abs(change) > RESOLVED_RATIO * np.hypot(before.uncertainty, after.uncertainty)).any():
             moved[key] = float(change[np.unravel_index(np.argmax(np.abs(change)), change.shape)])
     return moved
 
@@ -206,7 +206,7 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
     if mistake.model == "small-resolved":  # the scale of every step moves with it, by less than a hundredth of each
         moved = {key: change for key, change in moved.items() if abs(change) > 1e-3}
     assert list(moved) == blamed, moved
-    assert closure_error(BodyComparison(*wrong, wrong[0].scenes[0], mistake.body)) < 1e-14
+    assert compute_closure_error(BodyComparison(*wrong, wrong[0].scenes[0], mistake.body)) < 1e-14
     if TOTAL not in blamed:
         supplied, left = moved.values()
         assert left == pytest.approx(-supplied, rel=1e-9), "it cancels in the total"
@@ -234,7 +234,7 @@ def test_a_resolved_step_is_known_to_a_fifth_of_itself(name: str) -> None:
     real = 0
     for body in range(1, len(scene.bodies) + 1):
         comparison = BodyComparison(study, surfaces, scene, body)
-        for pair in (*comparison.chain_pairs, *comparison.effect_pairs):
+        for pair in (*comparison.consecutive_model_pairs, *comparison.effect_pairs):
             first, second, base = (truth[model.key][body - 1] for model in (pair.first, pair.second, pair.base))
             size, found = (second - first) / base, comparison.difference(pair)
             assert (np.abs(found.size - size)[found.resolved] <= 0.2 * np.abs(size[found.resolved])).all(), pair.key

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from comparison.surfaces.acceptance import Breach, Limit, _breaches_beyond
+from comparison.surfaces.acceptance import Breach, Limit, _list_breaches
 from comparison.surfaces.differences import Difference, GridMean
 from comparison.surfaces.statements import (
     word_breach,
     word_engine,
     word_engine_without_values,
-    word_gate,
+    word_limit_check,
     word_unchecked,
 )
 
@@ -113,7 +113,7 @@ UNCHECKED = {"a": ["total", "like-for-like"], "b": ["total"], "c": []}
 def test_what_is_not_checked_is_never_said_to_hold(
     counts: tuple[int, int], unchecked: dict[str, list[str]], said: str
 ) -> None:
-    assert word_gate(*counts, unchecked) == said
+    assert word_limit_check(*counts, unchecked) == said
 
 
 def test_of_many_scenes_without_limits_some_are_named() -> None:
@@ -125,8 +125,8 @@ def test_of_many_scenes_without_limits_some_are_named() -> None:
 
 
 def test_a_value_that_is_missing_is_within_no_limit() -> None:
-    assert _breaches_beyond([(1, 0.3, None), (2, 0.2, None), (3, NAN, None)], 0.2) == (
+    assert _list_breaches([(1, 0.3, None), (2, 0.2, None), (3, NAN, None)], 0.2) == (
         Breach(1, 0.3),
         Breach(3, NAN, "no phase pair to compare"),
     ), "what equals its limit holds it"
-    assert [(each.found, each.largest) for each in _breaches_beyond([(1, 3.0, ROW)], 2.0)] == [(3.0, -0.041)]
+    assert [(each.found, each.largest) for each in _list_breaches([(1, 3.0, ROW)], 2.0)] == [(3.0, -0.041)]

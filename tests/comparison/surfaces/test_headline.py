@@ -12,8 +12,8 @@ from studies import GRID, KEYS, planted_study, solved
 
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.headline import Effect, Headline, main_cause_of, make_headline
-from comparison.surfaces.missing_values import study_of_results
+from comparison.surfaces.headline import Effect, Headline, find_main_cause, make_headline
+from comparison.surfaces.missing_values import leave_out_empty_models
 from comparison.surfaces.waterfall import make_waterfall
 from reference.problem import Scene, load_scene
 
@@ -22,7 +22,7 @@ MEAN = "Exudyn (spatial) gives {} than the paper's equations in the mean over 4 
 
 
 def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
-    study = study_of_results(study, surfaces)
+    study = leave_out_empty_models(study, surfaces)
     comparison = BodyComparison(study, surfaces, study.scenes[0], body)
     return make_headline(comparison, make_waterfall(comparison))
 
@@ -68,14 +68,14 @@ def test_the_sentence_says_what_is_planted(levels: Any, errors: Any, said: list[
 def test_an_effect_between_literal_suprema_stands_beside_that_as_integrated() -> None:
     """Geometry lowers the value as integrated by 2 % and raises the literal supremum by 1 %: each has its own base."""
     study, surfaces = planted_study({"small": 0.5, "exact": 0.515, **gaps(*[-0.02] * 4)})
-    effect = told(study, surfaces).effect_named(GEOMETRY)
+    effect = told(study, surfaces).find_effect(GEOMETRY)
     assert [effect.mean, effect.supremum, effect.share] == pytest.approx([-0.02, 0.01, 1.0])
     assert effect.interaction == pytest.approx(0.0, abs=1e-12)
 
 
 def test_an_interaction_is_the_effect_in_another_order_less_that_of_the_chain() -> None:
     numbers = told(*planted_study({**gaps(0.05, 0.03, 0.03, 0.03), "small-regularised": -0.04}))
-    effects = [numbers.effect_named(name) for name in (GEOMETRY, FRICTION)]
+    effects = [numbers.find_effect(name) for name in (GEOMETRY, FRICTION)]
     assert [effect.elsewhere for effect in effects] == pytest.approx([0.07, -0.04])
     assert [effect.interaction for effect in effects] == pytest.approx([0.02, -0.02])
 
@@ -173,8 +173,8 @@ def test_the_errors_of_both_means_leave_open_which_cause_is_the_largest(first: f
         return [Effect(name, "m", mean, error, resolved=True, **nothing) for name, mean, error in sizes]
 
     open_causes, told_causes = effects(first, second), effects(0.006, 0.006)
-    assert main_cause_of(open_causes, open_causes) == ""
-    assert main_cause_of(told_causes, told_causes) == GEOMETRY
+    assert find_main_cause(open_causes, open_causes) == ""
+    assert find_main_cause(told_causes, told_causes) == GEOMETRY
 
 
 def test_the_sentence_says_that_a_model_was_refused() -> None:

@@ -16,8 +16,8 @@ from comparison.analyses.motions import analysis as motions
 from comparison.analyses.motions.analysis import compute_stored_motion
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
-from comparison.surfaces.budget import closure_error
-from comparison.surfaces.missing_values import list_missing_values, study_of_results
+from comparison.surfaces.budget import compute_closure_error
+from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
 from reference.problem import load_scene
 
 GRID = ["--grid", "4", "--only", "differences"]
@@ -61,21 +61,21 @@ def test_a_scene_without_any_answer_still_gets_its_report(command: Callable[...,
 def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, silenced(silent))
     surfaces = solved(study)
-    study = study_of_results(study, surfaces)
+    study = leave_out_empty_models(study, surfaces)
     scene = study.scenes[0]
     left = [model.key for model in chain_of(scene, study.hierarchy) if model.key != silent]
     for comparison in body_comparisons(study, surfaces):
-        assert [pair.second.key for pair in comparison.chain_pairs] == left[1:]
+        assert [pair.second.key for pair in comparison.consecutive_model_pairs] == left[1:]
         assert (comparison.total.first, comparison.total.second) == (left[0], left[-1])
         assert comparison.total.unanswered == 0
-        assert closure_error(comparison) < 1e-14
+        assert compute_closure_error(comparison) < 1e-14
     (lacking,) = list_missing_values(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == f"step limit: {why_refused(scene, 1e-3)}"
     alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
     assert alike == (silent in ("spatial", "resolved", "small-resolved")), "never said of other models"
     surfaces["mu"].loc[{"model": [*left[1:]]}] = np.nan
-    alone = study_of_results(study, surfaces)
+    alone = leave_out_empty_models(study, surfaces)
     assert alone.left_out(scene) == (), "nothing would be left to compare"
     assert not any(lacking.used for lacking in list_missing_values(alone, surfaces))
 

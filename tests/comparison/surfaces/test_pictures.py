@@ -18,7 +18,7 @@ from comparison.runner.cache import Cache
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.figures.pairs import limits_of
+from comparison.surfaces.figures.pairs import find_height_limits
 from comparison.surfaces.figures.paper import draw_paper_figure
 from comparison.surfaces.figures.pictures import Pictures
 from reference.problem import load_scene
@@ -61,8 +61,8 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
 
 def test_a_flat_surface_has_room_above_and_below() -> None:
     flat, nothing = np.full((2, 2), 2.0), np.full((2, 2), np.nan)
-    assert limits_of([flat, nothing]) == pytest.approx((1.7, 2.3))
-    assert (limits_of([flat, 3.0 * flat]), limits_of([nothing])) == ((2.0, 6.0), (0.0, 1.0))
+    assert find_height_limits([flat, nothing]) == pytest.approx((1.7, 2.3))
+    assert (find_height_limits([flat, 3.0 * flat]), find_height_limits([nothing])) == ((2.0, 6.0), (0.0, 1.0))
 
 
 def test_fonts_of_a_figure_in_the_manner_of_the_paper_are_such_as_journals_take(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.surfaces.sampling import mean_of_known, sampling_error
+from comparison.surfaces.sampling import compute_mean_of_known, estimate_sampling_error
 from reference.problem import phase_grid
 
 FINE = 48
@@ -24,7 +24,7 @@ def test_the_error_covers_the_mean_over_all_phases(grid: int) -> None:
     axes = np.meshgrid(*[2.0 * np.pi * np.arange(grid) / grid] * 2, indexing="ij")
     for number in range(40):
         sizes = ridged(*axes, number)
-        error = sampling_error(sizes, grid**2)
+        error = estimate_sampling_error(sizes, grid**2)
         missed += abs(sizes.mean() - ridged(*fine, number).mean()) > error
         assert error < 4.0 * sizes.std()
     assert missed <= 2, "at most one of twenty"
@@ -40,24 +40,24 @@ def test_the_error_covers_the_paper_s_geometry_on_every_grid() -> None:
     assert sizes.mean() == pytest.approx(-0.00801, abs=1e-5)
     for grid in (4, 8, 16):
         coarse = sizes[:: FINE // grid, :: FINE // grid]
-        error = sampling_error(coarse, grid**2 // 2)
+        error = estimate_sampling_error(coarse, grid**2 // 2)
         assert abs(coarse.mean() - sizes.mean()) < error < 0.01
 
 
 def test_phase_pairs_that_symmetry_relates_tell_no_error() -> None:
     """On 2 x 2 phases of case I all four motions are mirror images: their scatter of zero is no certainty."""
     sizes = np.full((2, 2), 0.3)
-    assert np.isnan(sampling_error(sizes, 1))
-    assert np.isnan(sampling_error(sizes, 3))
-    assert sampling_error(sizes, 4) == 0.0
+    assert np.isnan(estimate_sampling_error(sizes, 1))
+    assert np.isnan(estimate_sampling_error(sizes, 3))
+    assert estimate_sampling_error(sizes, 4) == 0.0
 
 
 def test_missing_values_leave_the_others() -> None:
     sizes = np.arange(16.0).reshape(4, 4)
     sizes[0, 1] = np.nan
-    assert mean_of_known(sizes) == pytest.approx((120.0 - 1.0) / 15.0)
-    assert sampling_error(sizes, 15) > 0.0
-    assert np.isnan(mean_of_known(np.full((2, 2), np.nan)))
+    assert compute_mean_of_known(sizes) == pytest.approx((120.0 - 1.0) / 15.0)
+    assert estimate_sampling_error(sizes, 15) > 0.0
+    assert np.isnan(compute_mean_of_known(np.full((2, 2), np.nan)))
 
 
 def test_the_scatter_is_that_of_every_shifted_grid() -> None:
@@ -65,4 +65,4 @@ def test_the_scatter_is_that_of_every_shifted_grid() -> None:
     for row, column in ((0, 0), (1, 0), (2, 3)):
         sizes = np.zeros((4, 4))
         sizes[row, column] = 1.0
-        assert sampling_error(sizes, 16) == pytest.approx(1.5 * np.sqrt((9.0 + 3.0) / 256.0 / 4.0))
+        assert estimate_sampling_error(sizes, 16) == pytest.approx(1.5 * np.sqrt((9.0 + 3.0) / 256.0 / 4.0))

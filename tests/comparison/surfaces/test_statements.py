@@ -8,7 +8,7 @@ import pytest
 
 from comparison.surfaces.headline import Effect, Headline
 from comparison.surfaces.statements import (
-    CELLS,
+    CELL_WORDINGS,
     word_agreement,
     word_causes,
     word_effect,
@@ -146,7 +146,7 @@ def test_another_order_is_told_where_it_changes_more_than_a_fifth() -> None:
 )  # fmt: skip
 def test_agreement_has_its_verdict(changes: dict[str, object], sentence: str, cell: str) -> None:
     assert word_agreement(replace(KNOWN, **changes)) == sentence
-    assert CELLS.agreement(replace(KNOWN, **changes)) == cell
+    assert CELL_WORDINGS.agreement(replace(KNOWN, **changes)) == cell
 
 
 @pytest.mark.parametrize(
@@ -163,23 +163,27 @@ def test_agreement_has_its_verdict(changes: dict[str, object], sentence: str, ce
 )  # fmt: skip
 def test_the_literal_supremum_is_above_as_integrated(changes: dict[str, object], sentence: str, cell: str) -> None:
     assert word_supremum(replace(KNOWN, **changes)) == sentence
-    assert CELLS.supremum(replace(KNOWN, **changes)) == cell
+    assert CELL_WORDINGS.supremum(replace(KNOWN, **changes)) == cell
 
 
 def test_the_cells_of_the_first_screen_say_what_the_sentence_says() -> None:
-    assert CELLS.difference(KNOWN) == "−7.5 ± 0.2 %"
-    assert CELLS.difference(replace(KNOWN, error=NAN)) == "−7.5 %, too few phases for an error"
-    assert CELLS.difference(replace(KNOWN, points=0)) == CELLS.difference(replace(KNOWN, second=KNOWN.first))
-    assert CELLS.difference(replace(KNOWN, points=0)) == "no value in common"
-    assert CELLS.range(KNOWN) == "from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°)"
-    assert CELLS.range(replace(KNOWN, phases_per_axis=1)) == CELLS.range(replace(KNOWN, points=0)) == ""
-    assert f"Causes: {CELLS.causes(KNOWN)}." == CAUSES.replace(" of it", "")
-    assert CELLS.causes(replace(KNOWN, main_cause="")).endswith(
+    assert CELL_WORDINGS.difference(KNOWN) == "−7.5 ± 0.2 %"
+    assert CELL_WORDINGS.difference(replace(KNOWN, error=NAN)) == "−7.5 %, too few phases for an error"
+    assert CELL_WORDINGS.difference(replace(KNOWN, points=0)) == CELL_WORDINGS.difference(
+        replace(KNOWN, second=KNOWN.first)
+    )
+    assert CELL_WORDINGS.difference(replace(KNOWN, points=0)) == "no value in common"
+    assert CELL_WORDINGS.range(KNOWN) == "from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°)"
+    assert CELL_WORDINGS.range(replace(KNOWN, phases_per_axis=1)) == CELL_WORDINGS.range(replace(KNOWN, points=0)) == ""
+    assert f"Causes: {CELL_WORDINGS.causes(KNOWN)}." == CAUSES.replace(" of it", "")
+    assert CELL_WORDINGS.causes(replace(KNOWN, main_cause="")).endswith(
         "; which effect is the largest 16 × 16 phases do not tell"
     )
-    assert CELLS.causes(replace(KNOWN, resolved=False)) == "the mean is less than five times the numerical error"
-    assert CELLS.causes(replace(KNOWN, resolved=False, error=0.08)) == "the mean is not beyond its error"
-    assert CELLS.causes(replace(KNOWN, causes=())) == "Which effect causes it 16 × 16 phases do not tell"
+    assert (
+        CELL_WORDINGS.causes(replace(KNOWN, resolved=False)) == "the mean is less than five times the numerical error"
+    )
+    assert CELL_WORDINGS.causes(replace(KNOWN, resolved=False, error=0.08)) == "the mean is not beyond its error"
+    assert CELL_WORDINGS.causes(replace(KNOWN, causes=())) == "Which effect causes it 16 × 16 phases do not tell"
 
 
 OTHER = replace(

@@ -11,9 +11,9 @@ from studies import GRID, KEYS, planted_study
 from comparison.report.page_data import find_crossings
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
-from comparison.surfaces.body_comparison import BodyComparison, independent_phases
+from comparison.surfaces.body_comparison import BodyComparison, count_independent_phases
 from comparison.surfaces.waterfall import Waterfall, WaterfallBar, make_waterfall
-from comparison.surfaces.waterfall_chart import bars_of, scale_of
+from comparison.surfaces.waterfall_chart import make_common_scale, place_bars
 from reference.problem import load_scene
 
 
@@ -99,12 +99,15 @@ def test_independent_phases_are_counted_by_symmetries() -> None:
         models = [study.hierarchy[0], study.hierarchy[-1]]
         for full in (False, True):
             asked = replace(study, full=full)
-            assert independent_phases(asked, asked.scenes[0], models, every, stride=2) == orbits
+            assert count_independent_phases(asked, asked.scenes[0], models, every, stride=2) == orbits
         every[0, 0] = False  # one of an orbit is missing, the others still tell what it would
-        assert independent_phases(study, study.scenes[0], models, every, stride=2) == orbits
+        assert count_independent_phases(study, study.scenes[0], models, every, stride=2) == orbits
     study, _ = planted_study({})  # the fake models have none
     every = np.ones((8, 8), dtype=bool)
-    assert independent_phases(study, study.scenes[0], [study.hierarchy[0], MODEL_HIERARCHY[0]], every, stride=1) == 64
+    assert (
+        count_independent_phases(study, study.scenes[0], [study.hierarchy[0], MODEL_HIERARCHY[0]], every, stride=1)
+        == 64
+    )
 
 
 STEPS = [WaterfallBar(*bar, 1e-4, True) for bar in (("resolved", 0.02), ("regularised", -0.10), ("spatial", 0.03))]
@@ -113,8 +116,8 @@ TOTAL = WaterfallBar("spatial", -0.05, 1e-4, True)
 
 def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
     steps = [STEPS[0], WaterfallBar("regularised", math.nan, math.nan, False), STEPS[2]]
-    scale = scale_of([(steps, TOTAL)])
-    first, missing, last, _ = bars_of(steps, TOTAL, scale)
+    scale = make_common_scale([(steps, TOTAL)])
+    first, missing, last, _ = place_bars(steps, TOTAL, scale)
     assert (missing.kind, missing.width, missing.text) == ("none", 0.0, "no value")
     assert last.left == pytest.approx(first.end, abs=2e-3)
 
@@ -130,9 +133,11 @@ def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
     ],
 )
 def test_a_size_has_the_digits_that_its_error_leaves(size: float, error: float, kind: str, text: str) -> None:
-    bar = bars_of([WaterfallBar("exact", size, error, kind == "down")], TOTAL, scale_of([(STEPS, TOTAL)]))[0]
+    bar = place_bars([WaterfallBar("exact", size, error, kind == "down")], TOTAL, make_common_scale([(STEPS, TOTAL)]))[
+        0
+    ]
     assert (bar.kind, bar.text) == (kind, text)
-    scale = scale_of([([], WaterfallBar("exact", math.nan, math.nan, False))])
+    scale = make_common_scale([([], WaterfallBar("exact", math.nan, math.nan, False))])
     assert scale.low < 0.0 < scale.high, "without any value there is a scale, too"
 
 

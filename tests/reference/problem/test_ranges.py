@@ -14,7 +14,7 @@ import multibody
 import reference
 from reference.problem import Outcome, SceneError, load_scene
 from reference.problem.keys import Table
-from reference.problem.ranges import REGULARIZATION
+from reference.problem.ranges import REGULARIZATION_RANGE
 from reference.problem.scene import KEYS, Scene
 from reference.support.arguments import Range
 from reference.surface import prepare_run
@@ -163,8 +163,8 @@ def test_the_ends_of_the_range_of_v_reg_are_answered_right() -> None:
     """At the lower end like the set-valued law, at the upper end like no friction."""
     scene = load_scene("fig4-dry")
     for v_reg, limit in (
-        (REGULARIZATION.lowest, scene),
-        (REGULARIZATION.highest, scene.with_values({"isolator.friction": 0.0})),
+        (REGULARIZATION_RANGE.lowest, scene),
+        (REGULARIZATION_RANGE.highest, scene.with_values({"isolator.friction": 0.0})),
     ):
         found = reference.amplification(scene, PHASES, regularization=v_reg)
         assert found.status[0] == Outcome.OK
