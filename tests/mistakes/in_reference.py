@@ -470,7 +470,7 @@ MISTAKES = (
             "A third direction that is the longest.", ("tests/reference/records/test_record_files.py::test_a_direction_that_ends_early_is_at_rest_then",)),
     Mistake("reference/records/description.py", "largest = max((one.peak for one in read), default=0.0) / GRAVITY", "largest = min((one.peak for one in read), default=0.0) / GRAVITY",
             "Warning on the unit looks at the smallest direction.", ("tests/reference/records/test_record_description.py::test_a_line_warns_of_what_is_hardly_meant",)),
-    Mistake("reference/records/loading.py", "for key in TWO_FREQUENCY_KEYS:", "for key in OF_TWO_FREQUENCIES[:1]:",
+    Mistake("reference/records/loading.py", "for key in TWO_FREQUENCY_KEYS:", "for key in TWO_FREQUENCY_KEYS[:1]:",
             "Periods and decay beside a record.", ("tests/reference/problem/test_wrong_values.py::test_a_wrong_value_is_one_line_with_scene_key_value_and_rule",)),
     Mistake("reference/problem/supports.py", "return bool(extents[1] <= MIN_WIDTH_RATIO * extents[0])", "return bool(extents[1] == 0.0)",
             "Places nearly on one line are taken.", ("tests/reference/problem/test_wrong_values.py::test_a_wrong_value_is_one_line_with_scene_key_value_and_rule",)),
