@@ -90,7 +90,7 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
         assert {_batch_task().key, _task().key}.isdisjoint(keys.values())
     assert describe_provenance()["exudyn module"] == multibody.models.engine.MODULE
     before = describe_contents(model)
-    for name in ("_version_of", "hash_source"):
+    for name in ("_read_version", "hash_source"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
             assert {_batch_task().key, _task().key}.isdisjoint(keys.values()), name

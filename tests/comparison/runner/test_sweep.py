@@ -183,7 +183,8 @@ pytest.importorskip("resource", reason="the system limits no processor time")
 
 
 def test_a_hang_ends_at_its_limit_and_costs_no_other_task(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("STALLED", "SPARE"):  # only processor time counts, however long the machine keeps a worker waiting
+    # only processor time counts, however long the machine keeps a worker waiting
+    for name in ("STALLED_WALL_RATIO", "SPARE_WALL_SECONDS"):
         monkeypatch.setattr(f"comparison.runner.processes.{name}", 1e9)
     others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
     task = Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 1.0, timeout=1.0)
