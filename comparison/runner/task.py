@@ -126,7 +126,7 @@ def describe_contents(value: Any) -> Any:
 
     Examples
     --------
-    >>> fingerprint({"b": (1, 2.5), "a": None})
+    >>> describe_contents({"b": (1, 2.5), "a": None})
     [['a', None], ['b', [1, 2.5]]]
     """
     if value is None or isinstance(value, bool | int | str | float):
