@@ -30,7 +30,7 @@ def _load_feature(folder: str) -> Feature:
 
 
 FEATURES: tuple[Feature, ...] = (
-    core.SURFACES,
+    core.AMPLIFICATION_SECTION,
     _load_feature("analyses.records"),
     _load_feature("analyses.motions"),
     _load_feature("analyses.families"),

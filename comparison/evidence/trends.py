@@ -82,7 +82,11 @@ def fit_trend(
     expected: float | None,
     error_message: str = "",
 ) -> Trend:
-    """Return a trend of signed sizes and errors, (P, S), NaN without an answer; error_message: what went wrong."""
+    """
+    Fit the power law |difference| ~ parameter^n, and judge n against `expected`.
+
+    sizes, errors: (P, S), signed differences and their errors; NaN without an answer. error_message: what went wrong.
+    """
     slope = fit_slope(parameter, sizes, errors)
     columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
     medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)

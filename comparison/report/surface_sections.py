@@ -47,8 +47,8 @@ def _surface_feature(key: str, title: str, selectable: bool = False, **about: An
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 
-# A record has one value instead of a surface.
-SURFACES = _surface_feature("surfaces", "Amplification and motions", selectable=True, folded=False)
+# Amplification over the phase pairs; under a record it is one value.
+AMPLIFICATION_SECTION = _surface_feature("surfaces", "Amplification and motions", selectable=True, folded=False)
 DIFFERENCES = _surface_feature("differences", "Differences", selectable=True, context=_differences_context)
 BUDGET = _surface_feature("budget", "Causes of the difference", selectable=True, context=_grids_context)
 OUTCOMES = _surface_feature("outcomes", "Outcomes and cost", context=_costs_context)

@@ -259,7 +259,7 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
         if first.key in known and second.key in known and not (first.in_chain(scene) and second.in_chain(scene)):
             base = first if first.reading == LITERAL_SUPREMUM else chain[0]
             pairs.append(_effect_pair(effect, where, known[first.key], known[second.key], known[base.key]))
-    if SMALL.key in known and chain[0].key == SMALL_RESOLVED.key:
+    if SMALL.key in known and chain[0].key == SMALL_AS_INTEGRATED.key:
         small, printed = known[SMALL.key], chain[0]
         above = "what the limits at stops add to the small equations as integrated"
         below = "what an integration of the small equations misses of the literal supremum"
@@ -323,7 +323,7 @@ EXACT = _model_after(
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
-SMALL_RESOLVED = _model_after(
+SMALL_AS_INTEGRATED = _model_after(
     SMALL,
     {"mu_i": _RESOLVED_PEAK},
     key="small-resolved",
@@ -346,10 +346,13 @@ RESOLVED = _model_after(
     reading=AS_INTEGRATED,
     in_chain=applies_to_every_scene,
 )
-_LINEAR = {"friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}", "mu_i": _PEAK}
+_REGULARIZED_FRICTION_ASSUMPTIONS = {
+    "friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}",
+    "mu_i": _PEAK,
+}
 SMALL_REGULARIZED = _model_after(
-    SMALL_RESOLVED,
-    _LINEAR,
+    SMALL_AS_INTEGRATED,
+    _REGULARIZED_FRICTION_ASSUMPTIONS,
     key="small-regularised",
     title="small equations, v_reg",
     effect="regularized friction",
@@ -361,7 +364,7 @@ SMALL_REGULARIZED = _model_after(
 )
 REGULARIZED = _model_after(
     RESOLVED,
-    _LINEAR,
+    _REGULARIZED_FRICTION_ASSUMPTIONS,
     key="regularised",
     title="exact equations, v_reg",
     effect="regularized friction",
@@ -415,13 +418,13 @@ SPATIAL = _model_after(
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (
-    SMALL, EXACT, SMALL_RESOLVED, RESOLVED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
+    SMALL, EXACT, SMALL_AS_INTEGRATED, RESOLVED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
 # effects between models of which one is not in the chain: effect, where, first, second
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
     (RESOLVED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
-    (REGULARIZED.effect, "small", SMALL_RESOLVED, SMALL_REGULARIZED),
+    (REGULARIZED.effect, "small", SMALL_AS_INTEGRATED, SMALL_REGULARIZED),
 )
 
 
@@ -444,7 +447,7 @@ SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
 
 
 RIGID = _model_after(
-    SMALL_RESOLVED,
+    SMALL_AS_INTEGRATED,
     {"friction": "set-valued Coulomb, rigid before it slides, where the scene's yields"},
     key="rigid",
     title=f"small equations, rigid friction, {AS_INTEGRATED}",

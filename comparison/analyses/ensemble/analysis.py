@@ -16,7 +16,7 @@ from comparison.study.models import (
     REGULARIZED,
     RESOLVED,
     SMALL,
-    SMALL_RESOLVED,
+    SMALL_AS_INTEGRATED,
     SPATIAL,
     TRANSLATIONAL,
     Model,
@@ -155,7 +155,7 @@ def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
 def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
     """Return accelerations as integrated for the exact equations, whose demands are suprema; none for other models."""
     scene, model, tolerance = task
-    resolved = {SMALL.key: SMALL_RESOLVED, EXACT.key: RESOLVED}.get(model.key)
+    resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: RESOLVED}.get(model.key)
     if resolved is None or not resolved.applies(scene):
         return []
     read = import_function(resolved.amplification)(scene, NO_PHASES, tolerance=tolerance, **resolved.settings)

@@ -198,7 +198,7 @@ class EndedMotion:
 
 @result
 class ChosenMotion:
-    """A motion that the engine computed."""
+    """A ground motion selected for the multibody engine, with the reasons and how the run of each model ended."""
 
     structure: Annotated[str, "name"]
     motion: Annotated[str, "name"]

@@ -74,10 +74,16 @@ def summarize_motions(
     known = [number for number in every if math.isfinite(number.value)]
     of_known = compute_mean_and_fractiles(known, (0.0 if is_smallest else 1.0,)) if 0 < len(known) < len(every) else []
 
-    def motion_of(number: result.Statistic) -> str:
+    def motion_with_value(number: result.Statistic) -> str:
+        """Return the name of the first motion whose demand equals this statistic, "" if none does."""
         return list(numbers)[values.index(number.value)] if number.value in values else ""
 
-    motions = motion_of(largest), motion_of(smallest), of_known, motion_of(of_known[1]) if of_known else ""
+    motions = (
+        motion_with_value(largest),
+        motion_with_value(smallest),
+        of_known,
+        motion_with_value(of_known[1]) if of_known else "",
+    )
     return result.DemandAtScale(*about, answered, mean, fractiles, largest, smallest, dict(lacking), *motions)
 
 
@@ -168,9 +174,9 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
             for number in range(len(places)):
                 names = "support_min", "support_max", "uplift"
                 small, large, gaps = ([_support_estimate(each, key, number) for each in known] for key in names)
-                smallest, low = _extreme(small, known, -1.0)
-                largest, high = _extreme(large, known, 1.0)
-                gap, _ = _extreme(gaps, known, 1.0)
+                smallest, low = _find_governing_motion(small, known, -1.0)
+                largest, high = _find_governing_motion(large, known, 1.0)
+                gap, _ = _find_governing_motion(gaps, known, 1.0)
                 x, y = map(float, places[number])
                 count = sum(math.isfinite(each.value) for each in large)
                 about = name, number + 1, x, y, known[0].model, count
@@ -182,7 +188,7 @@ def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Es
     return values[number] if values else Estimate(math.nan, math.nan)
 
 
-def _extreme(
+def _find_governing_motion(
     numbers: Sequence[Estimate], points: Sequence[MotionDemandsAtScale], sign: float
 ) -> tuple[result.Statistic, str]:
     """Return the largest of the known numbers, or with a negative sign the smallest, and its motion."""

@@ -25,8 +25,9 @@ MODEL_TITLES = {
     TRANSLATIONAL.key: "translational engine",
     SPATIAL.key: "spatial engine",
 }
-# demands of the main table left out: ratio of another row, zero in most motions, or a reading that no engine has
-OMITTED_DEMANDS = (
+# Demands of the main table that the table of model ratios does not show: each is a multiple of another demand, zero in
+# most motions, or a reading of the peak that no engine has.
+DEMANDS_WITHOUT_MODEL_RATIO = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support", "platform acceleration, literal supremum", "floor acceleration, literal supremum",
 )  # fmt: skip
@@ -73,8 +74,12 @@ def in_percent(share: float) -> str:
 
 
 @dataclass(frozen=True)
-class TrustRow:
-    """Ratios of a demand of one bound, by model, over the motions that all models with the demand computed."""
+class ModelRatioRow:
+    """
+    Ratios between models of one demand, over the motions that every model completed.
+
+    They hold for one set of bearing properties (lower or upper bound).
+    """
 
     bound: str
     structure: Structure
@@ -106,19 +111,19 @@ class TrustRow:
         return f"{word_value(self.value, None, factor)} {unit}".strip()
 
 
-def make_trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
+def make_trust_rows(ensemble: EnsembleResult) -> list[ModelRatioRow]:
     """Return a row for each demand of the main table that another model than the exact equations has."""
     named, rows = label_structures(ensemble), []
     for structure in ensemble.structures:
         for shown in MAIN_TABLE_COLUMNS:
             stripe = statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)
-            if stripe is not None and shown.name not in OMITTED_DEMANDS:
+            if stripe is not None and shown.name not in DEMANDS_WITHOUT_MODEL_RATIO:
                 row = _trust_row(ensemble, structure, named[structure.name], shown)
                 rows += [] if row is None else [row]
     return rows
 
 
-def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: DemandColumn) -> TrustRow | None:
+def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: DemandColumn) -> ModelRatioRow | None:
     quantity = shown.quantity
 
     def values(model: str) -> dict[str, float]:
@@ -149,7 +154,7 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
     ratios = {key: found for key in MODEL_TITLES if key != EXACT.key and (found := ratio(key, EXACT.key))}
     law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
     supports = quantity.startswith("support_force")
-    return TrustRow(
+    return ModelRatioRow(
         bound, structure, shown, tuple(common),
         math.fsum(exact[motion] for motion in common) / len(common), ratios,
         ratio(TRANSLATIONAL.key, law), ratio(REGULARIZED.key, EXACT.key),
@@ -158,7 +163,7 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
 
 
 def _find_largest_deviation(
-    ensemble: EnsembleResult, rows: Sequence[TrustRow], pick: str
+    ensemble: EnsembleResult, rows: Sequence[ModelRatioRow], pick: str
 ) -> tuple[float, str, str] | None:
     """Return the largest difference of a single motion over all rows, with its demand, bound and motion."""
     found = []
@@ -206,7 +211,7 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     return f"{count}, {things} apart: {'; '.join(said)}."
 
 
-def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, ModelRatio, list[str]]]:
+def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow, ModelRatio, list[str]]]:
     """
     Yield the demands of the suite by the equations, times the ratio of the engine over them.
 

@@ -20,7 +20,7 @@ from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
 MAX_DECIMATION_ERROR = 0.003  # Largest interpolation error of a decimated motion, as a share of a component's range.
-MIN_SWING = 0.01  # A component whose range is below this share of its largest value counts as constant.
+MIN_RANGE_SHARE = 0.01  # A component whose range is below this share of its largest value counts as constant.
 EVENLY_SPREAD_PAIRS = (
     5  # Number of phase pairs (k, 2k) 2 pi/5: they cover the square evenly, and no two are mirror images.
 )
@@ -30,7 +30,7 @@ def half_swing(values: Array) -> Array:
     """Return half of the range of each component of `values` (T, C), (C,): decimation errors are shares of it."""
     largest = np.abs(values).max(axis=0, initial=0.0)
     half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
-    scale: Array = np.maximum(half, MIN_SWING * largest)
+    scale: Array = np.maximum(half, MIN_RANGE_SHARE * largest)
     return np.where(scale > 0.0, scale, 1.0)
 
 

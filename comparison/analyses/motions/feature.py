@@ -36,7 +36,7 @@ class MotionSpectra(Part):
     """estimated absolute error"""
 
 
-class _DemandsOfStoredMotion(Part):
+class _StoredMotionDemandsSchema(Part):
     """Demands of one stored motion; null where the motion ended early."""
 
     model: str
@@ -71,7 +71,7 @@ _DEMANDS: dict[str, Any] = {
 }
 _DEMANDS["spectra"] = MotionSpectra | None, Field(description="null where the motion ended early")
 MotionDemands: Any = create_model(
-    "MotionDemands", __base__=_DemandsOfStoredMotion, __doc__=_DemandsOfStoredMotion.__doc__, **_DEMANDS
+    "MotionDemands", __base__=_StoredMotionDemandsSchema, __doc__=_StoredMotionDemandsSchema.__doc__, **_DEMANDS
 )
 
 

@@ -22,7 +22,7 @@ from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
 from comparison.study.batches import import_function
-from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of
+from comparison.study.models import EXACT, SMALL, SMALL_AS_INTEGRATED, Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import GridMaximum, find_grid_maxima
 from comparison.surfaces.model_difference import usable_mu
@@ -88,7 +88,7 @@ def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
-    searched = [model for model in equations if model.key in (SMALL.key, SMALL_RESOLVED.key, *engines)]
+    searched = [model for model in equations if model.key in (SMALL.key, SMALL_AS_INTEGRATED.key, *engines)]
     return [
         *((model, engines.get(model.key), "amplification", body) for model in searched for body in bodies),
         *((model, None, "displacement", 1) for model in equations if model.key == EXACT.key),

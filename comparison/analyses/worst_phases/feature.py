@@ -10,7 +10,7 @@ from comparison.report.page_data import MU_DIGITS
 from comparison.report.panels import fractile_heads, make_distribution_panels
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
-from comparison.study.models import SMALL, SMALL_RESOLVED, has_smooth_friction, models_of
+from comparison.study.models import SMALL, SMALL_AS_INTEGRATED, has_smooth_friction, models_of
 from reference.problem import Scene
 from reference.problem.readings import BOTH_READINGS
 
@@ -34,7 +34,7 @@ def _word_kind(worst: LargestOverPhases) -> str:
 def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
     """Return the distributions to draw for a body: the small equations in both readings, and the last model."""
     (last,) = (line.second for line in scene.headlines if line.body == body)
-    kept = (SMALL.key, SMALL_RESOLVED.key, last)
+    kept = (SMALL.key, SMALL_AS_INTEGRATED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 

@@ -130,14 +130,15 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
     def read_number(side: str) -> SideNumber:
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
-        return SideNumber(value, error, verdict, explain(side) if verdict == NOT_MET else "")
+        return SideNumber(value, error, verdict, explain_deviation(side) if verdict == NOT_MET else "")
 
-    def explain(side: str) -> str:
+    def explain_deviation(code: str) -> str:
+        """Return why a code misses the published number: the case's model or regularized friction, "" if neither."""
         if case.difference:
             return MODEL_EXPLANATION
-        (value, error), (smoothed, its_error) = numbers[side], numbers[SMOOTHED]
-        same = replace(row, published=smoothed, uncertainty=its_error, numbers={})
-        return FRICTION_EXPLANATION if side != EQUATIONS and same.judge(value, error) == MET else ""
+        (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]
+        same = replace(row, published=smoothed, uncertainty=smoothed_error, numbers={})
+        return FRICTION_EXPLANATION if code != EQUATIONS and same.judge(value, error) == MET else ""
 
     return replace(row, numbers={side: read_number(side) for side in numbers})
 

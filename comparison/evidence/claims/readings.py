@@ -18,13 +18,13 @@ class PeakReading:
     cutoff: float | None
 
 
-AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_RESOLVED.key, readings.DEFAULT_V_C)
+AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
 
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
-    """Return the supremum if friction cannot hold the platform, because both readings are equal then."""
+    """Return the peak definition to use: the literal supremum for scenes without dry friction, where both agree."""
     return reading if models.has_dry_friction(scene) else LITERAL_SUPREMUM
 
 

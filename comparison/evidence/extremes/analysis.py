@@ -118,7 +118,7 @@ def _judge_by_finer_runs(
 ) -> MatrixEntry | None:
     """Return the verdict on a value by finer runs, most trusted first; None if none decides. share: relative error."""
     for value, estimate in known:
-        if reason := _word_contradiction(mu, error, value, estimate):
+        if reason := _word_excess_over_stated_error(value, estimate, mu, error):
             return MatrixEntry(CellVerdict.FAILED, reason, status)
         if (
             status == Outcome.OK
@@ -130,9 +130,9 @@ def _judge_by_finer_runs(
     return None
 
 
-def _word_contradiction(mu: Array, error: Array, value: Array, estimate: Array) -> str:
-    """Return by how much a finer run contradicts a value and its error, "" where it does not."""
-    off, allowed = np.abs(mu - value), error + estimate + RELATIVE_ROUNDING * np.abs(mu)
+def _word_excess_over_stated_error(finer_mu: Array, finer_error: Array, mu: Array, error: Array) -> str:
+    """Return by how much mu leaves the finer run's by more than both stated errors, "" where no body does."""
+    off, allowed = np.abs(mu - finer_mu), error + finer_error + RELATIVE_ROUNDING * np.abs(mu)
     worst = int((off / allowed).argmax())
     times = off[worst] / allowed[worst]
     if not off[worst] > allowed[worst]:

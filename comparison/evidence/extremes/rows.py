@@ -22,10 +22,10 @@ from comparison.evidence.extremes.columns import (
 )
 from comparison.evidence.extremes.scenes import (
     GRAVITY_LIMIT,
+    add_vertical_harmonic,
     change_bodies,
     make_horizontal_amplitudes,
     make_plain_scene,
-    make_vertical_amplitudes,
     put_on_bars,
     raise_bodies,
 )
@@ -130,7 +130,7 @@ def _size_cases() -> Iterator[ExtremeCase]:
     curved = {radius: raise_bodies(make_plain_scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
     flat = {
         "inf": make_plain_scene(radius=math.inf),
-        "inf, upward 5 m/s^2": make_plain_scene(radius=math.inf, amplitudes=make_vertical_amplitudes(5.0)),
+        "inf, upward 5 m/s^2": make_plain_scene(radius=math.inf, amplitudes=add_vertical_harmonic(5.0)),
         "inf, 1e-06 m/s^2": make_plain_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e-6)),
     }
     yield from _cases_of_group("rho, m", {**curved, **flat})
@@ -207,15 +207,15 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
     yield from _cases_of_group(group, lasting, PLANAR_MODELS, phases=USUAL_PHASES[:1], max_work=MAX_WORK_OF_LONG_ROWS)
     group = "vertical loading, m/s^2"
     yield from _cases_of_group(
-        group, {upward: make_plain_scene(amplitudes=make_vertical_amplitudes(upward)) for upward in (5.0, 9.8)}
+        group, {upward: make_plain_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (5.0, 9.8)}
     )
-    exactly = make_plain_scene(amplitudes=make_vertical_amplitudes(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
+    exactly = make_plain_scene(amplitudes=add_vertical_harmonic(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR_MODELS, phases=weightless, right=("contact lost",))
     # The contact force vanishes for an instant, where either outcome, contact or its loss, is right.
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
     yield from _cases_of_group(
-        group, {upward: make_plain_scene(amplitudes=make_vertical_amplitudes(upward)) for upward in (15.0, 1e3)}
+        group, {upward: make_plain_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (15.0, 1e3)}
     )
     yield ExtremeCase(
         "phases", "at symmetric values", make_plain_scene(duration=2.0), ALL_MODELS, phases=SYMMETRIC_PHASES

@@ -45,8 +45,8 @@ def make_horizontal_amplitudes(amplitude: float) -> list[list[float]]:
     return [[amplitude, 0.0], [0.0, amplitude]]
 
 
-def make_vertical_amplitudes(amplitude: float) -> list[list[float]]:
-    """Return the amplitudes of the plain scene with a vertical component, m/s^2."""
+def add_vertical_harmonic(amplitude: float) -> list[list[float]]:
+    """Return the amplitudes of the baseline scene along x and y, and `amplitude` along z, m/s^2."""
     return [[2.0, 0.0], [0.0, 2.0], [amplitude, 0.0]]
 
 

@@ -63,7 +63,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     options = parser.parse_args(argv)
     read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
-    scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT_SCENE]]
+    scenes = [_load_harmonic_scene(name) for name in options.scenes or [DEFAULT_SCENE]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = resolve_destination(options.out)
     _load_trades(out)  # a file that is no trade-off is refused before anything is measured
@@ -117,7 +117,8 @@ def print_growth(console: Console, series: Sequence[CostSeries]) -> None:
     console.print(table)
 
 
-def _load_phased_scene(name: str) -> Scene:
+def _load_harmonic_scene(name: str) -> Scene:
+    """Return a scene that the external solvers can integrate; raise SceneError for any other."""
     scene = load_scene(name)
     if scene.recorded:
         rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"

@@ -152,7 +152,7 @@ def _reference_settings(scene: Scene) -> Iterator[Setting]:
 
 def _scipy_settings(quick: bool) -> Iterator[Setting]:
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
-    # LSODA also checks the reference solution.
+    # LSODA goes to tighter tolerances because its finest run checks the reference solution.
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
         call = _VariedCall(SCIPY_FACTORS, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG})
         values = [10.0**-power for power in powers]
