@@ -25,7 +25,7 @@ from comparison.evidence.extremes import matrix as extremes
 from comparison.evidence.extremes.columns import ModelColumn
 from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry
 from comparison.evidence.extremes.rows import ExtremeCase
-from comparison.evidence.extremes.scenes import make_plain_scene
+from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.evidence.tradeoff import command as tradeoff
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import MeasuredSetting as Setting
@@ -37,7 +37,7 @@ from reference.problem.readings import AS_INTEGRATED
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
         "quick": True, "provenance": {"commit": "abc", "processor": "one"}}  # fmt: skip
-PLAIN = ExtremeCase("anything", "plain", make_plain_scene(), ("fake",))
+PLAIN = ExtremeCase("anything", "plain", make_baseline_scene(), ("fake",))
 FOUND = Matrix(
     {"small": "small equations", "spatial": "spatial engine"},
     [

@@ -1,5 +1,5 @@
 """
-Rows of the matrix of extremes: one quantity of a plain scene at its extreme, for every model.
+Rows of the matrix of extremes: one quantity of the baseline scene at its extreme, for every model.
 
 Scenes are written as in a scene file and read where a cell is solved, so that a wrong one is refused there. They last a
 few seconds, during which the platform rests, slides and stops, unless the duration itself is the extreme.
@@ -25,7 +25,7 @@ from comparison.evidence.extremes.scenes import (
     add_vertical_harmonic,
     change_bodies,
     make_horizontal_amplitudes,
-    make_plain_scene,
+    make_baseline_scene,
     put_on_bars,
     raise_bodies,
 )
@@ -86,24 +86,24 @@ def list_extreme_cases() -> Iterator[ExtremeCase]:
 
 def _friction_law_cases() -> Iterator[ExtremeCase]:
     yield from _cases_of_group(
-        "friction", {friction: make_plain_scene(friction=friction) for friction in (0.0, 1e-9, 1.0, 10.0)}
+        "friction", {friction: make_baseline_scene(friction=friction) for friction in (0.0, 1e-9, 1.0, 10.0)}
     )
     laws = {
-        f"{rate:g}, {slow:g} to {fast:g}": make_plain_scene(friction={"slow": slow, "fast": fast, "rate": rate})
+        f"{rate:g}, {slow:g} to {fast:g}": make_baseline_scene(friction={"slow": slow, "fast": fast, "rate": rate})
         for rate in (1e-3, 1.0, 1e2, 1e3, 1e4, 1e6, 1e9)
         for slow, fast in ((0.05, 0.1), (0.1, 0.05))
     }
     yield from _cases_of_group("rate of friction, s/m", laws)
-    wet = {each: make_plain_scene(friction=None, lubrication=each) for each in (0.0, 1e-9, 1.0, 1e3)}
+    wet = {each: make_baseline_scene(friction=None, lubrication=each) for each in (0.0, 1e-9, 1.0, 1e3)}
     yield from _cases_of_group("lubrication, s/m", wet, ("small", "exact", "translational"))
     for exponent in range(1, 9):
         speed = 10.0**-exponent
         yield ExtremeCase(
-            "v_reg, m/s", f"{speed:g}", make_plain_scene(), REGULARIZED_MODELS, settings={"regularization": speed}
+            "v_reg, m/s", f"{speed:g}", make_baseline_scene(), REGULARIZED_MODELS, settings={"regularization": speed}
         )
     for cutoff in (1e-1, 1e-4, 1e-12):
         yield ExtremeCase(
-            "cutoff v_c, m/s", f"{cutoff:g}", make_plain_scene(), ("small", "exact"), settings={"cutoff": cutoff}
+            "cutoff v_c, m/s", f"{cutoff:g}", make_baseline_scene(), ("small", "exact"), settings={"cutoff": cutoff}
         )
 
 
@@ -113,7 +113,7 @@ def _engine_numerics_cases() -> Iterator[ExtremeCase]:
     for group, key, exponents in ((stiff, "contact_stiffness", range(2, 13, 2)), (step, "step", range(-6, 0))):
         for exponent in exponents:
             changed = {key: 10.0**exponent, "tolerance": 1e-2}
-            short = make_plain_scene(duration=brief.get(exponent, 1.0))
+            short = make_baseline_scene(duration=brief.get(exponent, 1.0))
             yield ExtremeCase(
                 group, f"1e{exponent}", short, ENGINE_MODELS, settings=changed, amplification=STATED_ENGINE
             )
@@ -123,27 +123,27 @@ def _size_cases() -> Iterator[ExtremeCase]:
     group = "amplitude, m/s^2"
     sizes = (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9)
     yield from _cases_of_group(
-        group, {amplitude: make_plain_scene(amplitudes=make_horizontal_amplitudes(amplitude)) for amplitude in sizes}
+        group, {amplitude: make_baseline_scene(amplitudes=make_horizontal_amplitudes(amplitude)) for amplitude in sizes}
     )
-    near_rim = make_plain_scene(amplitudes=make_horizontal_amplitudes(12.0), friction=0.02, duration=20.0)
+    near_rim = make_baseline_scene(amplitudes=make_horizontal_amplitudes(12.0), friction=0.02, duration=20.0)
     yield ExtremeCase(group, "12, friction 0.02, along the rim", near_rim, PLANAR_MODELS, phases=USUAL_PHASES[:1])
-    curved = {radius: raise_bodies(make_plain_scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
+    curved = {radius: raise_bodies(make_baseline_scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
     flat = {
-        "inf": make_plain_scene(radius=math.inf),
-        "inf, upward 5 m/s^2": make_plain_scene(radius=math.inf, amplitudes=add_vertical_harmonic(5.0)),
-        "inf, 1e-06 m/s^2": make_plain_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e-6)),
+        "inf": make_baseline_scene(radius=math.inf),
+        "inf, upward 5 m/s^2": make_baseline_scene(radius=math.inf, amplitudes=add_vertical_harmonic(5.0)),
+        "inf, 1e-06 m/s^2": make_baseline_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e-6)),
     }
     yield from _cases_of_group("rho, m", {**curved, **flat})
     # The platform slides off its supports
-    far_off = make_plain_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e3))
+    far_off = make_baseline_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e3))
     yield ExtremeCase("rho, m", "inf, 1000 m/s^2", far_off, PLANAR_MODELS)
-    yield from _cases_of_group("travel, m", {travel: make_plain_scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
+    yield from _cases_of_group("travel, m", {travel: make_baseline_scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
 
 
 def _chain_cases() -> Iterator[ExtremeCase]:
     # A shock takes 0.5 to 1.6 s to reach the top of the towers.
     for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
-        tower = make_plain_scene(
+        tower = make_baseline_scene(
             masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0
         )
         few, models = (USUAL_PHASES, ALL_MODELS) if count <= 10 else (USUAL_PHASES[:1], PLANAR_MODELS)
@@ -151,25 +151,25 @@ def _chain_cases() -> Iterator[ExtremeCase]:
         yield ExtremeCase("bodies N", str(count), tower, models, phases=few, quick=count <= 100, max_work=work)
     totals = (1e-6, 1e-3, 1e3, 1e9)
     yield from _cases_of_group(
-        "total mass, kg", {total: make_plain_scene(masses=[0.5 * total, 0.5 * total]) for total in totals}
+        "total mass, kg", {total: make_baseline_scene(masses=[0.5 * total, 0.5 * total]) for total in totals}
     )
     group = "platform's share of the mass"
     # Below mu^2 / 4 the equations reach Painleve's paradox; a compliant contact jams and opens.
     paradox = ("painleve paradox", "contact lost")
     for share, right in ((1e-6, ()), (1e-3, paradox), (0.999, ()), (0.999999, ())):
-        tower = make_plain_scene(masses=[2.0 * share, 2.0 * (1.0 - share)])
+        tower = make_baseline_scene(masses=[2.0 * share, 2.0 * (1.0 - share)])
         yield ExtremeCase(group, f"{share:g}", tower, ("exact", "regularised", "translational"), right=right)
         yield ExtremeCase(group, f"{share:g}", tower, ("small", "spatial"))
-    yield ExtremeCase(group, "1", make_plain_scene(masses=[2.0]), ALL_MODELS)
-    stiffest = make_plain_scene(link=(1e-3, 0.8e-3))  # stiff link that vibrates for 3000 of its periods
+    yield ExtremeCase(group, "1", make_baseline_scene(masses=[2.0]), ALL_MODELS)
+    stiffest = make_baseline_scene(link=(1e-3, 0.8e-3))  # stiff link that vibrates for 3000 of its periods
     yield ExtremeCase("link periods, s", "0.001", stiffest, PLANAR_MODELS, max_work=MAX_WORK_OF_LONG_ROWS)
     yield ExtremeCase("link periods, s", "0.001", stiffest, ("spatial",))
     yield from _cases_of_group(
-        "link periods, s", {each: make_plain_scene(link=(each, 0.8 * each)) for each in (1e-2, 30.0, 1e3)}
+        "link periods, s", {each: make_baseline_scene(link=(each, 0.8 * each)) for each in (1e-2, 30.0, 1e3)}
     )
-    damped: dict[Any, Any] = {zeta: make_plain_scene(damping=zeta) for zeta in (0.0, 1e-6, 0.05, 1.0, 5.0)}
-    damped["0 along x, 2 along y"] = make_plain_scene(damping=[0.0, 20.0])
-    damped["5, link periods 0.01 s"] = make_plain_scene(damping=5.0, link=(0.01, 0.008))
+    damped: dict[Any, Any] = {zeta: make_baseline_scene(damping=zeta) for zeta in (0.0, 1e-6, 0.05, 1.0, 5.0)}
+    damped["0 along x, 2 along y"] = make_baseline_scene(damping=[0.0, 20.0])
+    damped["5, link periods 0.01 s"] = make_baseline_scene(damping=5.0, link=(0.01, 0.008))
     yield from _cases_of_group("damping of the links, of critical", damped)
 
 
@@ -192,49 +192,49 @@ def _bar_cases() -> Iterator[ExtremeCase]:
 
 def _excitation_cases() -> Iterator[ExtremeCase]:
     harmonics = {
-        "equal": make_plain_scene(periods=(0.9, 0.9)),
-        "1e-3 Hz": make_plain_scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)),
-        "1e3 Hz": make_plain_scene(periods=(1e-3, 1.1e-3), duration=0.05),
-        "1e-3 Hz and 1e3 Hz": make_plain_scene(periods=(1e3, 1e-3), duration=0.05),
+        "equal": make_baseline_scene(periods=(0.9, 0.9)),
+        "1e-3 Hz": make_baseline_scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)),
+        "1e3 Hz": make_baseline_scene(periods=(1e-3, 1.1e-3), duration=0.05),
+        "1e-3 Hz and 1e3 Hz": make_baseline_scene(periods=(1e3, 1e-3), duration=0.05),
     }
     yield from _cases_of_group("harmonics", harmonics)
     yield from _cases_of_group(
-        "decay, 1/s", {decay: make_plain_scene(decay=(decay, decay)) for decay in (0.0, 1e3, 1e6)}
+        "decay, 1/s", {decay: make_baseline_scene(decay=(decay, decay)) for decay in (0.0, 1e3, 1e6)}
     )
     group = "duration, s"
-    yield from _cases_of_group(group, {duration: make_plain_scene(duration=duration) for duration in (1e-3, 0.1)})
-    lasting = {duration: make_plain_scene(duration=duration) for duration in (100.0, 1e4)}
+    yield from _cases_of_group(group, {duration: make_baseline_scene(duration=duration) for duration in (1e-3, 0.1)})
+    lasting = {duration: make_baseline_scene(duration=duration) for duration in (100.0, 1e4)}
     yield from _cases_of_group(group, lasting, PLANAR_MODELS, phases=USUAL_PHASES[:1], max_work=MAX_WORK_OF_LONG_ROWS)
     group = "vertical loading, m/s^2"
     yield from _cases_of_group(
-        group, {upward: make_plain_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (5.0, 9.8)}
+        group, {upward: make_baseline_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (5.0, 9.8)}
     )
-    exactly = make_plain_scene(amplitudes=add_vertical_harmonic(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
+    exactly = make_baseline_scene(amplitudes=add_vertical_harmonic(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR_MODELS, phases=weightless, right=("contact lost",))
     # The contact force vanishes for an instant, where either outcome, contact or its loss, is right.
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
     yield from _cases_of_group(
-        group, {upward: make_plain_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (15.0, 1e3)}
+        group, {upward: make_baseline_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (15.0, 1e3)}
     )
     yield ExtremeCase(
-        "phases", "at symmetric values", make_plain_scene(duration=2.0), ALL_MODELS, phases=SYMMETRIC_PHASES
+        "phases", "at symmetric values", make_baseline_scene(duration=2.0), ALL_MODELS, phases=SYMMETRIC_PHASES
     )
 
 
 def _direction_cases() -> Iterator[ExtremeCase]:
     lines = {
-        "x alone": make_plain_scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
-        "y alone": make_plain_scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),
-        "one oblique line (4.7)": make_plain_scene(amplitudes=[[2.0, 1.0], [1.0, 0.5]], link=(1.5, 1.5)),
+        "x alone": make_baseline_scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
+        "y alone": make_baseline_scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),
+        "one oblique line (4.7)": make_baseline_scene(amplitudes=[[2.0, 1.0], [1.0, 0.5]], link=(1.5, 1.5)),
     }
     yield from _cases_of_group("direction", lines)
     planar = {
-        f"x, and {across:g} m/s^2 across": make_plain_scene(amplitudes=[[2.0, 1.0], [across, 0.0]])
+        f"x, and {across:g} m/s^2 across": make_baseline_scene(amplitudes=[[2.0, 1.0], [across, 0.0]])
         for across in (1e-3, 1e-6, 1e-9, 1e-12, 1e-15)
     }
     for still in (([2.0, 0.0], [0.0, 0.0]), ([0.0, 2.0], [0.0, 0.0])):
-        planar[f"one harmonic alone, {still[0]}"] = make_plain_scene(amplitudes=still)
+        planar[f"one harmonic alone, {still[0]}"] = make_baseline_scene(amplitudes=still)
     yield from _cases_of_group("direction", planar, PLANAR_MODELS)
 
 
@@ -242,10 +242,10 @@ def _start_and_support_cases() -> Iterator[ExtremeCase]:
     limit = 0.1 * GRAVITY_LIMIT
     for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
-        alone = make_plain_scene(amplitudes=[[amplitude, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), masses=[1.0])
+        alone = make_baseline_scene(amplitudes=[[amplitude, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), masses=[1.0])
         yield ExtremeCase("start at the friction limit", name, alone, ALL_MODELS, phases=((phase, 0.0),))
     three = {
-        ring: make_plain_scene(amplitudes=make_horizontal_amplitudes(4.0), friction=0.05, supports=3, ring=ring)
+        ring: make_baseline_scene(amplitudes=make_horizontal_amplitudes(4.0), friction=0.05, supports=3, ring=ring)
         for ring in (1.0, 0.1, 0.01)
     }
     yield from _cases_of_group("three supports, ring in m", three, ("spatial",))
@@ -266,9 +266,9 @@ def _uneven_cases() -> Iterator[ExtremeCase]:
         "9 in a grid": [[x, y] for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)],
     }
     group = "positions of supports"
-    held = {title: make_plain_scene(ring=None, supports=places) for title, places in positions.items()}
+    held = {title: make_baseline_scene(ring=None, supports=places) for title, places in positions.items()}
     yield from _cases_of_group(group, held, SPATIAL_MODELS, max_work=5e4)
-    line = make_plain_scene(ring=None, supports=[[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
+    line = make_baseline_scene(ring=None, supports=[[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
     yield ExtremeCase(group, "on one line", line, SPATIAL_MODELS, invalid=True)
 
 
@@ -279,25 +279,25 @@ def _tolerance_cases() -> Iterator[ExtremeCase]:
     ):
         for tolerance in tolerances:
             settings = {"tolerance": tolerance}
-            yield ExtremeCase("relative error asked", f"{tolerance:g}", make_plain_scene(), columns, settings=settings)
+            yield ExtremeCase("relative error asked", f"{tolerance:g}", make_baseline_scene(), columns, settings=settings)
 
 
 def _refused_cases() -> Iterator[ExtremeCase]:
     group = "outside the rules"
     wrong = {
-        "friction -0.1": make_plain_scene(friction=-0.1),
-        "mass 0": make_plain_scene(masses=[0.0, 1.0]),
-        "duration 0": make_plain_scene(duration=0.0),
-        "travel beyond the radius": make_plain_scene(radius=0.25, travel=0.3),
-        "radius beyond double precision": make_plain_scene(period=1e200),
-        "amplitude not a number": make_plain_scene(amplitudes=make_horizontal_amplitudes(math.nan)),
+        "friction -0.1": make_baseline_scene(friction=-0.1),
+        "mass 0": make_baseline_scene(masses=[0.0, 1.0]),
+        "duration 0": make_baseline_scene(duration=0.0),
+        "travel beyond the radius": make_baseline_scene(radius=0.25, travel=0.3),
+        "radius beyond double precision": make_baseline_scene(period=1e200),
+        "amplitude not a number": make_baseline_scene(amplitudes=make_horizontal_amplitudes(math.nan)),
     }
     yield from _cases_of_group(group, wrong, ("exact", "translational"), invalid=True)
     for speed in (0.0, -1.0, math.inf):
         yield ExtremeCase(
             group,
             f"v_reg {speed:g} m/s",
-            make_plain_scene(),
+            make_baseline_scene(),
             REGULARIZED_MODELS,
             settings={"regularization": speed},
             invalid=True,
@@ -305,9 +305,9 @@ def _refused_cases() -> Iterator[ExtremeCase]:
     yield ExtremeCase(
         group,
         "no loading",
-        make_plain_scene(amplitudes=make_horizontal_amplitudes(0.0)),
+        make_baseline_scene(amplitudes=make_horizontal_amplitudes(0.0)),
         PLANAR_MODELS,
         right=("no ground motion",),
     )
-    overflow = make_plain_scene(amplitudes=make_horizontal_amplitudes(1e200))
+    overflow = make_baseline_scene(amplitudes=make_horizontal_amplitudes(1e200))
     yield ExtremeCase(group, "loading 1e200 m/s^2", overflow, PLANAR_MODELS, right=("non-finite load",))

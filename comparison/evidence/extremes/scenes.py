@@ -4,11 +4,11 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-PLAIN_RADIUS = 0.25  # m, radius of the plain scene, whose period is 1 s
+BASELINE_RADIUS = 0.25  # m, radius of the baseline scene, whose period is 1 s
 GRAVITY_LIMIT = 9.81  # m/s^2, downward acceleration of the plate at which the contact force vanishes
 
 
-def make_plain_scene(
+def make_baseline_scene(
     *,
     amplitudes: Sequence[Sequence[float]] = ((2.0, 0.0), (0.0, 2.0)),
     periods: Sequence[float] = (0.9, 1.1),
@@ -20,7 +20,7 @@ def make_plain_scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """Return the plain scene, `fig3-I` at twice its amplitude, with changed values; None removes a key."""
+    """Return the baseline scene, `fig3-I` at twice its amplitude, with changed values; None removes a key."""
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
@@ -51,21 +51,21 @@ def add_vertical_harmonic(amplitude: float) -> list[list[float]]:
 
 
 def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
-    """Return the scene with bodies as high above the contacts as in the plain one; heights count from there."""
-    rise = max(stated["isolator"]["radius"] - PLAIN_RADIUS, 0.0)
+    """Return the scene with bodies as high above the contacts as in the baseline scene; heights count from there."""
+    rise = max(stated["isolator"]["radius"] - BASELINE_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
 def put_on_bars(share: float, **keys: Any) -> dict[str, Any]:
-    """Return the plain scene on four bars of 1 m that carry a share of their buckling load."""
+    """Return the baseline scene on four bars of 1 m that carry a share of their buckling load."""
     beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
-    stated = make_plain_scene()
+    stated = make_baseline_scene()
     platform, body = stated["bodies"]
     bars = {"count": 4, "bending_stiffness": beam, "length": 1.0, "load_effect": "softening", **keys}
     return {**stated, "bodies": [platform, {**body, "period": None, "bars": bars}]}
 
 
 def change_bodies(**keys: Any) -> dict[str, Any]:
-    """Return the plain scene with these keys set in every body."""
-    stated = make_plain_scene()
+    """Return the baseline scene with these keys set in every body."""
+    stated = make_baseline_scene()
     return {**stated, "bodies": [{**body, **keys} for body in stated["bodies"]]}

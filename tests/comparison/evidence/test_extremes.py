@@ -17,7 +17,7 @@ from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import CellVerdict
 from comparison.evidence.extremes.rows import list_extreme_cases
-from comparison.evidence.extremes.scenes import make_plain_scene
+from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
@@ -49,7 +49,7 @@ def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
     assert found["honest"][0] == CellVerdict.CONVERGED
 
 
-AGAINST_A_RULE = replace(PLAIN, scene=make_plain_scene(friction=-0.1))
+AGAINST_A_RULE = replace(PLAIN, scene=make_baseline_scene(friction=-0.1))
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    brief, asked = analysis.make_extreme_scene(make_plain_scene(duration=0.5)), {}
+    brief, asked = analysis.make_extreme_scene(make_baseline_scene(duration=0.5)), {}
     usual = multibody.levels(brief, "translational", 1e-2, 1e-3)[0]
     monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(first=levels[0]))
     amplification(brief, [(0.3, 1.1)], contact_stiffness=1e4)
