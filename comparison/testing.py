@@ -24,6 +24,7 @@ from reference.problem.keys import range_of
 from reference.problem.ranges import TOLERANCE_RANGE
 from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
+# Admissible relative differences, phases per axis, and numbers of phase pairs without a value
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
 STATISTICS = ("largest", "mean")
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
@@ -256,5 +257,6 @@ def _word_breaches(
 
 
 def _word_value(place: xr.Dataset, model: Model) -> str:
+    """Return mu by a model with its error in words."""
     mu, error = (float(place[name].sel(model=model.key)) for name in ("mu", "error"))
     return f"{model.title} {mu:.6g} ± {error:.1g}" if np.isfinite(error) else f"{model.title} {mu:.6g} (error unknown)"

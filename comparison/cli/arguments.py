@@ -25,7 +25,7 @@ from reference.support.command import OneLineParser, UsageError
 Parameters = ParamSpec("Parameters")
 Value = TypeVar("Value", int, float)
 
-BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest
+BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest  # admissible factors on the friction of a bound
 # help text of --out for commands that write only stored results
 STORED_RESULTS_HELP = "report whose stored results, in DIR.tiles, are used and added to"
 
@@ -105,6 +105,7 @@ def read_number(option: str, text: str, least: float, most: float, unit: str) ->
 
 
 def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most: Value, rule: str) -> Value:
+    """Return the number that an option states; raise SceneError outside [least, most]."""
     try:
         value = kind(text)
     except ValueError:

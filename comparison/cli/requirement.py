@@ -58,6 +58,7 @@ def _find_published_commit(folder: Path) -> str:
 
 
 def _remove_password(url: str) -> str:
+    """Return the address without password, and without user unless it is an SSH address."""
     parts = urlsplit(url)
     user, at, host = parts.netloc.rpartition("@")
     kept = f"{user.partition(':')[0]}@{host}" if at and parts.scheme == "ssh" else host

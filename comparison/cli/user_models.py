@@ -36,6 +36,7 @@ MODEL_OPTION, LIMIT_OPTION = "--model", "--model-limit"
 MODEL_FORM = "NAME=module:function[@KEY]"
 DOTTED_NAME = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
 MODEL_SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED_NAME}:{DOTTED_NAME})(?:@(?P<like>.*))?")
+# Names that a user's engine may not have, because a model or a key of [acceptance] has them
 TAKEN_NAMES = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
 MAX_IMPORT_SECONDS = 60.0  # s of processor time that importing an engine may take
 

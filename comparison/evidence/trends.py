@@ -117,12 +117,14 @@ def word_trends(trends: Sequence[Trend]) -> str:
 
 
 def _judge_trend(each: Trend) -> Verdict:
+    """Return whether the fitted exponent agrees with the expected one."""
     if each.verdict == f"like the power {each.expected:g}":
         return MET
     return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
 
 
 def _word_slope_verdict(slope: FittedSlope, expected: float | None) -> str:
+    """Return what a fitted exponent tells; |difference| ~ parameter^exponent."""
     if not np.isfinite(slope.exponent):
         return "within the error bars: no slope can be told"
     if slope.uncertainty > MAX_EXPONENT_UNCERTAINTY:

@@ -116,6 +116,7 @@ def _make_scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingV
 
 
 def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> ModelOutcome:
+    """Return outcomes, cost and largest displacements of a model over the phase pairs of a scene."""
     counts = count_outcomes(surfaces, scene.name, model)
     return ModelOutcome(
         phases_per_axis=len(study.phase_indices(model, scene)),

@@ -97,6 +97,7 @@ def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[l
 
 
 def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
+    """Return the texts of a difference of two models, and where it changes its sign or, for points, its uncertainty."""
     surfaces = (
         not scene.recorded
         and _is_drawn_as_surface(report, scene, pair.first)
@@ -150,6 +151,7 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
 
 
 def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
+    """Return a surface interpolated between computed phase pairs, or why there is none; None if not tried."""
     if completion is None:
         return None
     return {
@@ -162,4 +164,5 @@ def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
 
 
 def _round_rows(values: Array, digits: int) -> Rows:
+    """Return rows of numbers to so many significant digits, None for NaN."""
     return [[float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in row] for row in values]

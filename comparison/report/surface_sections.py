@@ -19,16 +19,19 @@ def list_models_in_use(study: Study) -> list[Any]:
 
 
 def _differences_context(report: Report) -> Mapping[str, Any]:
+    """Return the differences between models of every scene, with a logarithmic scale of their sizes."""
     rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
     return {"rows": rows, "dots": make_log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
 
 def _grids_context(report: Report) -> Mapping[str, Any]:
+    """Return the numbers of phases per axis that differences and effects were computed on."""
     rows = [row for scene in report.results.scenes for row in (*scene.differences, *scene.effects)]
     return {"grids": sorted({grid.phases_per_axis for row in rows for grid in row.grids})}
 
 
 def _costs_context(report: Report) -> Mapping[str, Any]:
+    """Return whether any scene limits the travel, and the largest cost of a model."""
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
         "limited": any(not math.isnan(model.travel_share) for model in outcomes),
@@ -37,6 +40,7 @@ def _costs_context(report: Report) -> Mapping[str, Any]:
 
 
 def _models_context(report: Report) -> Mapping[str, Any]:
+    """Return the package's models in use, the user's engines, and the names of the assumptions that differ."""
     models = list_models_in_use(report.study)
     own = [model for model in models if model.side != "user"]
     names = dict.fromkeys(name for model in own for name in model.assumptions)
@@ -44,6 +48,7 @@ def _models_context(report: Report) -> Mapping[str, Any]:
 
 
 def _surface_feature(key: str, title: str, selectable: bool = False, **about: Any) -> Feature:
+    """Return a feature that only shows a section of the report, from the template of its key."""
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 

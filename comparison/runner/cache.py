@@ -162,6 +162,7 @@ def has_error_message(result: Any) -> bool:
 
 
 def _checksum(key: CacheKey, content: bytes) -> bytes:
+    """Return a checksum that covers the key, too, so that a renamed file is no valid result."""
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
 

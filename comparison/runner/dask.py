@@ -141,6 +141,7 @@ def _get_child_workers() -> Workers:
 
 
 def _copy_outcome(remote: Future[Any], answer: Future[Any]) -> None:
+    """Give the result or the error of a remote call to the future that waits for it."""
     from distributed import KilledWorker
 
     try:
@@ -156,6 +157,7 @@ def _copy_outcome(remote: Future[Any], answer: Future[Any]) -> None:
 
 
 def _count_workers(client: Client) -> int:
+    """Return the number of workers of the scheduler; raise ExecutorLostError without connection."""
     with suppress(OSError, TimeoutError, CancelledError):
         if client.status == "running":
             return len(client.nthreads())
@@ -185,4 +187,5 @@ def _refuse_other_code(client: Client, models: set[str], refusal: Callable[[str]
 
 
 def _collect_fingerprints(models: list[str]) -> dict[str, str]:
+    """Return versions and source hashes of a worker for all these models."""
     return {name: value for model in models for name, value in fingerprint_environment(model).items()}

@@ -15,13 +15,14 @@ from pathlib import Path
 
 from reference.support.version import __version__
 
-COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
+COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")  # packages that a result depends on
 OWN_PACKAGES = ("reference", "multibody", "comparison")
 USER_MODELS = "comparison.study.user_models"  # module that calls a user's engine, whose source is in its settings
 SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules through which every model is called
 # Packages whose versions a report states
 REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
-DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")
+DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")  # packages that a figure depends on
+# modules whose source a result depends on
 ANSWERING_MODULES = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
 
 
@@ -41,6 +42,7 @@ def fingerprint_task_environment(module: str) -> dict[str, str]:
 
 
 def _describe_environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, str]:
+    """Return interpreter, machine, package versions and source hashes that an answer depends on."""
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),

@@ -138,6 +138,7 @@ class Workers(Executor):
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _run(self, call: Call, seconds: float | None, group: str) -> Any:
+        """Return the result of a call in a worker process of its group; end the process if it died or took too long."""
         process = self._free_process(group)
         try:
             value, error = process.run(call, seconds)
@@ -155,6 +156,7 @@ class Workers(Executor):
         return value
 
     def _free_process(self, group: str) -> _Process:
+        """Return an idle worker process of the group, or start one."""
         with self._lock:
             if self._idle[group]:
                 return self._idle[group].pop()
@@ -198,6 +200,7 @@ class _Process:
         return value, error
 
     def _explain_end(self, seconds: float | None) -> WorkerDiedError | TimeLimitError:
+        """Return why a worker process ended: the limit of processor time, or its exit code."""
         with _process_start_lock:
             self._process.join(EXIT_SECONDS)
             code = self._process.exitcode
@@ -289,6 +292,7 @@ def _safe_import_path() -> Iterator[str | None]:
 
 
 def _set_safe_path(value: str | None) -> None:
+    """Set or remove the variable that keeps the working directory off a worker's module path."""
     if value is None:
         os.environ.pop(SAFE_PATH, None)
     else:

@@ -30,7 +30,7 @@ from comparison.wording import word_exception
 from reference.problem import Outcome, Scene, load_scene
 
 WIDTH_CHECK_INTERVAL = 1.0  # s between two looks at the executor's number of workers while no result arrives
-LOST_ERRORS = BrokenExecutor, ExecutorLostError, CancelledError
+LOST_ERRORS = BrokenExecutor, ExecutorLostError, CancelledError  # errors that mean the loss of all workers
 COMPILING_DURATION = 0.5  # s of the motion that compiles the reference: long enough to reach every function
 
 
@@ -100,6 +100,7 @@ class Runner:
             self._run_sweep(executor)
 
     def _run_sweep(self, executor: Executor) -> None:
+        """Compute all tasks of the queue; store each result as it arrives."""
         try:
             while self._queue or self._at_work:
                 self._fill_workers(executor)
@@ -131,6 +132,7 @@ class Runner:
                 self._at_work[_start_task(work.task, executor)] = work
 
     def _take_result(self, work: _WorkItem, future: Future[TaskResult]) -> None:
+        """Store the result of a task, or treat the loss of its worker or the excess of its time limit."""
         error = _get_error(future)
         if error is None:
             self._keep_result(work, future.result())
@@ -146,6 +148,7 @@ class Runner:
             self._keep_result(work, make_failed_result(Outcome.SOLVER_FAILED, word_exception(error)))
 
     def _handle_worker_death(self, work: _WorkItem, error: WorkerDiedError) -> None:
+        """Try a task again whose worker died; the second time, halve it to find the phase pair at fault."""
         work.deaths += error.times
         halves = work.task.halves()
         if work.deaths < 2 and (work.parent is None or not halves):
@@ -179,6 +182,7 @@ class Runner:
 
 
 def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
+    """Start a task, with a time limit where the executor can hold one."""
     start: Callable[..., Future[TaskResult]] | None = getattr(executor, "start", None)
     try:
         if start is None:  # Executors of threads, for example, cannot limit the time of a call.
@@ -207,4 +211,5 @@ def make_compiling_task() -> Task:
 
 
 def _compile_reference(scene: Scene) -> None:
+    """Compile the reference by one short motion."""
     reference.amplification(scene, np.zeros((1, 2)), equations="exact")

@@ -79,11 +79,13 @@ class TaskResults:
             self.cache.put(task.key, (result.value, result.cost))
 
     def _remember(self, task: Task, result: TaskResult) -> None:
+        """Keep the result of a task, and count it and its cost for its stage."""
         self._results[task.key] = result
         self.parts[task.stage].tasks += 1
         self.parts[task.stage].seconds += result.cost
 
     def _read(self, task: Task) -> bool:
+        """Take a stored result of a task from the cache; return whether there is a valid one."""
         if self.cache is None or self._fresh:
             return False
         declared: Any = get_type_hints(task.function)["return"]

@@ -272,11 +272,13 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
+    """Return the two models whose difference is an effect. base: model to which it is relative."""
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
 
 
+# What counts as the peak, by the literal supremum and as integrated
 _PEAK = "largest value the computed motion reaches"
 _RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
@@ -442,6 +444,7 @@ def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
+# Models of the engine that soften bars by the weight above, beside those that leave bars unloaded
 SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_bars)
 SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
 
@@ -456,6 +459,7 @@ RIGID = _model_after(
     applies=has_yielding_friction,
     rigid=True,
 )
+# Friction law of scenes whose friction yields
 _YIELDS = "elastic up to mu N before it slides, mu constant or of the slip velocity"
 
 

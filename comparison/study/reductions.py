@@ -45,6 +45,7 @@ def list_skipped_computations(study: Study) -> list[SkippedComputation]:
 
 
 def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
+    """Yield what is not computed for a scene because a symmetry gives it: what, by which models, and why."""
     models = [model for model in study.hierarchy if model.applies(scene)]
     shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
     for share in sorted(set(shares) - {1.0}, reverse=True):
@@ -62,10 +63,12 @@ def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, 
 
 
 def _word_mirror(scene: Scene) -> str:
+    """Return why mirrored phases give the same motion."""
     if find_unused_harmonics(scene):
         return "a harmonic without amplitude: its phase changes nothing"
     return (has_one_axis_per_harmonic(scene) or has_half_turn_symmetry(scene)).reason
 
 
 def _titles_of_models(concerned: Sequence[Model], models: Sequence[Model]) -> str:
+    """Return the concerned models in words."""
     return "all models" if len(concerned) == len(models) else ", ".join(model.key for model in concerned)

@@ -174,6 +174,7 @@ class Study:
         ]
 
     def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
+        """Return the calls of a model over its phase pairs, coarse grids first."""
         phases, moved = phase_grid(self.grid), model.scene_of(scene)
         settings = model.arguments(self.tolerance, self.full)
         group = model.key if model.side == "user" else ""  # A user's engine shares its worker with nothing else.

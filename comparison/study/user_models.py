@@ -231,6 +231,7 @@ def silence_output() -> Iterator[None]:
 
 
 def _flush_output() -> None:
+    """Write out what Python and C code have buffered for standard output and error."""
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()

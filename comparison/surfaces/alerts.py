@@ -16,6 +16,7 @@ from comparison.surfaces.surfaces import find_largest_cap_share, find_largest_tr
 LARGE_TRAVEL_SHARE = 0.9  # share of the travel from which a displacement raises an alert
 LARGE_DISPLACEMENT_SHARE = 0.5  # share of rho from which a displacement raises an alert
 
+# What a user can do about a limit that is not met: one of the scene, or a default one of an engine
 STATED_LIMIT_HELP = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
 DEFAULT_LIMIT_HELP = (
     "name the equations that your engine solves (docs/other-engines.md), let it state an error that holds, or state "
@@ -59,6 +60,7 @@ def list_alerts(
 
 
 def _alerts_of_missing_values(gaps: Sequence[MissingValues]) -> list[Alert]:
+    """Return an alert for every model without a value at some phase pairs."""
     rows = []
     for gap in gaps:
         refused = gap.points + gap.unusable == gap.asked
@@ -79,6 +81,7 @@ def _alerts_of_missing_values(gaps: Sequence[MissingValues]) -> list[Alert]:
 
 
 def _limit_alerts(limits: Sequence[Limit]) -> list[Alert]:
+    """Return a red alert for every acceptance limit that is not met."""
     return [
         Alert(
             level="red",

@@ -74,6 +74,7 @@ class BodyComparison:
         return known[key]
 
     def _row(self, pair: Pair) -> Difference:
+        """Return the statistics over the phases of the difference between two models."""
         difference = self.difference(pair)
         independent = count_independent_phases(
             self.study, self.scene, [pair.first, pair.second, pair.base], difference.known, difference.stride

@@ -16,7 +16,7 @@ from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.differences import DifferenceStatistics, compute_difference_statistics
 from comparison.surfaces.surfaces import select_values
 
-TOTAL = "total"
+TOTAL = "total"  # key of the difference between the first and the last model
 
 
 @result
@@ -69,6 +69,7 @@ def compute_torus_distance(first: Sequence[float], second: Sequence[float]) -> f
 
 
 def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEntry:
+    """Return the statistics of one step between two models, with the share of it that is resolved."""
     scene, difference = comparison.scene.name, comparison.difference(pair)
     known = difference.known
     about: dict[str, Any] = {

@@ -36,7 +36,7 @@ Indices = NDArray[np.intp]
 
 MIN_SPATIAL_PER_AXIS = 9  # phases per axis of the spatial model, below which its values are drawn as points
 MIN_VALUES = 16  # smallest number of phase pairs from which a surface is interpolated
-CONFIDENCE = 0.95
+CONFIDENCE = 0.95  # probability with which the stated share of errors holds
 # Held-out phase pairs per model and scene: 1 - 0.05^(1/59) = 5 % of the others may exceed the error
 HELD_OUT_PAIRS = 59
 # Largest share of the phase pairs whose error may exceed the stated one. With fewer held-out values no error is
@@ -160,6 +160,7 @@ def compute_held_out(task: Arguments) -> HeldOut:
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
+    """Return NaN at the held-out phase pairs of a task that failed."""
     nothing = np.full((len(task[3]), len(task[0].bodies)), np.nan)
     return HeldOut(nothing, nothing)
 

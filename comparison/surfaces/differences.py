@@ -147,5 +147,6 @@ def make_difference_row(scene: Scene, difference: ModelDifference, independent: 
 
 
 def _grid_mean(sizes: np.ndarray) -> GridMean:
+    """Return mean and largest size of a difference on one grid of phases."""
     known = np.abs(sizes[np.isfinite(sizes)])
     return GridMean(len(sizes), compute_mean_of_known(sizes), float(known.max()) if known.size else float("nan"))

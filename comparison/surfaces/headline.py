@@ -45,6 +45,7 @@ class Effect:
         return abs(self.interaction) > NAMED_SHARE * abs(self.mean)
 
 
+# Stands for an effect that a scene does not have
 NO_EFFECT = Effect("", "", 0.0, 0.0, NAN, True, NAN, "", NAN, NAN)
 
 

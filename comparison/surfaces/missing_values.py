@@ -66,6 +66,7 @@ class MissingValues:
         return ", ".join(f"{what}{self._word_count(count)}" for what, count in parts if count)
 
     def _word_count(self, count: int) -> str:
+        """Return at how many phase pairs a value lacks; "" under a record, which has one."""
         if self.asked == 1:
             return ""
         return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"

@@ -86,10 +86,12 @@ def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
 
 
 def _mean_bar(row: Difference) -> WaterfallBar:
+    """Return the bar of a step between models by its mean over the phases."""
     return WaterfallBar(row.second, row.mean, row.error, row.mean_is_resolved)
 
 
 def _bar_at(comparison: BodyComparison, pair: Pair, place: tuple[int, int]) -> WaterfallBar:
+    """Return the bar of a step between models at one phase pair."""
     difference = comparison.difference(pair)
     size, error = difference.at(difference.size, place), difference.at(difference.uncertainty, place)
     return WaterfallBar(pair.second.key, size, error, bool(abs(size) > RESOLVED_RATIO * error))

@@ -9,7 +9,7 @@ from comparison.surfaces.waterfall import WaterfallBar
 from comparison.wording import word_difference
 
 SCALE_MARGIN = 0.03  # share of the scale that is left free beyond the longest bar
-MAX_TICKS = 5
+MAX_TICKS = 5  # largest number of ticks of the axis
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,12 @@ def _bars_with_starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iter
 
 
 def _finite_error(bar: WaterfallBar) -> float:
+    """Return the error of a bar, 0 where it is unknown."""
     return bar.error if isfinite(bar.error) else 0.0
 
 
 def _place_bar(bar: WaterfallBar, model: str, start: float, scale: LinearScale) -> ChartBar:
+    """Return where a bar that begins at `start` is drawn, and its kind: up, down, total, or unresolved."""
     begin = scale.at(start)
     if not isfinite(bar.size):
         return ChartBar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
@@ -114,6 +116,7 @@ def _place_bar(bar: WaterfallBar, model: str, start: float, scale: LinearScale) 
 
 
 def _tick_values(low: float, high: float) -> list[float]:
+    """Return round values within an axis at steps of 1, 2 or 5 times a power of ten."""
     rough = (high - low) / MAX_TICKS
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(digit * power for digit in (1.0, 2.0, 5.0, 10.0) if digit * power >= rough)

@@ -63,6 +63,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def _load_spatial_scene(name: str) -> Scene:
+    """Return a scene that the spatial model can compute, with phases; raise SceneError for any other."""
     scene = load_scene(name)
     if scene.recorded:
         rule = "rings and heights are varied at phases, which a record has not: give a scene of two frequencies"
@@ -74,6 +75,7 @@ def _load_spatial_scene(name: str) -> Scene:
 
 
 def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
+    """Print for each variation of a scene the change of every mu_i, in percent, and its uncertainty u_D."""
     cells = [cell for cell in found.cells if cell.scene == scene.name]
     about = f"largest change of mu_i, {found.reading}, against the translational model, per body"
     console.print(f"{scene.title} ({scene.name}): {about}")
@@ -100,6 +102,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
 
 
 def _word_uneven_variation(variation: Variation, radius: float) -> str:
+    """Return the unevenness of a variation in words; radius: of the ring of supports, m."""
     towards = f"at {math.degrees(variation.direction):.0f}°"
     parts = [f"oval {variation.oval:.2g} {towards}"] if variation.oval else []
     parts += [f"{variation.offset * radius:.2g} m {towards}"] if variation.offset else []

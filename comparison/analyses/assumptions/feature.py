@@ -19,6 +19,7 @@ from comparison.report.results import Results
 from comparison.report.section import Report, Section
 from reference.problem import Scene
 
+# Labels of the plots' horizontal axes, by what is varied
 AXES: dict[Axis, str] = {
     "ring": "radius of the ring of supports, m",
     "height": "heights of the bodies, times the stated ones",
@@ -26,6 +27,7 @@ AXES: dict[Axis, str] = {
     "offset": "offset of bodies in the worst direction, m",
     "yaw": "angle of bodies and links in the worse sense, rad",
 }
+# Bands of a plot within which a change of mu, in percent, is small
 BANDS = [
     {"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in CHANGE_LIMITS
 ]

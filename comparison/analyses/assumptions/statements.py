@@ -72,6 +72,7 @@ def describe_change(change: Change) -> str:
     )
 
 
+# Where a change stays within the limit: nowhere, at the stated scene alone, up to a size, no longer, up to the largest
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("at no ring tried, up to {fails:g} m", "", "with rings from {holds:g} m", "no longer at {fails:g} m",
              "every smaller one tried too"),

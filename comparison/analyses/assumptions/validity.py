@@ -267,6 +267,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
+    """Return the change of mu by a variation, against `plain` without it; note a symmetry that hides it."""
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = name_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""

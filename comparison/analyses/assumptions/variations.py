@@ -17,7 +17,9 @@ from reference.problem.reductions import (
 )
 
 ROUNDING = 1e-9  # share of the ring's radius, or of a right angle, within which something lies in the plane
+# reason why an angle of the links changes nothing
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
+# reason why nothing turns
 ONE_PLANE = "loading and bodies are their own mirror images about the plane of the motion: nothing turns out of it"
 
 
@@ -58,11 +60,11 @@ class Variation:
         return scene.with_values(values)
 
 
-FEW = (
+FEW = (  # variations in a report
     *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
     Variation(height=0.0),
 )
-MANY = (
+MANY = (  # variations that the command of its own computes
     *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
     *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring the scenes would overturn.
     Variation(supports=3),
@@ -71,6 +73,7 @@ UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # vari
 
 Axis = Literal["ring", "height", "oval", "offset", "yaw"]
 DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # variations that are first tried in several directions
+# First size tried of each variation, in several directions
 FIRST_SIZE = {
     "oval": 0.5,  # share of the ring's radius
     "offset": 0.1,  # share of the ring's radius, a twentieth of the width: codes assume it as accidental

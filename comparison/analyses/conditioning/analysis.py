@@ -128,11 +128,13 @@ class Question(NamedTuple):
         return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
 
 
+# Keyword arguments of the models: equations by the reference, and the multibody engine with and without rotation
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
 EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
 YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # ten times more accurate in fact
 IN_TRANSLATION = {"model": "translational", "tolerance": STUDY_TOLERANCE}
 IN_SPACE = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
+# Models whose mu is computed at several v_c, v_reg or u_y, with the literal supremum that it is compared with
 QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, True),
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, True),
@@ -144,6 +146,7 @@ QUESTIONS = (
         "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, True, has_yielding_friction_below_links, True
     ),
 )
+# Symbol of the speed, m/s, or displacement, m, that a keyword argument sets
 SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
     "cutoff": "v_c",
     "regularization": "v_reg",
@@ -217,6 +220,7 @@ def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], g
 
 
 def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
+    """Return the statistics of mu of one body over the phases at every speed, also relative to the literal supremum."""
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     over_supremum = mu / supremum - 1.0
@@ -250,6 +254,7 @@ def _statistics_at_speed(
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:
+    """Return curves of NaN for every body of a task that failed, with the reason."""
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds_of(scene)
     rows = [_SpeedStatistics()] * len(speeds)
@@ -259,6 +264,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
 def _fill_curve(
     task: Arguments, body: int, speeds: tuple[float, ...], rows: Sequence[_SpeedStatistics], pairs: int, reason: str
 ) -> ConditioningCurve:
+    """Return the curve of a body from its statistics by speed. reason: why phase pairs have no value."""
     scene, number, grid = task
     question = QUESTIONS[number]
     columns: dict[str, Any] = dict(zip(_SpeedStatistics._fields, zip(*rows)))

@@ -17,6 +17,7 @@ NAMES = {
     "translational": "Exudyn in translation",
     "spatial": "Exudyn, bodies that turn",
 }
+# Number of the color of a model's curve
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
 UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # in the order of the tables
 QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
@@ -46,6 +47,7 @@ def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
 
 
 def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Panel:
+    """Return a plot of a quantity over v_c or v_reg, m/s, on a logarithmic axis."""
     label = f"{title}: {quantity} over the smallest resolved speed; " + "; ".join(line["name"] for line in series)
     return make_panel(
         title, label, {"title": "v_c or v_reg, m/s", "log": True}, {"title": quantity}, series, height=280
@@ -81,6 +83,7 @@ def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) 
 
 
 def _name_reading(curve: ConditioningCurve) -> str:
+    """Return the definition of the peak, with the speed v_c where it has one."""
     return curve.reading if curve.reading == LITERAL_SUPREMUM else f"{curve.reading} at {curve.speed}"
 
 
@@ -101,14 +104,17 @@ def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, A
 
 
 def _place_of_table(table: tuple[str, tuple[float, ...]]) -> int:
+    """Return the rank of a table in the order v_c, v_reg, u_y."""
     return [*UNITS].index(table[0])
 
 
 def _owner_of_curve(curve: ConditioningCurve, model: str = "") -> tuple[str, int, str, int, float | None]:
+    """Return what curves of one model at different speeds have in common: scene, body, model, grid and damping."""
     return curve.scene, curve.body, model or curve.model, curve.grid, curve.damping
 
 
 def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | None) -> dict[str, Any]:
+    """Return a row of a table: a quantity at every speed, then by the literal supremum where it is known."""
     write = signed if quantity == "relative_mean" else significant
     values = [*getattr(curve, quantity), *([] if supremum is None else getattr(supremum, quantity))]
     errors = getattr(curve, quantity.removesuffix("_mean") + "_error")

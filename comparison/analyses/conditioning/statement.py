@@ -57,6 +57,7 @@ def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 
 def _word_yielding(curve: ConditioningCurve) -> str:
+    """Return mean and largest mu_1 at the scene's own yield displacement u_y, and the range over other values of it."""
     assert curve.own is not None
     place = curve.v.index(curve.own)
     mean, largest = (
@@ -72,6 +73,7 @@ def _word_yielding(curve: ConditioningCurve) -> str:
 
 
 def _word_other_damping(curve: ConditioningCurve) -> str:
+    """Return the range of the mean over the yield displacements, with other damping of the links."""
     return f"With {name_damping(curve)}, {_word_range(curve)}."
 
 
@@ -107,6 +109,7 @@ def speed_text(speed: float) -> str:
 
 
 def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
+    """Return whether the mean is known at each of the three speeds v_c that the statement names."""
     return curve.reading == AS_INTEGRATED and all(
         math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, LOW_V_C, LOWEST_V_C)
     )
@@ -144,4 +147,5 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
 
 
 def _write_size(size: float, error: float) -> str:
+    """Return a relative difference with its error in words."""
     return word_difference(size, error) + ("" if math.isfinite(error) else " (error unknown)")

@@ -175,6 +175,7 @@ def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) ->
 def _statistics_of_demand(
     study: Study, demands: xr.Dataset, scene: Scene, model: Model, name: str, body: int
 ) -> Iterator[DemandStatistics]:
+    """Yield mean, fractiles and extremes of a demand over the phase pairs; body: 0 for the isolator."""
     place = {"scene": scene.name, "model": model.key} | ({"body": body} if body else {})
     axis = study.phase_indices(model, scene)
     value, error = (np.asarray(demands[key].sel(place), float)[np.ix_(axis, axis)] for key in (name, f"{name}_error"))
@@ -185,6 +186,7 @@ def _statistics_of_demand(
     error_of_mean = taken.mean.error
 
     def extreme(index: int) -> PhaseExtreme:
+        """Return the value at a flat index of the grid, with its error and phase pair, rad."""
         row, column = np.unravel_index(index, value.shape)
         phases = phase_axis(study.grid)[axis]
         pair = (np.nan, np.nan) if scene.recorded else (float(phases[row]), float(phases[column]))

@@ -117,9 +117,11 @@ class Ensemble:
         return EnsemblePoints([self._point(member, EXACT, results) for member in self.members], chosen, compared)
 
     def _models(self, choice: ChosenMember) -> list[Model]:
+        """Return the models that compute a motion selected for the multibody engine."""
         return list_comparison_models(choice.member, self.spatial)
 
     def _point(self, member: EnsembleMember, model: Model, results: TaskResults) -> MotionDemandsAtScale:
+        """Return the demands of one motion at one scale by a model; a status without values where it failed."""
         found: MotionAnswer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
         if isinstance(found, str):
             return MotionDemandsAtScale(member, model.key, found)
@@ -131,6 +133,7 @@ class Ensemble:
         return MotionDemandsAtScale(member, model.key, numbers.status, values, spectra, forces, instant)
 
     def _task(self, member: EnsembleMember, model: Model) -> Task:
+        """Return the task that computes one motion at one scale by a model."""
         scene = member.scene
         seconds = estimate_motion_seconds(scene, model) * (SPECTRA_COST_RATIO if model == EXACT else 1.0)
         arguments: MotionTaskArguments = scene, model, model.tolerance(self.tolerance)

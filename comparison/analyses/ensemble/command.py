@@ -90,7 +90,7 @@ CHECKS_FILE = "junit.xml"
 WRITTEN_FILES = (STORED.name, TABLE_FILE, PAGE_FILE, CHECKS_FILE)
 WORKER_FUNCTIONS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # functions that the workers call
 ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}
-MAX_SCALES = 100
+MAX_SCALES = 100  # largest number of scale factors that a user may ask for
 
 
 @command

@@ -56,5 +56,6 @@ def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
 
 
 def _compute_tasks(results: TaskResults, tasks: Sequence[Task]) -> None:
+    """Compute those tasks in this process that have no result yet."""
     for task in results.find_missing(tasks):
         results.put(task, execute_task(task))

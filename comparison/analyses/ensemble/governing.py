@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from comparison.analyses.ensemble.analysis import MotionDemandsAtScale
     from comparison.analyses.ensemble.result import EnsembleResult
 
-ALL_MOTIONS = "all"
+ALL_MOTIONS = "all"  # word of an option that selects every motion for the engine
 GOVERNING = {  # demands whose largest value chooses a motion (over bodies, if they have it), and the reason in words
     "displacement": "largest displacement",
     "base_shear": "largest base shear",

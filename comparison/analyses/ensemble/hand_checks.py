@@ -45,6 +45,7 @@ class HandCheck:
 
 
 def _word_number(value: float) -> str:
+    """Return a number to four digits, from 10000 on as a whole number."""
     return f"{value:.4g}" if value < 1e4 else f"{value:.0f}"
 
 

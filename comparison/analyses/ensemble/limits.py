@@ -38,7 +38,8 @@ WEIGHT_SHARE_KEY = "base_shear"  # demand whose limit is a share of the weight
 MAX_NAMED_MOTIONS = 3  # largest number of motions that a reason names
 EVENT_COUNT_KEY = "stops"  # demand that counts events, to which a relative tolerance does not apply
 STORED_TOLERANCE_RANGE = Range(0.0, 10.0)  # admissible relative tolerances of a comparison with a stored ensemble
-WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)
+WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)  # verdicts from the worst to the best
+# Reason why a limit on a demand is not compared
 NOT_COMPUTED = (
     "no model that was computed has it; the spatial engine has it, and needs supports, heights and sizes of bodies"
 )
@@ -97,11 +98,13 @@ def word_check(check: DemandCheck) -> str:
 
 
 def _word_number(value: float | None, unit: str) -> str:
+    """Return a value in its display unit; only "none" where it is not known."""
     read, factor = unit_of_check(unit)
     return word_value(value, None, factor) + (f" {read}" if value is not None else "")
 
 
 def _word_check_verdict(check: DemandCheck) -> str:
+    """Return the verdict with the excess over the limit; "more than" where the value is a lower bound."""
     unit, factor = unit_of_check(check.unit)
     excess, stated = (None if value is None else factor * value for value in (check.excess, check.stated))
     verdict = word_verdict(check.verdict, excess, stated, unit)
@@ -123,6 +126,7 @@ def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
 
 
 def _word_stated(check: DemandCheck) -> str:
+    """Return what a value is compared with: an allowed one of the scene, or a stored one of an earlier run."""
     return "allowed" if check.key.startswith(LIMIT_KEY_PREFIX) else "stored"
 
 
@@ -267,6 +271,7 @@ def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, c
 
 
 def _name_motions(motions: Sequence[str]) -> str:
+    """Return the names of motions, or only their number if there are many."""
     return ", ".join(motions) if len(motions) <= MAX_NAMED_MOTIONS else f"{len(motions)} motions"
 
 
@@ -308,6 +313,7 @@ def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within
     ]
 
 
+# Structure, demand, body and scale
 DemandKey = tuple[str, str, int | None, float]
 
 

@@ -100,6 +100,7 @@ def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return a table over the height, from the top body down, for every demand of bodies."""
     weight = ensemble.structures[0].weight
     tables = [
         (
@@ -126,6 +127,7 @@ def _directions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the forces and the uplift of every support, by structure and model, beside the static loads."""
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
@@ -159,10 +161,12 @@ def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the statistics of all motions, extrapolated by model ratios that hold for the engine's motions."""
     return {"rows": list(extrapolate_ratios(ensemble)), "statistics": [name for name, _ in EXTRAPOLATED_STATISTICS]}
 
 
 def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return a table of demands for every scale but the largest."""
     others = sorted((scale for scale in ensemble.scales if scale != ensemble.largest_scale), reverse=True)
     return {
         **fractile_heads_context(),

@@ -17,6 +17,7 @@ from reference.problem import GRAVITY
 PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
 PERIOD_AXIS = {"title": "period, s", "log": True}  # axis of a spectrum's periods
 STRIP_WIDTH = 0.3  # width of the strip of one structure, as a share of the distance between structures
+# Name of a fractile, its index in FRACTILES, and the dash pattern of its line
 FRACTILE_LINES = (("16 %", 0, "2 2"), ("50 %", 1, ""), ("84 %", 2, "7 3"))
 MEDIAN_MARK, ARROW_MARK = 7, 2  # a flat bar and an arrow upwards: marks of plot.js
 HEIGHT_AXIS = "height above the sliding contact, m"
@@ -56,6 +57,7 @@ def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
 
 
 def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
+    """Return a plot of a demand under every motion, with fractiles: by bound at one scale, else over the scales."""
     one = len(ensemble.scales) == 1
     series: list[dict[str, Any]] = []
     by_engine: list[dict[str, Any]] = []
@@ -238,6 +240,7 @@ def _demand_heights(structure: Structure, quantity: str) -> tuple[list[float], b
 
 
 def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:
+    """Return the plot of the median floor spectra, in g, of the platform or of the top body."""
     series = [
         _median_line(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
         for place, structure in enumerate(ensemble.structures)
@@ -250,6 +253,7 @@ def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:
 
 
 def _ground_spectra(ensemble: EnsembleResult) -> Panel:
+    """Return the plot of the spectra of the ground motions, with the target spectrum where one is given."""
     target = ensemble.target
     x = list(target.period if target else ensemble.ground_periods)
     spectra = (
@@ -276,9 +280,11 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
 
 
 def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return an axis from zero to 6 % above the largest value."""
     values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 
 
 def _scale_value(value: float | None, factor: float) -> float | None:
+    """Return a value times a factor; None where it is not known."""
     return None if value is None else factor * value

@@ -9,17 +9,20 @@ from reference.problem import GRAVITY, Scene
 
 Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the isolator
 
+# Largest acceleration of a floor by the literal supremum
 SUPREMUM = "acceleration_supremum"
 DIRECTED_DEMANDS = {  # of every story, read along x and y, too
     "story_shear": ("story shear", "N"),
     "drift": ("drift", "m"),
     "overturning_moment": ("overturning moment of the forces", "N m"),
 }
+# Title and unit of the demands along one axis
 ALONG = {
     f"{name}_{axis}": (f"{title} along {axis}", unit)
     for name, (title, unit) in DIRECTED_DEMANDS.items()
     for axis in "xy"
 }
+# Title and SI unit of every demand
 DEMANDS: dict[str, tuple[str, str]] = {
     **{name: about for name, about in QUANTITIES.items() if name != "energy_balance"},
     "acceleration": ("floor acceleration, as integrated", "m/s^2"),
@@ -41,6 +44,7 @@ BODY_DEMAND_TITLES = {
 }
 FRACTILES = (0.16, 0.5, 0.84)  # share of the motions whose value lies below the fractile
 SMALLEST_IS_WORST = ("contact_force_min", "support_force_min")  # demands whose smallest value is the unfavorable one
+# Unit in which a report shows a number in SI units, and the factor to it
 DISPLAY_UNITS = {
     "m": ("mm", 1e3),
     "N": ("kN", 1e-3),

@@ -21,13 +21,14 @@ from comparison.study.models import EXACT, SPATIAL
 from reference.measures import Estimate
 from reference.problem import GRAVITY, Outcome
 
+# Name of the row with the worst of all bounds of the bearing properties
 ENVELOPE = "envelope"
 # Reason why a motion has no largest value over the bodies: one of them has no value
 MISSING_AT_A_BODY = "not at every place"
 NOT_OF_ALL_MOTIONS = "–"  # text for a statistic over all motions where some motions lack the demand
 # Demands that are plotted over the height
 PROFILE_QUANTITIES = "acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment"
-PLATFORM_BODY = 1
+PLATFORM_BODY = 1  # number of the body that slides on the isolator
 MAX_BOUND_LETTERS = 8  # Names of bounds of up to so many letters appear below every cell of an envelope.
 WORST_COLUMN = 4  # index of the column of the worst value, after mean and fractiles
 
@@ -191,6 +192,7 @@ def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> 
     for body in range(max(each.bodies for each in ensemble.structures), 0, -1):
 
         def read_body(structure: Structure, body: int = body) -> DemandAtScale | None:
+            """Return the statistics of the demand at this body; None where the structure has none."""
             own = ensemble.list_demands_of_bodies(structure.name, quantity, scale)
             return next((each for each in own if each.body == body), None)
 
@@ -219,6 +221,7 @@ def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
 
 
 def _is_motion_column(shown: DemandColumn, quantity: str) -> bool:
+    """Return whether the table of motions shows a demand in this form: not in percent, nor at the platform alone."""
     return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
 
 
@@ -345,6 +348,7 @@ def add_mark(text: str, mark: str) -> str:
 
 
 def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: bool) -> DemandRow:
+    """Return the row of a demand of one bound; is_first: whether no row above names the demand."""
     structure, stripe = told.structure, told.stripe
     unit, factor = unit_of_column(shown, structure)
     count = stripe.answered + sum(stripe.reasons.values())
@@ -388,6 +392,7 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
             continue
 
         def size(told: DemandSummary, column: int = column) -> float:
+            """Return a statistic in its display unit, negated where a small value is the unfavorable one."""
             return sign * unit_of_column(shown, told.structure)[1] * (told.numbers[column].value or 0.0)
 
         at = max(known, key=size)

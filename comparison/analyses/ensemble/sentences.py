@@ -163,6 +163,7 @@ def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
             found.setdefault(building.travel, []).append(named[structure.name])
 
     def bounds_of(bounds: list[str]) -> str:
+        """Return the bounds in parentheses; "" where the ensemble has a single structure."""
         return f" ({', '.join(bounds)})" if len(ensemble.structures) > 1 else ""
 
     return "; ".join(
@@ -256,6 +257,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
 
 
 def _word_status(status: str) -> str:
+    """Return an outcome other than ok as an appended clause."""
     return "" if status in ("ok", "") else f"; {status}"
 
 
@@ -321,6 +323,7 @@ def damping_sentence(structure: Structure) -> str:
 
 
 def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
+    """Yield the largest and smallest support force and the largest uplift, with support and motion."""
     named = label_structures(ensemble)
     for name, sign in (("largest", 1.0), ("smallest", -1.0), ("uplift", 1.0)):
         known = [row for row in rows if getattr(row, name).value is not None]

@@ -184,6 +184,7 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
 
 
 def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Estimate:
+    """Return a quantity of one support under one motion; NaN where the model has no support forces."""
     values = getattr(point.forces, name)
     return values[number] if values else Estimate(math.nan, math.nan)
 

@@ -57,6 +57,7 @@ def print_lines(console: Console, lines: Sequence[str]) -> None:
 
 
 def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
+    """Print the factor of every motion that was scaled to a target spectrum."""
     if ensemble.target is None:
         return
     print_lines(console, [target_sentence(ensemble.target)])
@@ -67,6 +68,7 @@ def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
+    """Print the demands at the largest scale, in a table for each bound and for their envelope."""
     print_lines(console, [f"{word_heading(ensemble)}."])
     shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
     for bound, rows in group_rows_by(make_demand_rows(ensemble, ensemble.largest_scale), "bound").items():
@@ -78,6 +80,7 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _cells_of_row(row: DemandRow) -> list[str]:
+    """Return the cells of a row without errors, with the motion and place of the largest value."""
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
     return [row.name, row.unit, mean, *values, ", ".join(filter(None, [row.motion, row.where, *row.bounds[-1:]]))]
@@ -98,6 +101,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
+    """Print the mean difference of every model from the exact equations, by demand and bound."""
     models = {key: title for key, title in MODEL_TITLES.items() if key != EXACT.key}
     for bound, rows in group_rows_by(make_trust_rows(ensemble), "bound").items():
         print_lines(

@@ -36,6 +36,7 @@ HIDDEN_BY_ROUNDING = 1e-4  # A relative difference below this does not show in t
 EXTRAPOLATED_STATISTICS = ("mean", 0), ("84 %", 3), ("largest", 4)
 # Statistics of a smallest support force, whose low values are the unfavorable ones
 SMALLEST_FORCE_STATISTICS = (("mean", 0), ("16 %", 1), ("smallest", 4))
+# Beginning of a sentence by the number of things that it lists
 THING_COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
 
@@ -124,9 +125,11 @@ def make_trust_rows(ensemble: EnsembleResult) -> list[ModelRatioRow]:
 
 
 def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: DemandColumn) -> ModelRatioRow | None:
+    """Return the model ratios of one demand of a structure; None if no motion has it by all models."""
     quantity = shown.quantity
 
     def values(model: str) -> dict[str, float]:
+        """Return the demand by a model, in SI units, by motion that has it."""
         found = read_column_values(ensemble, structure, shown, model)
         return {motion: each.value for motion, (each, _) in found.items() if math.isfinite(each.value)}
 
@@ -141,6 +144,7 @@ def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown
         return None
 
     def ratio(upper: str, lower: str) -> ModelRatio | None:
+        """Return the demand by model `upper` over that by `lower`; None where either has none."""
         if upper not in others or not (lower == EXACT.key or lower in others):
             return None
         pairs = [(by_model[upper][m] / by_model[lower][m], m) for m in common if by_model[lower][m]]

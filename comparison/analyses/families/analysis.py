@@ -124,10 +124,12 @@ def _make_family_demand(
 
 
 def _bars_by_effect(waterfall: Waterfall) -> dict[str, WaterfallBar]:
+    """Return the bars of a waterfall by the model after the step, and the total."""
     return {**{bar.model: bar for bar in waterfall.bars}, TOTAL: waterfall.total}
 
 
 def _numbers_of_body(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
+    """Return mean, smallest and largest mu of a body over the phases, and the mean error; NaN without values."""
     mu = usable_mu(surfaces, scene.name, model)[body - 1]
     known = np.isfinite(mu)
     if not known.any():

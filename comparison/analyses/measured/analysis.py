@@ -34,9 +34,10 @@ from reference.measures.peak_demands import unit_of
 from reference.problem import Outcome, Scene
 from reference.problem.measured import BODY_QUANTITIES, Measured
 
-NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")
+NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")  # for a model without the measured quantity
 
 MeasuredQuantityKey = tuple[str, int]  # quantity and number of the body; 0 for the isolator
+# scene, model, tolerance, phases in rad, and the quantities to read
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[MeasuredQuantityKey]]
 # Value and error, NaN without an answer; and the reason for that, or the outcome of the motion
 PeakAnswer = tuple[float, float, str]
@@ -167,6 +168,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
 def _compare_peak(
     scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[MeasuredQuantityKey, PeakAnswer]]]
 ) -> MeasuredPeak:
+    """Return a measured peak beside those of the models; body 0 for the isolator."""
     computed, asked = [], (peak.quantity, peak.body or 0)
     for model, known in models:
         if asked in known:

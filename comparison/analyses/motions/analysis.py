@@ -198,6 +198,7 @@ def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> Store
 
 
 def _motion_without_values(place: MotionPlace, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
+    """Return a motion of no instants, with the outcome and message that say why."""
     empty = np.zeros((0, 0, 2))
     return StoredMotion(
         place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message

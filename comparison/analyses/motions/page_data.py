@@ -132,6 +132,7 @@ def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
 
 
 def _motion_columns(motion: StoredMotion) -> NDArray[np.float64]:
+    """Return all time histories of a motion as columns, (T, C)."""
     blocks = list(motion.series_by_name().values())
     return np.hstack(blocks) if blocks else np.zeros((0, 0))
 

@@ -44,6 +44,7 @@ def list_recorded_motions(findings: Findings, scenes: Sequence[SceneResult]) -> 
 
 
 def _recorded_motion(record: RecordDescription) -> RecordedMotion:
+    """Return the description of a record in the form of the summary."""
     directions = tuple(
         RecordedDirection(one.axis, one.peak, one.mean_over_peak, one.final_velocity, one.final_displacement)
         for one in record.directions

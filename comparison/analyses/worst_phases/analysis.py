@@ -35,7 +35,7 @@ SEARCH_TOLERANCE = 1e-5  # relative error of mu at which the equations are solve
 ENGINE_HALF_WIDTH = (
     0.02  # rad, half width of the square around the equations' worst phases in which the engine is searched
 )
-NO_PHASES = (math.nan, math.nan)
+NO_PHASES = (math.nan, math.nan)  # phases or a direction that are not known
 
 
 Quantity = Literal["amplification", "displacement"]
@@ -125,6 +125,7 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
 
 
 def _without_value(task: SearchTaskArguments, failed: TaskResult) -> list[LargestOverPhases]:
+    """Return a largest value for each model of a search that failed, with the reason."""
     scene, model, engine, on_grid, quantity, body, *_ = task
     models = [model, *([engine] if engine else []), *([on_grid[0]] if on_grid else [])]
     return [LargestOverPhases(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
@@ -197,6 +198,7 @@ def _larger_of_grid_and_worst(
 
 
 def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
+    """Return mu of one body by a model as a function of the phases, to be searched for its largest value."""
     return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 

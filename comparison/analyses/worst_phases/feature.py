@@ -16,6 +16,7 @@ from reference.problem.readings import BOTH_READINGS
 
 
 def _word_kind(worst: LargestOverPhases) -> str:
+    """Return how a largest value was found, or why there is none."""
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
@@ -66,6 +67,7 @@ def _list_marks(report: Report, scene: Scene) -> Mapping[str, Any]:
 
 
 def _make_mark(worst: LargestOverPhases) -> list[float | str]:
+    """Return the phases, rad, the value and the model of a largest value, for its mark in the plot."""
     return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{MU_DIGITS}g}"), worst.model]
 
 

@@ -27,7 +27,7 @@ from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import State, Trajectory
 
 MODEL_OF_SIDE = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
-TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
+TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked of each code
 READ_SAMPLES = 100_001  # number of instants at which a motion by the equations is read
 SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by side
 TASK_TIME_LIMIT = 300.0  # s, largest processor time of one task
@@ -144,4 +144,5 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
 
 
 def _answer_of_failure(benchmark_and_side: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
+    """Return the answer of a code that failed: no numbers, and the reason."""
     return SideNumbers([], [], failed.reason, 0.0)

@@ -85,6 +85,7 @@ def list_cases() -> list[BenchmarkCase]:
 
 
 def _wear_power_cases() -> list[BenchmarkCase]:
+    """Return a sliding block under a harmonic force from always sliding to held (code_aster SDND104)."""
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
@@ -102,6 +103,7 @@ def _wear_power_cases() -> list[BenchmarkCase]:
 
 
 def _release_case() -> BenchmarkCase:
+    """Return a mass on a spring with dry friction, released from rest (code_aster SDND100)."""
     return BenchmarkCase(
         title="code_aster SDND100: release with friction",
         source="code_aster, test SDND100 (V5.01.100): closed form",
@@ -118,6 +120,7 @@ def _release_case() -> BenchmarkCase:
 
 
 def _coulomb_damping_case() -> BenchmarkCase:
+    """Return a free vibration with Coulomb damping (ANSYS VM73), scaled in time."""
     stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor from 386 in/s^2 and 10 lb to a radius of 981 m
     times = (0.09, 0.102, 0.183)
     return BenchmarkCase(
@@ -138,6 +141,7 @@ def _coulomb_damping_case() -> BenchmarkCase:
 
 
 def _den_hartog_case() -> BenchmarkCase:
+    """Return Den Hartog's forced oscillator with dry friction, beside its resonance."""
     scene = load_shipped_scene("den-hartog")
     unit = 1e-3 * scene.radius / GRAVITY  # m: static displacement under the force
     return BenchmarkCase(
@@ -154,6 +158,7 @@ def _den_hartog_case() -> BenchmarkCase:
 
 
 def _harmonic_block_case() -> BenchmarkCase:
+    """Return a rigid block that slides on a harmonically shaken plane (Westermo and Udwadia)."""
     share = 1.0 / 2.5  # friction limit over the amplitude of the ground acceleration
     amplitude = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
     return BenchmarkCase(
@@ -168,6 +173,7 @@ def _harmonic_block_case() -> BenchmarkCase:
 
 
 def _pulse_case() -> BenchmarkCase:
+    """Return Newmark's sliding block under a rectangular acceleration pulse."""
     return BenchmarkCase(
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
@@ -179,6 +185,7 @@ def _pulse_case() -> BenchmarkCase:
 
 
 def _linear_cases() -> list[BenchmarkCase]:
+    """Return natural periods and responses of linear structures."""
     stories = (2.0, 0.6852, 0.4346, 0.3383, 0.2966)
     return [
         BenchmarkCase(
@@ -229,6 +236,7 @@ MASTODON_PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, peaks of the MASTODON 
 INPUT_TOLERANCE = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
 # mm, published displacements: smallest and largest along x, then along y
 MASTODON_EXTREMES = -432.0, 330.0, -197.0, 152.0
+# Friction of the MASTODON benchmark: it falls with pressure and temperature and grows with the slip velocity
 MASTODON_FRICTION = {
     "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)
     "fast": 0.06 * 0.789 / 0.79,

@@ -25,6 +25,7 @@ COMPLEX_PROMINENCE = 0.25
 OTHER_PROMINENCES = 0.15, 0.35  # other prominences, at which the count may contradict the statement
 MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, distance from a corner within which a peak counts as near it
 CORNER = (0.0, 0.0)  # rad, the corner (0, 0): the four corners are one point of the periodic square
+# How peaks are counted: on the periodic square, on the square as drawn, or on a profile across it
 PEAK_COUNTS_BY_VIEW = {
     "periodic": counting.count_periodic_peaks_and_valleys,
     "drawn": counting.count_drawn_peaks_and_valleys,
@@ -151,9 +152,11 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Return whether mu_2 has several peaks and valleys, and more than mu_1; with prominences that contradict."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
+        """Return peaks and valleys of mu_1 and of mu_2 at a prominence, as a share of the range of mu."""
         return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:
+        """Return whether mu_2 has several peaks and valleys, and more than mu_1, at this prominence."""
         first, second = counts(share)
         return min(second) > 1 and sum(second) > sum(first)
 

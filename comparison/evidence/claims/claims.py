@@ -40,6 +40,7 @@ _PEAKS_AND_VALLEYS = (
 )
 _SIMILAR = f"correlation over the phases at least {checks.MIN_CORRELATION:g}"
 _ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"
+# Scenes of the paper's figures
 _I, _II, _DRY, _WET = "fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"
 
 CLAIMS: tuple[PaperStatement, ...] = (

@@ -64,6 +64,7 @@ def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float 
 
 
 def _count_bounded(mu: Array, error: float, share: float) -> PeakCounts:
+    """Return the numbers of peaks and of valleys; a valley counts if it lies between two peaks."""
     peaks, valleys = (find_peak_basins(side * mu, error, share, closed=False) for side in (1.0, -1.0))
     between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
     return PeakCounts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
@@ -109,6 +110,7 @@ def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed
 
 
 def _root_of_node(parent: list[int], node: int) -> int:
+    """Return the root of a node in a forest of merged regions; shorten the path to it."""
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]

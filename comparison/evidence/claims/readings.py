@@ -18,6 +18,7 @@ class PeakReading:
     cutoff: float | None
 
 
+# The two definitions of the peak in (5.1): faster than v_c alone, or the limit at stops included
 AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
@@ -44,6 +45,7 @@ def _make_platform_scene(name: str, oscillator: bool) -> Scene:
     return scene.with_values({"name": f"{name} {kind}", "bodies": [platform], **values})
 
 
+# Scenes that the paper's statements are checked on, by name
 STATEMENT_CASES: Mapping[str, Callable[[], Scene]] = {
     **{name: partial(load_scene, name) for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")},
     **{f"{name} alone": partial(_make_platform_scene, name, False) for name in ("fig3-I", "fig3-II")},

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
+DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # steps on the grid of phases
 SEARCHED_PLACES = 2  # number of grid points from which a zoom starts on each surface
-STEP_HALVINGS = 5
+STEP_HALVINGS = 5  # number of halvings of the step in a zoom, which ends at 1/32
 FITTED_HALVINGS = 3  # The exponent is fitted to the last halvings: earlier steps still show the shape of the peak.
 # A surface with an exponent of its second difference below 1.5 has a fold, below 0.5 a jump.
 MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5
@@ -74,6 +74,7 @@ def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tupl
 
 
 def _second_differences(values: Array) -> Array:
+    """Return the second differences of three equally spaced values, (K, 3), (K,)."""
     difference: Array = values[:, 0] - 2.0 * values[:, 1] + values[:, 2]
     return difference
 

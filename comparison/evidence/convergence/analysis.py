@@ -40,7 +40,7 @@ ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s, v_reg of the engine
 PENETRATIONS = (3e-3, 1e-3, 3e-4)  # penetration of the contact under the weight, over rho
 STIFFNESS_V_REG = 1e-2  # m/s, v_reg while the contact stiffness varies: a constant step resolves it
 STEPS_PER_PERIOD = 2250  # constant steps per period of the faster harmonic; a second run takes twice as many
-MAX_STEPS = 20_000
+MAX_STEPS = 20_000  # largest number of constant steps of a motion
 EQUATION_TOLERANCE = 1e-7  # relative error of mu by the equations
 # Tolerances of the Newton iteration and of its residual in the engine's steps
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
@@ -63,6 +63,7 @@ def _compare_at_speeds(
 
 
 def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> RelativeDifferences:
+    """Return the relative differences of mu from its limit, and their errors, by body, parameter and phase pair."""
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
@@ -119,6 +120,7 @@ _by_engine = partial(
     _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
 )
 
+# Quantities that go to zero, the difference that falls with each, and the exponent expected of it
 CONVERGENCE_CASES = (
     ConvergenceCase(
         "exact equations: regularized against resolved",
@@ -149,6 +151,7 @@ def fit_limit_trends(task: CaseArguments) -> list[Trend]:
 
 
 def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
+    """Return trends without values, with the reason why the task failed."""
     nothing = [NO_VALUES] * len(task[0].bodies)
     return _fit_trends(task, nothing, nothing, failed.reason)
 
@@ -156,6 +159,7 @@ def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
 def _fit_trends(
     task: CaseArguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
 ) -> list[Trend]:
+    """Return the trend of every body. sizes, errors: by body, (P, S)."""
     scene, number = task
     what, parameter, expected, *_ = CONVERGENCE_CASES[number]
     return [

@@ -110,6 +110,7 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
 
 
 def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
+    """Return radius, friction, contact force, mass and top link as the computed motion shows them."""
     place = motion.position[:, 0]
     ground = ground_acceleration(scene, PHASES, motion.time)
     swing = (place**2).sum(axis=1)

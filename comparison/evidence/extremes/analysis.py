@@ -25,6 +25,7 @@ from reference.problem.validation import first_scene_error
 
 FinerPoint = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
 
+# Outcomes of the motion itself, for which a model rightly gives no value
 PHYSICAL_OUTCOMES = {
     Outcome.RIM_REACHED,
     Outcome.TRAVEL_REACHED,
@@ -33,6 +34,7 @@ PHYSICAL_OUTCOMES = {
     Outcome.PAINLEVE,
 }
 PHYSICAL_OUTCOMES |= {Outcome.NON_FINITE_LOAD, Outcome.NO_GROUND_MOTION}
+# Outcomes of a solver that reached no answer
 NUMERICAL_OUTCOMES = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED}
 # A finer run confirms a value if its error is below the claimed one, or below this share of the tolerance.
 CONFIRMING_ERROR_SHARE = 0.1
@@ -77,6 +79,7 @@ def judge_answer(
 def _judge_point(
     reply: ModelAnswer, m: int, finer: Sequence[ModelAnswer], tolerance: float, right: Sequence[str]
 ) -> MatrixEntry:
+    """Return the verdict on phase pair `m`, by finer runs; right: outcomes that are correct there."""
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICAL_OUTCOMES | NUMERICAL_OUTCOMES | {Outcome.OK}):
@@ -255,6 +258,7 @@ class Extremes:
 
 
 def _entry_of_failure(cell: MatrixCell, failed: TaskResult) -> MatrixEntry:
+    """Return the verdict on a task that raised an error or ended its process."""
     reason = f"{PROCESS_FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
     return MatrixEntry(CellVerdict.FAILED, reason, failed.outcome.value)
 

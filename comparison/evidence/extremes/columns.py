@@ -29,10 +29,12 @@ MAX_WORK = 6e5  # largest number of engine steps for a phase pair: the cell then
 
 
 def _model_column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
+    """Return the column of a model of the reference equations; finer runs have tolerances of 1e-8 and 1e-7."""
     function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
     return ModelColumn(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
 
 
+# Keyword arguments of the models with friction linear below v_reg
 _REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
@@ -61,6 +63,7 @@ def make_user_column(model: Model) -> ModelColumn:
 
 
 PLANAR_MODELS = ALL_MODELS[:4]  # models whose bodies do not rotate
+# Subsets of the models: the equations, those with regularized friction, the engine's, the engine's in space
 REFERENCE_MODELS = ALL_MODELS[:3]
 REGULARIZED_MODELS = ALL_MODELS[2:]
 ENGINE_MODELS = ALL_MODELS[3:]

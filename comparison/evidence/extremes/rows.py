@@ -24,8 +24,8 @@ from comparison.evidence.extremes.scenes import (
     GRAVITY_LIMIT,
     add_vertical_harmonic,
     change_bodies,
-    make_horizontal_amplitudes,
     make_baseline_scene,
+    make_horizontal_amplitudes,
     put_on_bars,
     raise_bodies,
 )
@@ -33,6 +33,7 @@ from comparison.evidence.extremes.scenes import (
 Phases = tuple[tuple[float, float], ...]
 
 USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs of most rows
+# rad, phase pairs at which symmetry makes forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
 # steps of the engine for a phase pair where nothing but their number would stop the translational model, whose steps
 # cost least, and for one of a tower by its number of bodies, whose steps cost more
@@ -65,6 +66,7 @@ class ExtremeCase:
 def _cases_of_group(
     group: str, scenes: Mapping[Any, Mapping[str, Any]], columns: tuple[str, ...] = ALL_MODELS, **more: Any
 ) -> list[ExtremeCase]:
+    """Return a case for each scene of one varied quantity, with its value as title."""
     titles = [value if isinstance(value, str) else f"{value:g}" for value in scenes]
     return [ExtremeCase(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
 
@@ -85,6 +87,7 @@ def list_extreme_cases() -> Iterator[ExtremeCase]:
 
 
 def _friction_law_cases() -> Iterator[ExtremeCase]:
+    """Yield extremes of the friction coefficient, its velocity dependence and its regularization."""
     yield from _cases_of_group(
         "friction", {friction: make_baseline_scene(friction=friction) for friction in (0.0, 1e-9, 1.0, 10.0)}
     )
@@ -108,6 +111,7 @@ def _friction_law_cases() -> Iterator[ExtremeCase]:
 
 
 def _engine_numerics_cases() -> Iterator[ExtremeCase]:
+    """Yield extremes of the engine's contact stiffness and time step."""
     stiff, step = "contact stiffness, N/m", "step of the engine, s"
     brief = {-6: 0.02, -5: 0.2}  # s of motion, by exponent of a small step
     for group, key, exponents in ((stiff, "contact_stiffness", range(2, 13, 2)), (step, "step", range(-6, 0))):
@@ -120,6 +124,7 @@ def _engine_numerics_cases() -> Iterator[ExtremeCase]:
 
 
 def _size_cases() -> Iterator[ExtremeCase]:
+    """Yield extremes of amplitude, radius and travel."""
     group = "amplitude, m/s^2"
     sizes = (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9)
     yield from _cases_of_group(
@@ -137,10 +142,13 @@ def _size_cases() -> Iterator[ExtremeCase]:
     # The platform slides off its supports
     far_off = make_baseline_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e3))
     yield ExtremeCase("rho, m", "inf, 1000 m/s^2", far_off, PLANAR_MODELS)
-    yield from _cases_of_group("travel, m", {travel: make_baseline_scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
+    yield from _cases_of_group(
+        "travel, m", {travel: make_baseline_scene(travel=travel) for travel in (1e-6, 0.02, 0.24)}
+    )
 
 
 def _chain_cases() -> Iterator[ExtremeCase]:
+    """Yield extremes of the number of bodies, their masses, and the periods and damping of the links."""
     # A shock takes 0.5 to 1.6 s to reach the top of the towers.
     for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
         tower = make_baseline_scene(
@@ -191,6 +199,7 @@ def _bar_cases() -> Iterator[ExtremeCase]:
 
 
 def _excitation_cases() -> Iterator[ExtremeCase]:
+    """Yield extremes of the loading: frequencies, decay, duration, vertical amplitude and phases."""
     harmonics = {
         "equal": make_baseline_scene(periods=(0.9, 0.9)),
         "1e-3 Hz": make_baseline_scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)),
@@ -223,6 +232,7 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
 
 
 def _direction_cases() -> Iterator[ExtremeCase]:
+    """Yield loadings along one axis or one line, and nearly so."""
     lines = {
         "x alone": make_baseline_scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
         "y alone": make_baseline_scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),
@@ -239,6 +249,7 @@ def _direction_cases() -> Iterator[ExtremeCase]:
 
 
 def _start_and_support_cases() -> Iterator[ExtremeCase]:
+    """Yield starts at the friction limit, and extremes of the arrangement of the supports."""
     limit = 0.1 * GRAVITY_LIMIT
     for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
@@ -273,16 +284,20 @@ def _uneven_cases() -> Iterator[ExtremeCase]:
 
 
 def _tolerance_cases() -> Iterator[ExtremeCase]:
+    """Yield extremes of the relative error that a model is asked for."""
     for columns, tolerances in (
         (REFERENCE_MODELS, (1e-1, 1e-2, 1e-4, 1e-8)),
         (("translational",), (1e-1, 1e-2, 1e-4, 1e-6)),
     ):
         for tolerance in tolerances:
             settings = {"tolerance": tolerance}
-            yield ExtremeCase("relative error asked", f"{tolerance:g}", make_baseline_scene(), columns, settings=settings)
+            yield ExtremeCase(
+                "relative error asked", f"{tolerance:g}", make_baseline_scene(), columns, settings=settings
+            )
 
 
 def _refused_cases() -> Iterator[ExtremeCase]:
+    """Yield scenes outside the rules, which every model must refuse, and scenes without loading."""
     group = "outside the rules"
     wrong = {
         "friction -0.1": make_baseline_scene(friction=-0.1),

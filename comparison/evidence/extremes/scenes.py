@@ -1,4 +1,4 @@
-"""Plain scene of the extremes and its variations, with the tables and keys of a scene file."""
+"""Baseline scene of the extremes and its variations, with the tables and keys of a scene file."""
 
 import math
 from collections.abc import Sequence

@@ -22,11 +22,11 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_C
 
-LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)
+LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)  # factors s on the loading
 SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs
 SCALING_TOLERANCE = 1e-8  # relative error of mu: the step at the smallest scale is 1e-5
-EXACT_MINUS_SMALL = "exact minus small"
-SMALL_SCALE_DIFFERENCE = "small, s minus s/2"
+EXACT_MINUS_SMALL = "exact minus small"  # name of the difference between exact and small equations
+SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of the change of mu when the loading is halved
 
 Arguments = tuple[Scene, bool]  # scene, and whether the supremum is taken
 
@@ -85,6 +85,7 @@ def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
+    """Return trends without values for every body, with the reason why the task failed."""
     scene, supremum = task
     what = f"{EXACT_MINUS_SMALL}, {_name_peak(scene, supremum)}"
     bodies = range(1, len(scene.bodies) + 1)

@@ -78,6 +78,7 @@ def measure_setting(measurement: Measurement) -> SettingResult:
 
 
 def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> SettingResult:
+    """Return mu, its error and the processor time of one call; NaN with the message if it raises an error."""
     nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
     try:
         answer = import_function(path)(scene, phases, **settings)
@@ -151,6 +152,7 @@ class TradeOff:
         ]
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
+        """Return error over cost of every setting for one scene."""
         measured = (
             join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )

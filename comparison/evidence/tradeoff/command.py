@@ -93,6 +93,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 def _measure_cost_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
+    """Measure how the processor time grows with bodies, duration, phase pairs and workers; write and print it."""
     begin, tasks = time.monotonic(), CostGrowth(scene).tasks()
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)

@@ -68,6 +68,7 @@ def make_growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
 
 
 def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> Panel:
+    """Return the plot of relative error over processor time of the methods for one body."""
     curves = {
         method: known
         for method, entries in trade.methods(question.key).items()
@@ -75,6 +76,7 @@ def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> P
     }
 
     def rank(method: str) -> tuple[bool, int]:
+        """Return the sort key of a method: without model error first, then by its settings on the Pareto front."""
         return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
 
     shown = sorted(curves, key=rank)[:MAX_CURVES]
@@ -91,6 +93,7 @@ def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> P
 
 
 def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, number: int) -> dict[str, Any]:
+    """Return the curve of a method: relative error over processor time, s; dashed if the error is that of a model."""
     times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
     x, y = [entry.seconds for entry in entries], [max(entry.most[body] or 0.0, 1e-16) for entry in entries]
     titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]

@@ -60,7 +60,7 @@ class GrowingQuantity:
     models: tuple[Model, ...]
 
 
-_EACH = EXACT, TRANSLATIONAL, SPATIAL
+_EACH = EXACT, TRANSLATIONAL, SPATIAL  # models whose cost is measured
 QUANTITIES = (
     GrowingQuantity("bodies", "", BODY_COUNTS, lambda scene, n: split_upper_body(scene, int(n)), _EACH),
     GrowingQuantity(
@@ -145,6 +145,7 @@ class CostGrowth:
         return collected
 
     def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
+        """Return the tasks by growing quantity and model."""
         return [
             (quantity, model, [self._task(quantity, model, value) for value in quantity.values])
             for quantity in QUANTITIES
@@ -153,6 +154,7 @@ class CostGrowth:
         ]
 
     def _task(self, quantity: GrowingQuantity, model: Model, value: float) -> Task:
+        """Return the task that measures the cost of a model at one value of a growing quantity."""
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(STUDY_TOLERANCE), **work}
         phases = sample_phases(int(value) if quantity.name == PHASE_PAIRS else PHASE_PAIRS_OF_SIDE[model.side])

@@ -21,7 +21,7 @@ MOTION_SAMPLES = 2001  # number of samples, in addition to the solver's own step
 PEAK_NEIGHBORHOOD = (
     1e-3  # Around samples within this share of the peak, the motion is sampled PEAK_REFINEMENT times as densely.
 )
-PEAK_REFINEMENT = 50
+PEAK_REFINEMENT = 50  # factor on the sampling rate near a peak
 LUBRICATED_V_REG = 1e6  # m/s, v_reg above any speed: it makes the lubricated law mu = f_c |v| linear throughout
 
 

@@ -17,6 +17,7 @@ from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
 
 REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
+# Functions of one run without error control: of the equations, of the engine, of the engine at constant steps
 REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN = (
     f"comparison.evidence.tradeoff.single_runs:{name}"
     for name in ("run_reference_once", "run_engine_once", "run_at_constant_step")
@@ -24,7 +25,7 @@ REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN = (
 SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"
 
 REFERENCE_SOLUTION_TOLERANCE = 1e-10  # smallest relative error that the equations can be asked for
-SPATIAL_SOLUTION_TOLERANCE = 1e-5
+SPATIAL_SOLUTION_TOLERANCE = 1e-5  # relative error of the spatial engine's reference solution
 # S, constant steps by integrator
 STEPS_OF_INTEGRATOR = {
     "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
@@ -34,6 +35,7 @@ STEPS_OF_INTEGRATOR = {
 }
 DRY_REGULARIZATIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, v_reg of dry friction
 
+# Name of the varied contact compliance: static penetration over the radius of the path
 PENETRATION_PARAMETER = "penetration under the weight, over rho"
 
 Settings = Mapping[str, Any]
@@ -71,9 +73,11 @@ _LAWS: Mapping[str, Settings] = {
     "regularised": {"regularization": DEFAULT_V_REG},
 }
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_SOLUTION_TOLERANCE}
+# Function and keyword arguments of the most accurate answer to each question
 _REFERENCE_SOLUTIONS = {
     question: (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE}) for question, law in _LAWS.items()
 }
+# Questions that every method answers, with sample sizes and cost of their reference solutions
 QUESTIONS = (
     TradeoffQuestion("exact", "exact equations, supremum", _REFERENCE_SOLUTIONS["exact"], 48, 12, 0.006),
     TradeoffQuestion("small", "small equations, supremum", _REFERENCE_SOLUTIONS["small"], 48, 12, 0.006),
@@ -130,6 +134,7 @@ def _make_curve_settings(
 
 
 def _reference_settings(scene: Scene) -> Iterator[Setting]:
+    """Yield the equations with error control, in single runs, and regularized against rigid friction."""
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
         controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(REFERENCE_RUN, "step_tolerance", law)
@@ -151,6 +156,7 @@ def _reference_settings(scene: Scene) -> Iterator[Setting]:
 
 
 def _scipy_settings(quick: bool) -> Iterator[Setting]:
+    """Yield general-purpose integrators of SciPy on the equations with regularized friction."""
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
     # LSODA goes to tighter tolerances because its finest run checks the reference solution.
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
@@ -185,6 +191,7 @@ def _engine_settings(quick: bool) -> Iterator[Setting]:
 
 
 def _constant_step_settings(quick: bool) -> Iterator[Setting]:
+    """Yield the engine's own integrators at constant time steps, s."""
     for solver, steps in STEPS_OF_INTEGRATOR.items():
         call = _VariedCall(CONSTANT_STEP_RUN, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
         few = steps[:: 2 if quick else 1]

@@ -28,7 +28,7 @@ except ImportError:  # Windows cannot limit the memory or time of a process.
     resource = None  # type: ignore[assignment]
 
 MAX_FILE_BYTES = 2**24  # bytes of the largest file that is read
-MAX_SAMPLES = 2_000_000
+MAX_SAMPLES = 2_000_000  # largest number of samples in a column
 MAX_READING_SECONDS = 30.0  # s of processor time that reading a file may take: the published ones take less than 1 s
 MAX_READING_BYTES = 2**29  # bytes that reading a file may take: a column of MAX_SAMPLES takes 2^24
 DURATION_RANGE = (1.0, 1e4)  # s, shortest and longest motion that is compared
@@ -113,6 +113,7 @@ def read_folder(folder: Path) -> MeasuredFiles:
 
 
 def _read_frame_run(workers: Workers, grams: int, plate: Path, base: Path) -> FrameRun:
+    """Return a measured run of the frame with a disc of so many grams: motions of plate and base, mm."""
     x, y = (_read_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
     time = _check_series(plate, "t", x["t"])
     motion = _check_series(plate, "x", x["x"], len(time), "mm")
@@ -128,6 +129,7 @@ def _read_frame_run(workers: Workers, grams: int, plate: Path, base: Path) -> Fr
 def _read_swing(
     workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]
 ) -> FreeSwing:
+    """Return a measured free swing of the pendulum: instants, s, and angles, rad."""
     found = _read_columns(workers, file, columns, names)
     (first, instants), (second, angles) = found.items()
     time = _check_series(file, first, instants)

@@ -38,6 +38,7 @@ FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run to which the friction ratio i
 # kg, disc of the second run to which load-dependent friction is fitted, if the folder has it
 SECOND_FITTED_WEIGHT = 0.450
 DIFFERENCE_STEP = 0.005  # relative step of ratio and scale in difference quotients
+# Quantities of a cycle of the plate that are compared, and their units
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
@@ -196,10 +197,12 @@ def compare_frame(runs: Sequence[FrameRun]) -> table.ExperimentFindings:
 
 
 def _is_sliding(cycles: Cycles) -> bool:
+    """Return whether the plate slides for a part of the mean cycle."""
     return bool(measure_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
 
 
 def _word_fitted_friction_ratio(fitted: FittedRun) -> str:
+    """Return the fitted friction ratio as a row of the inputs, with its scatter over the cycles."""
     source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
     return table.word_input("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 

@@ -207,6 +207,7 @@ def _fit_half_period(sizes: Array, periods: Array, angle: float) -> tuple[float,
 
 
 def _find_zeros(motion: Trajectory) -> Array:
+    """Return the instants at which the platform passes its lowest point, s."""
     zeros: Array = interpolate_platform(motion).roots(extrapolate=False)
     return zeros
 

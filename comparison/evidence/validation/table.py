@@ -32,8 +32,8 @@ COVERAGE_FACTOR = 2.0  # number of standard deviations in an expanded uncertaint
 LAW_CAUSE, INPUT_CAUSE, NO_CAUSE = "the friction law", "an input", "not explained"
 # Suffix of the name of a run that is computed with load-dependent friction
 LOAD_FRICTION_SUFFIX = ", friction of the load"
-DEGREES, CYCLE = "deg", "% of a cycle"
-JUDGED_SIDES = EQUATIONS, ENGINE
+DEGREES, CYCLE = "deg", "% of a cycle"  # units of phases within a cycle
+JUDGED_SIDES = EQUATIONS, ENGINE  # codes whose deviations get a verdict
 VERDICTS_BEST_FIRST: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # verdicts from the best to the worst
 ABSOLUTE_UNITS = (DEGREES, CYCLE)  # units for which a relative error has no meaning
 

@@ -20,7 +20,7 @@ from reference.problem import Scene
 from reference.support.drawing import escape_for_matplotlib
 
 HEIGHT_COLORS = "cividis"  # color map that reads alike with and without color vision deficiency, and in print
-SIGN_COLORS = "RdBu_r"
+SIGN_COLORS = "RdBu_r"  # color map of differences: red below zero, blue above
 PHASE_RANGE = (0.0, 2.0 * np.pi)
 QUARTER_TICKS = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
 # Compression of the dense surfaces: smaller than with the usual level 6, in 0.6 of the time
@@ -91,6 +91,7 @@ def draw_in_space(
 
 
 def _draw_surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
+    """Draw mu over the phases as a surface in space."""
     colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
     draw_in_space(axes, phase, height, (low, high), 0.62, 0.88, **colors)
     axes.tick_params(labelsize=8, pad=0)
@@ -99,6 +100,7 @@ def _draw_surface(axes: Axes3D, phase: Array, height: Array, low: float, high: f
 
 
 def _draw_difference_map(figure: Figure, axes: Axes, difference: ModelDifference) -> None:
+    """Draw the relative difference of two models over the phases, in percent; colors end at the 98 % fractile."""
     percent = 100.0 * difference.size
     size = np.abs(percent[np.isfinite(percent)])
     largest = float(size.max()) if size.size else 0.0
