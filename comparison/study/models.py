@@ -444,7 +444,7 @@ def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-# Models of the engine that soften bars by the weight above, beside those that leave bars unloaded
+# Models of the engine with bars softened by the weight above, for scenes that state bars without load
 SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_bars)
 SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
 

@@ -109,7 +109,7 @@ class Completion:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def difference_accepted(self) -> bool:
-        """Return whether its difference from the first model may be drawn: the error is at most a fifth of that."""
+        """Return whether the difference from the first model may be drawn: it is at least five times the error."""
         return self.accepted and RESOLVED_RATIO * self.error <= self.difference
 
 

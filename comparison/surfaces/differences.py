@@ -14,7 +14,7 @@ from reference.measures.distribution import fractile
 from reference.problem import Scene
 from reference.problem.readings import BOTH_READINGS
 
-MAX_AGREEING_RATIO = 2.0  # largest |D| / u_D of two models that agree: beyond it one of their error estimates is wrong
+MAX_AGREEING_RATIO = 2.0  # largest difference of two models that agree, over its uncertainty u_D
 
 
 @result

@@ -111,7 +111,7 @@ class Headline:
 
     @property
     def within_error(self) -> bool:
-        """Return whether the mean is within its error."""
+        """Return whether the size of the mean difference is at most its error."""
         return abs(self.mean) <= self.error
 
     def find_effect(self, name: str) -> Effect:

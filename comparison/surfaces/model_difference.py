@@ -12,7 +12,7 @@ from comparison.study.models import Model, Pair
 from comparison.surfaces.surfaces import find_common_stride, select_values
 
 MAX_USABLE_ERROR = 0.5  # share of a value: with a larger error estimate the value is unusable
-RESOLVED_RATIO = 5.0  # multiple of u_D from which a difference is known to a fifth of itself or better
+RESOLVED_RATIO = 5.0  # multiple of its uncertainty u_D from which a difference is known to a fifth of itself
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class ModelDifference:
 
     @property
     def ratio(self) -> Array:
-        """Return |D| / u_D, 0 where both vanish."""
+        """Return the size of the difference over its uncertainty, 0 where both vanish."""
         size = np.abs(self.size)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio: Array = np.where(size == 0.0, 0.0, size / self.uncertainty)

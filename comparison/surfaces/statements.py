@@ -120,7 +120,7 @@ def word_agreement(numbers: Headline) -> str:
 
 
 def _word_multiple(ratio: float) -> str:
-    """Return how many times both errors together an agreeing difference is, in words."""
+    """Return the ratio of a difference to the errors of both codes together, in words."""
     return "" if ratio <= 1.0 else "twice "
 
 

@@ -46,7 +46,7 @@ def with_suite(
 
 
 def _is_wrong_duration(value: Any) -> bool:
-    """Return whether a duration, which counts for nothing beside a suite, is to be refused with whatever is wrong."""
+    """Return whether a duration is inadmissible; a suite replaces only an admissible one."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return not (isinstance(value, dict) or (number and value in range_of(Scene, "duration")))
 

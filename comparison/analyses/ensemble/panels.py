@@ -228,7 +228,7 @@ def _body_heights(structure: Structure) -> tuple[list[float], bool]:
 
 def _demand_heights(structure: Structure, quantity: str) -> tuple[list[float], bool]:
     """
-    Return the heights at which a demand of the bodies is, as `_body_heights` has those of the bodies.
+    Return the heights at which a demand of the bodies acts, m, and True; or numbers, and False, as `_body_heights`.
 
     A moment is at the height about which it is taken, a drift or shear in the middle of its story.
     """

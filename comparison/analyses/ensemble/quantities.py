@@ -9,7 +9,7 @@ from reference.problem import GRAVITY, Scene
 
 Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the isolator
 
-# Largest acceleration of a floor by the literal supremum
+# Key of the largest floor acceleration by the literal supremum
 SUPREMUM = "acceleration_supremum"
 DIRECTED_DEMANDS = {  # of every story, read along x and y, too
     "story_shear": ("story shear", "N"),

@@ -336,7 +336,7 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """Return the mark for mean and worst value, and for each fractile without a value of its own."""
+    """Return the mark of a bound for mean and worst value, and for each fractile that is not known itself."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 

@@ -217,7 +217,7 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
 
 def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow, ModelRatio, list[str]]]:
     """
-    Yield the demands of the suite by the equations, times the ratio of the engine over them.
+    Yield the demands of all motions by the equations, times the engine's ratio to the equations in its own motions.
 
     Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes; of a
     smallest force 16 % and the smallest.

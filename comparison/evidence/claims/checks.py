@@ -76,7 +76,7 @@ def find_folds(*cases: Evidence) -> StatementVerdict:
 
 
 def find_no_fold(case: Evidence) -> StatementVerdict:
-    """Return whether no surface has a fold or a jump at its sharpest curvature; one in the denominator is in all."""
+    """Return whether no surface has a fold or a jump at its sharpest curvature; one of the ground's peak in (5.1) is in all."""
     if case.ground is not None and not case.ground.smooth:
         return verdict_with_reason(
             False, f"cannot hold: the denominator of (5.1) has a fold; {_describe_curvatures(case)}"
@@ -87,7 +87,7 @@ def find_no_fold(case: Evidence) -> StatementVerdict:
 
 
 def _list_curvatures(case: Evidence) -> list[tuple[int, bool, SharpestCurvature]]:
-    """Return number, flatness and sharpest curvature of every body's surface."""
+    """Return for every body its number, whether its surface is flat, and its sharpest curvature."""
     return [(body, case.flat(body), bend) for body, bend in enumerate(case.bends, 1)]
 
 

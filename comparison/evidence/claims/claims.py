@@ -15,7 +15,7 @@ from comparison.verdicts import NOT_COMPARED
 
 @dataclass(frozen=True)
 class PaperStatement:
-    """One statement. rule: when it is met. cannot: the sense in which no parameters can meet it, and why."""
+    """Statement of the paper. rule: when it is met. cannot: in which sense no parameters can meet it, and why."""
 
     figure: str
     says: str

@@ -21,7 +21,7 @@ MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase
 
 @dataclass(frozen=True)
 class Evidence:
-    """Evidence of one case in one reading, by the printed equations (4.3)-(4.4)."""
+    """What surfaces and motions of one scene show under one definition of the peak, by the printed (4.3)-(4.4)."""
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
     error: float = float("nan")  # largest absolute error estimate
@@ -49,7 +49,7 @@ class Evidence:
 @dataclass(frozen=True)
 class CaseInReading:
     """
-    One case in one reading, on a grid of `grid` phases per axis.
+    One scene under one definition of the peak in (5.1), on a grid of `grid` phases per axis.
 
     known: its surfaces, where the study has them; otherwise they are computed.
     """
@@ -96,7 +96,7 @@ def make_failed_evidence(question: CaseInReading, failed: TaskResult) -> Evidenc
 
 
 def _measure_motions(scene: Scene) -> tuple[tuple[float, ...], float]:
-    """Return `apart` and `swing` of the motions at MOTION_PHASES."""
+    """Return how far motions along x and y differ, `apart`, and the largest displacement, `swing`, at MOTION_PHASES."""
     apart, swing = np.zeros(len(scene.bodies)), 0.0
     for phase in MOTION_PHASES:
         place = reference.trajectory(scene, phase, equations="small").position[..., :2]

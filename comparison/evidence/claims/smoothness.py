@@ -25,8 +25,9 @@ MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5
 @dataclass(frozen=True)
 class SharpestCurvature:
     """
-    Sharpest curvature of a surface: phases (alpha1, alpha2), rad; exponent of its second difference, NaN unless a
-    value is missing; the lowest of the places looked at.
+    Sharpest curvature of a surface: the place where its second difference falls with the lowest power of the step.
+
+    exponent: that power, NaN where a value is missing. phases: (alpha1, alpha2) of the place, rad.
     """
 
     exponent: float
@@ -34,7 +35,7 @@ class SharpestCurvature:
 
     @property
     def smooth(self) -> bool:
-        """Return whether the surface is smooth there."""
+        """Return whether the surface is smooth at its sharpest curvature."""
         return self.exponent > MAX_FOLD_EXPONENT
 
     @property
@@ -66,7 +67,7 @@ def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tupl
     tiny = np.finfo(float).tiny
     exponents = np.log2(np.maximum(sizes[-1 - FITTED_HALVINGS], tiny) / np.maximum(sizes[-1], tiny)) / FITTED_HALVINGS
     of_bodies = (np.flatnonzero(body == number) for number in range(bodies))
-    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # argmin takes NaN for the smallest
+    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # argmin takes NaN for smallest
     phases = np.mod(center, 2.0 * np.pi)
     return tuple(
         SharpestCurvature(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest

@@ -40,8 +40,8 @@ _TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "ma
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 # The engine at the step or contact stiffness that the row states
 STATED_ENGINE = "comparison.evidence.extremes.engine:amplification"
-# Calls that check a value, the first with an answer: the equations of the same law and geometry, then the engine at a
-# far closer tolerance
+# Finer runs that check a value, in order until one answers: the equations of the same law and geometry, then the engine
+# at a far closer tolerance
 _FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
 _FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
 COLUMNS = (

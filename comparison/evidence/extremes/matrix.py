@@ -31,7 +31,7 @@ MEANING_OF_VERDICT = {
 
 @result
 class MatrixEntry:
-    """One cell of the matrix."""
+    """Verdict on the answer of one model at one extreme."""
 
     verdict: CellVerdict
     """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
@@ -47,7 +47,7 @@ class MatrixEntry:
 
 @result
 class Extreme:
-    """One row of the matrix: one extreme."""
+    """Row of the matrix: one quantity at one extreme value."""
 
     group: Annotated[str, "the quantity"]
     title: Annotated[str, "its extreme value"]

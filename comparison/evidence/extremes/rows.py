@@ -219,7 +219,7 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
         group, {upward: make_baseline_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (5.0, 9.8)}
     )
     exactly = make_baseline_scene(amplitudes=add_vertical_harmonic(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
-    weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
+    weightless = (0.0, 1.1), (math.pi, 0.7)  # rad, phases at which the contact force is zero for an instant
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR_MODELS, phases=weightless, right=("contact lost",))
     # The contact force vanishes for an instant, where either outcome, contact or its loss, is right.
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)

@@ -39,7 +39,7 @@ _warmed_functions: set[str] = set()  # functions that this process has called, s
 
 @dataclass(frozen=True)
 class Measurement:
-    """Phase pairs of the sample to be measured by one function."""
+    """Phase pairs of a scene at which the error and the processor time of one function are measured."""
 
     scene: Scene
     function: Function
@@ -139,7 +139,7 @@ class TradeOff:
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Return the tasks of one function on the sample of a question; seconds: rough cost of a point over 20 s."""
+        """Return the tasks of one function for a question. seconds: rough cost of a phase pair for 20 s of motion."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
@@ -193,7 +193,7 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
 def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
 ) -> trade.SolvedQuestion:
-    """Return the question with its reference solution, the error of that, and the checks of it."""
+    """Return a question with its reference solution, and with the error and the checks of that solution."""
     error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = trade.find_error_quantile(error_estimate.ravel(), 1.0)
     tolerance = question.reference_solution[1]["tolerance"]

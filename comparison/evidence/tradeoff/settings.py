@@ -26,7 +26,7 @@ SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"
 
 REFERENCE_SOLUTION_TOLERANCE = 1e-10  # smallest relative error that the equations can be asked for
 SPATIAL_SOLUTION_TOLERANCE = 1e-5  # relative error of the spatial engine's reference solution
-# S, constant steps by integrator
+# Constant time steps by integrator, s
 STEPS_OF_INTEGRATOR = {
     "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "trapezoidal": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
@@ -56,8 +56,9 @@ class TradeoffQuestion:
 @dataclass(frozen=True)
 class Setting(StatedSetting):
     """
-    One point of a diagram. function: answers (scene, phases, **settings). against: reference solution of its own in
-    place of the question's. seconds: per point, about.
+    Setting of a method, a point of the plot of error over cost. function: called as (scene, phases, **settings).
+
+    against: reference solution in place of the question's. seconds: rough cost per phase pair.
     """
 
     function: str

@@ -37,7 +37,7 @@ def run_reference_once(
 def run_engine_once(
     scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """Return mu of one run of the engine by phase pair. step: factor on its steps; level: changed fields of it."""
+    """Return mu of one run of the engine by phase pair. step: factor on its steps; level: changed fields of `Level`."""
     usual = multibody.levels(scene, model, regularization=regularization)[DEFAULT_ENGINE_LEVEL]
     changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
     return _compute_factors(scene, phases, lambda run: run.peak, model, regularization, level=changed)

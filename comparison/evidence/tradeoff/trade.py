@@ -56,7 +56,7 @@ class MeasuredSetting(StatedSetting):
 
     @property
     def complete(self) -> bool:
-        """Return whether it has a value at every point."""
+        """Return whether the setting gives a value at every phase pair."""
         return self.answered == self.points
 
 
