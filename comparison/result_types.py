@@ -19,6 +19,7 @@ from comparison.json_file import finite_or_none
 
 
 def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
+    """Return a number as JSON has it: "inf" for infinity, None for NaN."""
     return "inf" if value == math.inf else finite_or_none(value)
 
 

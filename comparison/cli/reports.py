@@ -110,6 +110,7 @@ class ReportWriter:
             self.write(replace(complete, study=study), runner)
 
     def _report(self, complete: CompleteLevel, runner: Runner) -> Report:
+        """Return everything that the report of a level is made from, with the facts of the run."""
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {

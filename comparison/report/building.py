@@ -51,6 +51,7 @@ def assemble_report(
     parts_lost = LostParts(lost)
 
     def compute(name: str, function: Callable[..., Any], *words: Any) -> Any:
+        """Return a part of the report; None with a line in the list of lost parts if it raises an error."""
         return parts_lost.attempt(f"section {name}", partial(function, *words))
 
     gaps = list_missing_values(study, surfaces)

@@ -139,6 +139,7 @@ def refuse_foreign_store(out: Path) -> None:
     """Raise SceneError, one line, if something else is in the place of the folder of stored results."""
 
     def refusal(rule: str) -> SceneError:
+        """Return the error that names the folder in place of the stored results."""
         return SceneError("command line", "--out", str(out), f"{folder.name!r} next to it {rule}")
 
     folder = locate_store(out)

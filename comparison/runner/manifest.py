@@ -72,6 +72,7 @@ def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
 
 
 def is_own_file(file: Path, entry: OwnedFile | None) -> bool:
+    """Return whether the content of a file is one that the study wrote."""
     if entry is None or file.is_symlink() or not file.is_file():
         return False
     try:

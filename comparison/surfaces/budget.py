@@ -83,6 +83,7 @@ def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEnt
     pairs = (pair.first, pair.second, pair.base), (pair.second, pair.first, pair.base)
 
     def values(name: str) -> list[Array]:
+        """Return a variable of both models where both have a value, NaN elsewhere."""
         columns = (select_values(comparison.surfaces, name, scene, *each)[difference.body - 1] for each in pairs)
         return [np.where(known, column, np.nan) for column in columns]
 

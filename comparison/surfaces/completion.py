@@ -241,6 +241,7 @@ def _complete_body(
     about = scene.name, model.key, finer.key if finer else "", body
 
     def mu(of: Model, on: Model) -> Array:
+        """Return the usable mu of a body by model `of` at the phases of model `on`."""
         values: Array = usable_mu(surfaces, scene.name, of, on)[body - 1]
         return values
 
@@ -248,6 +249,7 @@ def _complete_body(
     computed = int(np.isfinite(gap).sum())
 
     def refuse(reason: str) -> Completion:
+        """Return a completion without a surface, for this reason."""
         nothing = np.full((study.grid, study.grid), nan)
         return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
 

@@ -99,6 +99,7 @@ def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) 
     stride = find_common_stride(surfaces, scene, *models)
 
     def mu(model: Model) -> Array:
+        """Return the usable mu of the body at the phases that all models have."""
         every: Array = usable_mu(surfaces, scene, model, *models)[body - 1]
         return every
 

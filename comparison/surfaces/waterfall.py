@@ -74,6 +74,7 @@ def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
         return LargestDifference((), WaterfallBar(models[-1].key, NAN, NAN, False), (NAN, NAN), 0)
 
     def size(pair: Pair) -> float:
+        """Return the largest absolute difference of a pair."""
         difference = comparison.difference(pair)
         return abs(difference.at(difference.size, difference.largest_place))
 

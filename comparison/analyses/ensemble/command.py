@@ -128,6 +128,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
+        """Write and print what the equations give; return the tasks of the engine."""
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.find_missing(ensemble.make_engine_tasks(chosen))
         if further:
@@ -191,6 +192,7 @@ def make_demand_check(
         raise SceneError("command line", "--against", options.against, rule)
 
     def check(result: EnsembleResult) -> list[DemandCheck]:
+        """Return the checks against the limits and, with --against, against a stored ensemble."""
         compared = [] if stored is None else compare_with_stored(result, stored, within)
         return [*check_limits(result, limits), *compared]
 

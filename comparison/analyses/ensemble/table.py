@@ -49,6 +49,7 @@ def format_table(points: EnsemblePoints, ensemble: EnsembleResult) -> str:
     """Return the content of the file; a text that a spreadsheet takes for a formula begins with an apostrophe."""
 
     def cell(value: object) -> object:
+        """Return a value of the table; an apostrophe keeps a spreadsheet from taking a text for a formula."""
         formula = isinstance(value, str) and (value[:1] in CONTROL_STARTS or value.lstrip().startswith(FORMULA_STARTS))
         return f"'{value}" if formula else value
 

@@ -51,6 +51,7 @@ def match_spectrum(
         raise SceneError("command line", "--periods", f"{low:g} {high:g}", "must be two periods, s, the shorter first")
 
     def target(at: Array) -> Array:
+        """Return the target spectrum at these periods, s, interpolated on logarithmic axes."""
         return np.exp(np.interp(np.log(at), np.log(period), np.log(wanted)))
 
     compared, drawn = np.geomspace(low, high, FITTED_PERIODS), np.geomspace(period[0], period[-1], DRAWN_PERIODS)

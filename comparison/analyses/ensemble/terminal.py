@@ -87,6 +87,7 @@ def _cells_of_row(row: DemandRow) -> list[str]:
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
+    """Print for every structure the isolator, missing demands and warnings."""
     named = label_structures(ensemble)
     for structure in ensemble.structures:
         lines = [

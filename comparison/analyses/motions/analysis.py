@@ -206,6 +206,7 @@ def _motion_without_values(place: MotionPlace, model: str, outcome: Outcome, err
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
+    """Return a motion of no instants for a task that failed."""
     return _motion_without_values(task[3], task[1].key, failed.outcome, failed.error_message)
 
 

@@ -56,6 +56,7 @@ def _type_of_demand(annotation: str) -> Any:
 
 
 def _meaning_of_demand(name: str) -> Any:
+    """Return the schema entry of a demand: its meaning, SI unit and bodies."""
     of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
     meaning, unit = QUANTITIES[name]
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")

@@ -166,6 +166,7 @@ def _list_demands(demands: Demands) -> dict[str, Any]:
     """Return the demands as JSON without their status, which the motion states."""
 
     def pair(estimate: Any) -> list[Any] | None:
+        """Return value and error of an estimate, with the reason for a missing one; a list for several bodies."""
         if estimate is None:
             return None
         if isinstance(estimate, tuple):

@@ -128,6 +128,7 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
             numbers[side] = answer.values[place], answer.errors[place]
 
     def read_number(side: str) -> SideNumber:
+        """Return the number by one code, with its verdict and, if it is not met, the reason."""
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
         return SideNumber(value, error, verdict, explain_deviation(side) if verdict == NOT_MET else "")

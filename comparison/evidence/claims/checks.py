@@ -76,7 +76,7 @@ def find_folds(*cases: Evidence) -> StatementVerdict:
 
 
 def find_no_fold(case: Evidence) -> StatementVerdict:
-    """Return whether no surface has a fold or a jump at its sharpest curvature; one of the ground's peak in (5.1) is in all."""
+    """Return whether no surface has a fold or a jump at its sharpest curvature, nor the denominator of (5.1)."""
     if case.ground is not None and not case.ground.smooth:
         return verdict_with_reason(
             False, f"cannot hold: the denominator of (5.1) has a fold; {_describe_curvatures(case)}"

@@ -65,6 +65,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     scene, cutoff = STATEMENT_CASES[question.case](), question.reading.cutoff
 
     def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
+        """Return mu by the printed equations at phase pairs (M, 2), rad."""
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
 
     surfaces = question.known
@@ -75,6 +76,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
         return surfaces
 
     def ground(phases: Array) -> Array:
+        """Return the largest ground acceleration, the denominator of (5.1), at phase pairs (M, 2), rad."""
         return ground_peak(scene, phases)[:, None]
 
     grid, natural = len(surfaces.mu), reference.modes(scene).period.ravel()

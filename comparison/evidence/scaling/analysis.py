@@ -95,6 +95,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
 
 
 def _name_peak(scene: Scene, supremum: bool) -> str:
+    """Return the definition of the peak in words."""
     return "peak" if not has_dry_friction(scene) else "supremum" if supremum else "resolved peak"
 
 

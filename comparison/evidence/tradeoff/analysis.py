@@ -31,6 +31,7 @@ SAMPLE_SEED = 20  # seed of the random phase pairs: every run has the same
 WARM_UP_DURATION = 0.2  # s, duration of a motion that loads and compiles a function before it is timed
 TASK_SECONDS = 3.0  # s, rough work of one task
 OWN_SOLUTION_SECONDS = 0.01  # s, rough cost per phase pair of a setting's own reference solution
+# Methods whose agreement with a reference solution is stated, by the first word of their names
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
 Function = tuple[str, Settings]  # function as "package:function", and its keyword arguments
@@ -217,6 +218,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
         families = [("the same code, asked for less", [each for each in candidates if each.controlled])]
 
     def largest(setting: trade.MeasuredSetting) -> float:
+        """Return the largest error of a setting over the bodies; infinite where it is not known."""
         return max(np.inf if error is None else error for error in setting.most)
 
     best = [(what, min(others, key=largest)) for what, others in families if others]

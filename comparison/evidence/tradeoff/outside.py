@@ -91,6 +91,7 @@ def integrate_motion(
     times = np.union1d(run.t, np.linspace(0.0, scene.duration, MOTION_SAMPLES))
 
     def states(instants: Array) -> Array:
+        """Return the states (T, 4 N) at instants between the steps, by the solver's interpolation."""
         return np.ascontiguousarray(run.sol(instants).T)
 
     high = compute_absolute_accelerations(scene, phase, times, states(times), v_reg)

@@ -47,6 +47,7 @@ def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: flo
     """Return mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN if it gives up."""
 
     def largest(run: Any) -> Array:
+        """Return the largest absolute acceleration of every body over its motion, m/s^2."""
         size: Array = np.linalg.norm(run.absolute_acceleration, axis=-1).max(axis=0)
         return size
 

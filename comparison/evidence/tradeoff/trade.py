@@ -121,10 +121,12 @@ def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
     complete = [entry for entry in entries if entry.complete and not entry.model_error]
 
     def time_and_error(entry: MeasuredSetting, body: int) -> tuple[float, float]:
+        """Return cost, s, and error of a setting for a body; the error is infinite where it is not known."""
         error = entry.most[body]
         return entry.seconds, math.inf if error is None else error
 
     def is_on_front(entry: MeasuredSetting, body: int) -> bool:
+        """Return whether no other setting for the same question is better in cost and error, `is_pareto_optimal`."""
         rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
         return entry in complete and is_pareto_optimal(time_and_error(entry, body), rivals)
 

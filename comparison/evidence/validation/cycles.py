@@ -42,6 +42,7 @@ def fold_run(run: FrameRun) -> Cycles:
     first = float(np.argmax(spectrum)) / (time[-1] + time[1])
 
     def fit_harmonics(frequency: float) -> tuple[Array, Array]:
+        """Return Fourier coefficients of the base motion at a frequency, Hz, by least squares, and the residual."""
         turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(BASE_HARMONICS + 1))
         terms = np.hstack([np.cos(turns), np.sin(turns[:, 1:])])
         factors: Array = np.linalg.lstsq(terms, run.base, rcond=None)[0]

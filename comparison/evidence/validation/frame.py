@@ -126,6 +126,7 @@ def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]
     """Return the inputs with which the equations come closest to the mean cycle, and their scatter (J, names)."""
 
     def curve(at: Setup) -> Array:
+        """Return the last computed cycle of the plate with these inputs."""
         return read_last_cycle(compute_frame_motion(EQUATIONS, cycles, at), cycles.frequency)
 
     for _ in range(12):
@@ -224,6 +225,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 
         def between(setup: Setup, low: float, high: float, share: float = share) -> Setup:
+            """Return the inputs with a friction ratio interpolated as a power of the load."""
             return setup._replace(ratio=low * (high / low) ** share)
 
         pairs = zip([*first.changed, first.shifted], [*second.changed, second.shifted])
@@ -252,6 +254,7 @@ def _compare_run(
     by_input, by_ratio = (np.abs(solve_quantities(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> str:
+        """Return which change of the inputs brings quantity `k` within the allowed difference."""
         shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
         if by_input[k] <= allowed:
             return f"{table.INPUT_CAUSE}: gone with {shift}"

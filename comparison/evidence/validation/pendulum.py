@@ -131,6 +131,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     gone = f"gone with the half period fitted at {REFITTED_ANGLE} rad"
 
     def explain(k: int, allowed: float) -> str:
+        """Return whether the half period fitted at another angle brings quantity `k` within the allowed difference."""
         if abs(again[k] - data.values[k]) <= allowed:
             return f"{table.INPUT_CAUSE}: {gone}, where friction weighs less"
         return f"{table.NO_CAUSE}: not {gone}"
