@@ -10,6 +10,7 @@ from reference.support.drawing import escape_for_matplotlib
 MAX_PERCENT_DECIMALS = 4  # largest number of decimals of a percentage: smaller sizes are shown as zero
 MIN_SHOWN_ERROR = 0.01  # share of a size below which its error does not show in two digits
 MAX_AXIS_NAMES = 12  # largest number of names on an axis; with more values every n-th is named
+# What a text holds that HTML writes in another way: powers, percentages, indices and Greek letters
 POWER_PATTERN = re.compile(r"\^(\w)")
 PERCENT_PATTERN = re.compile(r"(?<=\d) %")
 SUBSCRIPT_PATTERN = re.compile(r"(?<=[\w>])_(\w+)")

@@ -66,6 +66,7 @@ VERIFICATION = _surface_feature(
     verdict=lambda results: f"{len(CHECKS)} tests, run by the test command of the README, not by this report",
 )
 PROVENANCE = _surface_feature("provenance", "Provenance")
+# Parts without a section of their own: surfaces between computed phase pairs, and image files
 COMPLETION = Feature(CompletedSurfaces.key, analysis=CompletedSurfaces(), selectable=False)
 PICTURES = Feature(
     Pictures.key,

@@ -288,6 +288,7 @@ def _model_after(before: Model, changed_assumptions: Mapping[str, str], **change
     return replace(before, assumptions={**before.assumptions, **changed_assumptions}, **changes)
 
 
+# The models in their order: each is the one before it with other assumptions or another definition of the peak
 SMALL = Model(
     key="small",
     title="small equations, literal supremum",

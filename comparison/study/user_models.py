@@ -27,6 +27,7 @@ from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.wording import shorten_text
 from reference.problem import Amplification, Outcome, Scene
 
+# Function that calls a user's engine in a worker process
 CALLED_THROUGH = "comparison.study.user_models:amplification"
 DEFAULT_LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
 # keys of the models that an engine may be compared with

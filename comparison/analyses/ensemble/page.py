@@ -33,8 +33,8 @@ from comparison.analyses.ensemble.trust import (
     EXTRAPOLATED_STATISTICS,
     MODEL_TITLES,
     extrapolate_ratios,
-    make_trust_rows,
-    trust_sentence,
+    make_model_ratio_rows,
+    model_ratio_sentence,
 )
 from comparison.report.page import render_lost_line, render_page, render_template
 from comparison.report.page_data import compress_to_text
@@ -154,9 +154,9 @@ def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
         "labels": label_structures(ensemble),
         "engine_sentences": sentences.engine_sentences(ensemble),
-        "trust_sentence": trust_sentence(ensemble),
+        "model_ratio_sentence": model_ratio_sentence(ensemble),
         "columns": {key: title for key, title in MODEL_TITLES.items() if key != EXACT.key},
-        "rows": make_trust_rows(ensemble),
+        "rows": make_model_ratio_rows(ensemble),
     }
 
 
@@ -187,6 +187,7 @@ class PagePart(NamedTuple):
     is_shown: Callable[[EnsembleResult], bool] = lambda ensemble: True
 
 
+# Sections of the page in their order
 PARTS = (
     PagePart("building", "The building as read", _building_context),
     PagePart("suite", "The motions", _suite_context, lambda ensemble: bool(ensemble.suite)),

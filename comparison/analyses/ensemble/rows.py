@@ -43,6 +43,7 @@ class DemandColumn:
     unit: str = ""  # display unit, "" for the usual one of the quantity
 
 
+# Demands of the main table in their order
 MAIN_TABLE_COLUMNS = (
     DemandColumn("isolator displacement", "displacement"),
     DemandColumn("support displacement, with torsion", "support_displacement"),
@@ -63,6 +64,7 @@ MAIN_TABLE_COLUMNS = (
 )
 
 
+# Demands of the table with one row for each motion
 MOTION_TABLE_QUANTITIES = (
     "displacement", "base_shear", "acceleration", "drift_ratio", "support_force_max", "support_force_min", "residual"
 )  # fmt: skip

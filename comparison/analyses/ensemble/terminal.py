@@ -22,7 +22,7 @@ from comparison.analyses.ensemble.sentences import (
     word_heading,
     word_motion_count,
 )
-from comparison.analyses.ensemble.trust import MODEL_TITLES, make_trust_rows, trust_sentence
+from comparison.analyses.ensemble.trust import MODEL_TITLES, make_model_ratio_rows, model_ratio_sentence
 from comparison.cli.terminal import make_table
 from comparison.runner.attempts import attempt
 from comparison.study.models import EXACT
@@ -43,7 +43,7 @@ def print_engine(console: Console, ensemble: EnsembleResult) -> None:
     """Print what the engine adds to the tables of the equations; a part that fails becomes one line."""
     parts: dict[str, Callable[[], None]] = {
         "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
-        "table of models": partial(_print_trust, console, ensemble),
+        "table of models": partial(_print_model_ratios, console, ensemble),
         "support forces": lambda: print_lines(console, support_sentences(ensemble)),
     }
     for what, act in parts.items() if ensemble.engine.motions else ():
@@ -101,10 +101,10 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
     print_lines(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
 
 
-def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
+def _print_model_ratios(console: Console, ensemble: EnsembleResult) -> None:
     """Print the mean difference of every model from the exact equations, by demand and bound."""
     models = {key: title for key, title in MODEL_TITLES.items() if key != EXACT.key}
-    for bound, rows in group_rows_by(make_trust_rows(ensemble), "bound").items():
+    for bound, rows in group_rows_by(make_model_ratio_rows(ensemble), "bound").items():
         print_lines(
             console,
             [f"{bound}, mean difference from the exact equations on {word_motion_count(len(rows[0].motions))}:"],
@@ -113,4 +113,4 @@ def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
         for row in rows:
             table.add_row(row.name, row.text, *(row.ratios[key].brief if key in row.ratios else "" for key in models))
         console.print(table)
-    print_lines(console, [trust_sentence(ensemble)])
+    print_lines(console, [model_ratio_sentence(ensemble)])

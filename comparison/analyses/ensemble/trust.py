@@ -112,19 +112,21 @@ class ModelRatioRow:
         return f"{word_value(self.value, None, factor)} {unit}".strip()
 
 
-def make_trust_rows(ensemble: EnsembleResult) -> list[ModelRatioRow]:
+def make_model_ratio_rows(ensemble: EnsembleResult) -> list[ModelRatioRow]:
     """Return a row for each demand of the main table that another model than the exact equations has."""
     named, rows = label_structures(ensemble), []
     for structure in ensemble.structures:
         for shown in MAIN_TABLE_COLUMNS:
             stripe = statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)
             if stripe is not None and shown.name not in DEMANDS_WITHOUT_MODEL_RATIO:
-                row = _trust_row(ensemble, structure, named[structure.name], shown)
+                row = _make_model_ratio_row(ensemble, structure, named[structure.name], shown)
                 rows += [] if row is None else [row]
     return rows
 
 
-def _trust_row(ensemble: EnsembleResult, structure: Structure, bound: str, shown: DemandColumn) -> ModelRatioRow | None:
+def _make_model_ratio_row(
+    ensemble: EnsembleResult, structure: Structure, bound: str, shown: DemandColumn
+) -> ModelRatioRow | None:
     """Return the model ratios of one demand of a structure; None if no motion has it by all models."""
     quantity = shown.quantity
 
@@ -185,14 +187,14 @@ def _word_largest_size(size: float) -> str:
     return f"up to {percent(size)}" if size >= HIDDEN_BY_ROUNDING else f"less than {percent(HIDDEN_BY_ROUNDING)}"
 
 
-def trust_sentence(ensemble: EnsembleResult) -> str:
+def model_ratio_sentence(ensemble: EnsembleResult) -> str:
     """
     Return the sentence that keeps geometry, codes, friction law and turning of the bodies apart; "" without an engine.
 
     Each is the largest of single motions over every demand of the table. The smallest support force has a clause of
     its own: close to zero, a small force is a large share of it.
     """
-    every = make_trust_rows(ensemble)
+    every = make_model_ratio_rows(ensemble)
     rows = [row for row in every if row.shown.quantity not in SMALLEST_IS_WORST]
     parts = {
         SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth {} ({})",
@@ -222,7 +224,7 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
     Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes; of a
     smallest force 16 % and the smallest.
     """
-    for row in make_trust_rows(ensemble):
+    for row in make_model_ratio_rows(ensemble):
         ratio = row.ratios.get(ensemble.engine.model)
         stripe = statistics_of_column(ensemble, row.shown, ensemble.largest_scale, row.structure)
         if ratio is None or stripe is None:

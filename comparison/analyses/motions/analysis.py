@@ -26,7 +26,7 @@ EVENLY_SPREAD_PAIRS = (
 )
 
 
-def half_swing(values: Array) -> Array:
+def half_range(values: Array) -> Array:
     """Return half of the range of each component of `values` (T, C), (C,): decimation errors are shares of it."""
     largest = np.abs(values).max(axis=0, initial=0.0)
     half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
@@ -37,14 +37,14 @@ def half_swing(values: Array) -> Array:
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
     Return the indices to keep of `values` (T, C) at `time` (T,): ends, `peaks`, and all that straight lines need.
-    lines between them to miss no value by more than SHARE of its component's `half_swing`.
+    lines between them to miss no value by more than SHARE of `half_range` of its component.
     """
     if len(time) < 3:
         return np.arange(len(time))
     kept = np.zeros(len(time), bool)
     kept[[0, len(time) - 1]] = kept[peaks] = True
     _keep_corners(
-        np.ascontiguousarray(time), np.ascontiguousarray(values / half_swing(values)), MAX_DECIMATION_ERROR, kept
+        np.ascontiguousarray(time), np.ascontiguousarray(values / half_range(values)), MAX_DECIMATION_ERROR, kept
     )
     return np.flatnonzero(kept)
 

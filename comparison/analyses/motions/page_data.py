@@ -41,7 +41,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analyses.motions.analysis import MotionPlace, StoredMotion, half_swing
+from comparison.analyses.motions.analysis import MotionPlace, StoredMotion, half_range
 from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
@@ -126,7 +126,7 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
 def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
     """Return the exponents of two that the columns of a motion are rounded to."""
     values = _motion_columns(motion)
-    steps = MAX_COLUMN_ROUNDING * half_swing(values)
+    steps = MAX_COLUMN_ROUNDING * half_range(values)
     steps[:1] = MAX_TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
     return np.floor(np.log2(steps)).astype(int)
 

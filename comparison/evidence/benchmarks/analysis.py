@@ -26,6 +26,7 @@ from comparison.verdicts import MET, NOT_MET
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import State, Trajectory
 
+# Model of each code: the equations with rigid and with regularized friction, and the multibody engine
 MODEL_OF_SIDE = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
 TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked of each code
 READ_SAMPLES = 100_001  # number of instants at which a motion by the equations is read

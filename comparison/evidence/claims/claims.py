@@ -34,6 +34,7 @@ class PaperStatement:
         return self.check(*cases)
 
 
+# Rules of statements, in words
 _PEAKS_AND_VALLEYS = (
     f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square, or both as drawn or"
     " on the drawn profile over α_1 - α_2"

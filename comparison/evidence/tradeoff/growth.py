@@ -22,7 +22,7 @@ WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # number of calls shared by the workers, 
 
 FILE = "growth.json"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
-BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)
+BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies of a growing scene
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion
 PHASE_PAIRS = "phase pairs"
 PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)

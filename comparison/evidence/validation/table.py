@@ -26,6 +26,7 @@ from comparison.verdicts import (
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Scene, State, Trajectory
 
+# Codes that are compared: equations with rigid and with regularized friction, and the multibody engine
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE_FACTOR = 2.0  # number of standard deviations in an expanded uncertainty
 # First words of the explanation of a quantity that is not met

@@ -149,7 +149,7 @@ def test_every_number_of_the_printed_report_is_read_back(folder: Path, found: En
     for size in printed.sizes:
         assert size == pytest.approx((210.0, 297.0), abs=0.5)
     assert min(printed.filled[:-1]) > 1.0 / 3.0, printed.filled
-    lines = [sentences.answer_sentence(found), trust.trust_sentence(found), *sentences.engine_sentences(found)]
+    lines = [sentences.answer_sentence(found), trust.model_ratio_sentence(found), *sentences.engine_sentences(found)]
     for line in [*lines, *sentences.support_sentences(found), *sentences.DEFINITIONS]:
         assert letters(line) in text, line
 
@@ -328,7 +328,7 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
 
 
 def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
-    said = trust.trust_sentence(planted())
+    said = trust.model_ratio_sentence(planted())
     assert said == (
         "On the 2 motions that all models computed, four things are apart: the geometry of the sphere, which the "
         "small equations leave out, is worth up to 10 % (isolator displacement, m4); given the same equations and "
@@ -336,10 +336,10 @@ def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
         "the engines, which the exact equations have not, is worth less than 0.01 % (isolator displacement, m3); "
         "bodies that turn on their supports change a demand by up to 4.8 % (isolator displacement, m3)."
     )
-    contradiction = trust.trust_sentence(planted({"small": 1.0, "translational": 1.3, "spatial": 1.3}))
+    contradiction = trust.model_ratio_sentence(planted({"small": 1.0, "translational": 1.3, "spatial": 1.3}))
     assert "the two codes differ by up to 30 %" in contradiction, "the codes, and neither geometry nor turning"
     assert "leave out, is worth less than 0.01 %" in contradiction
-    regularized = trust.trust_sentence(planted({"regularised": 1.3, "translational": 1.3, "spatial": 1.3}))
+    regularized = trust.model_ratio_sentence(planted({"regularised": 1.3, "translational": 1.3, "spatial": 1.3}))
     assert "the two codes differ by less than 0.01 %" in regularized, "with the same friction law"
     assert "which the exact equations have not, is worth up to 30 % (isolator displacement" in regularized
 
@@ -360,16 +360,16 @@ def with_demand(found: EnsembleResult, quantity: str, body: int | None, **models
 def test_the_sentence_of_trust_covers_every_demand_of_its_table() -> None:
     """The largest difference of a single motion, of moments and support forces, too; the smallest force by itself."""
     found = with_demand(planted(), "support_force_max", None, exact=(4.0, 4.0, 4.0, 4.0), spatial=(4.0, 4.0, 4.0, 4.4))
-    said = trust.trust_sentence(found)
+    said = trust.model_ratio_sentence(found)
     assert said.endswith("change a demand by up to 10 % (largest support force, m4).")
     found = with_demand(found, "support_force_min", None, exact=(1.0, 1.0, 1.0, 1.0), spatial=(1.0, 1.0, 0.99, 0.8))
-    said = trust.trust_sentence(found)
+    said = trust.model_ratio_sentence(found)
     assert said.endswith(
         "(largest support force, m4), and the smallest support force, against statics, by up to 20 % (m4)."
     )
     moments = {"exact": (1.0, 1.0, 1.0, 1.0), "translational": (1.0, 1.0, 1.0, 1.0), "spatial": (1.0, 1.0, 1.0, 1.5)}
     others = {"small": (1.0,) * 4, "regularised": (1.0,) * 4}
-    said = trust.trust_sentence(with_demand(found, "overturning_moment", 1, **moments, **others))
+    said = trust.model_ratio_sentence(with_demand(found, "overturning_moment", 1, **moments, **others))
     assert "change a demand by up to 50 % (overturning moment at the isolator, m4), and the smallest" in said
 
 
@@ -679,7 +679,7 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
-    (row,) = trust.make_trust_rows(planted())
+    (row,) = trust.make_model_ratio_rows(planted())
     assert (row.motions, row.value) == (("m3", "m4"), pytest.approx(0.35)), "the other motions are in no mean"
     assert {key: ratio.mean for key, ratio in row.ratios.items()} == pytest.approx(
         {"small": 0.9, "translational": 1.002, "spatial": 1.05}
@@ -863,7 +863,7 @@ def fails(*rest: Any) -> None:
     ("owner", "name", "lost"),
     [
         (panels, "_demand_panel", "plot 1"), (panels, "_profile_panel", "plot 1"),
-        (page, "make_trust_rows", "section trust"),
+        (page, "make_model_ratio_rows", "section trust"),
         (page, "make_demand_rows", "section demands"), (sentences, "support_sentences", "section supports"),
         (sentences, "answer_sentence", "answer"), (page, "extrapolate_ratios", "section extended"),
     ],

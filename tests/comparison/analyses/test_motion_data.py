@@ -70,7 +70,7 @@ def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -
         for extreme in (np.min, np.max):
             np.testing.assert_array_equal(extreme(kept[name], axis=0), extreme(columns, axis=0))
         lines = np.stack([np.interp(whole.time, kept["time"][:, 0], column) for column in kept[name].T], axis=1)
-        assert (np.abs(lines - columns) <= 1.001 * MAX_DECIMATION_ERROR * analysis.half_swing(columns)).all(), name
+        assert (np.abs(lines - columns) <= 1.001 * MAX_DECIMATION_ERROR * analysis.half_range(columns)).all(), name
 
 
 def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
