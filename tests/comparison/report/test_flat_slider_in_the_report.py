@@ -28,4 +28,6 @@ def test_a_film_of_a_flat_slider_draws_a_straight_line():
     motion = trajectory(FLAT, (0.3, 1.1))
     drawn = make_drawing(FLAT, motion, 10.0, 4)
     assert (drawn.swing_curve[:, 1] == 0.0).all()
-    assert drawn.swing_curve[:, 0].max() > 10.0 * demands(motion).displacement.value, "it is as long as the way of the bodies"
+    assert drawn.swing_curve[:, 0].max() > 10.0 * demands(motion).displacement.value, (
+        "it is as long as the way of the bodies"
+    )
