@@ -88,7 +88,7 @@ MIN_PEAK_AS_DIVISOR = 1e-300
 
 # Compliance of the supports against warping, in units of rho under the weight: of real bearings, to which answers with
 # open supports refer, and of supports that all stay closed, whose spheres only follow the platform's misfit.
-REAL_WARPING_COMPLIANCE = 4e-4
+PHYSICAL_WARPING_COMPLIANCE = 4e-4
 COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4
 
 # Ratio of the penetrations, and so of the contact compliances, of two successive levels.

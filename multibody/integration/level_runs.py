@@ -33,7 +33,7 @@ from multibody.integration.estimate import (
 )
 from multibody.integration.level import (
     COMPLIANCE_OF_CLOSED_SUPPORTS,
-    REAL_WARPING_COMPLIANCE,
+    PHYSICAL_WARPING_COMPLIANCE,
     Level,
     soften_for_small_peaks,
 )
@@ -132,7 +132,7 @@ class LevelRuns:
         rattles = trial and run.outcome == Outcome.STEP_LIMIT
         if rattles or run.lifts_off:
             run = self._choose_springs_for_opening(run)
-        if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
+        if self.levels[number].warping_compliance == PHYSICAL_WARPING_COMPLIANCE:
             self.real_bearings_run = None
         self.runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not self.runs_to_end:
@@ -219,22 +219,22 @@ class LevelRuns:
         # springs.
         number = len(self.runs)
         level = self.levels[number]
-        if level.warping_compliance == REAL_WARPING_COMPLIANCE:
+        if level.warping_compliance == PHYSICAL_WARPING_COMPLIANCE:
             return self._run_level(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
         if self.real_bearings_run is not None:
             return run
         real, change = self._run_on_real_bearings(level, run)
-        stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
+        stiff = level.warping_compliance < PHYSICAL_WARPING_COMPLIANCE
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
             self.real_bearings_run = real, change
             return run
-        self.max_warping_compliance = self.max_warping_compliance if stiff else REAL_WARPING_COMPLIANCE
+        self.max_warping_compliance = self.max_warping_compliance if stiff else PHYSICAL_WARPING_COMPLIANCE
         self._use_real_bearings(number)
         return real
 
     def _run_on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
         """Run a level on springs of real bearings; return this run and the differences (N,) of its peaks from `run`."""
-        real = self._run_level(_with_real_bearings(level))
+        real = self._run_level(_with_physical_warping_compliance(level))
         if real.outcome in UNFINISHED_OUTCOMES or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
@@ -256,14 +256,14 @@ class LevelRuns:
 
     def _use_real_bearings(self, number: int) -> None:
         """Set the springs of real bearings for all levels from `number` on."""
-        self.levels[number:] = [_with_real_bearings(level) for level in self.levels[number:]]
+        self.levels[number:] = [_with_physical_warping_compliance(level) for level in self.levels[number:]]
         self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
         """Soften supports and contact of the levels to come as the warping load and the peaks of `run` require."""
         done = len(self.runs)
         if run.lifts_off:
-            self.max_warping_compliance = REAL_WARPING_COMPLIANCE
+            self.max_warping_compliance = PHYSICAL_WARPING_COMPLIANCE
         coming = [
             _adapt_warping_compliance(level, run, self.tolerance, self.max_warping_compliance)
             for level in self.levels[done:]
@@ -275,9 +275,9 @@ class LevelRuns:
         self.levels[done:] = coming
 
 
-def _with_real_bearings(level: Level) -> Level:
-    """Return `level` with the warping compliance of real bearings."""
-    return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
+def _with_physical_warping_compliance(level: Level) -> Level:
+    """Return `level` with the compliance of supports whose contact points do not lie in one plane, as of bearings."""
+    return replace(level, warping_compliance=PHYSICAL_WARPING_COMPLIANCE)
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:

@@ -15,7 +15,7 @@ from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
 FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-END_TOLERANCE = 1e-9  # time by which a motion may miss its end, over the duration
+DURATION_TOLERANCE = 1e-9  # time by which a complete motion may end before the scene, over the duration
 DECIMATION = 5  # the sampling error is the largest change of a value if every fifth sample is taken
 
 
@@ -134,7 +134,7 @@ class DemandReader:
         scene, stick = self.motion.scene, self.motion.stick
         yields = scene.dry_friction.elastic
         stick = stick[-1:] if yields else stick  # elastic displacements of several rests do not add up
-        if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
+        if not stick or stick[-1][1] < (1.0 - DURATION_TOLERANCE) * scene.duration:
             rests = scene.has_dry_friction or yields
             return Estimate(math.nan, math.nan, MOVING_AT_END if rests else NEVER_RESTS)
         if stick[-1][0] > self.samples.time[-1]:

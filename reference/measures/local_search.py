@@ -31,7 +31,8 @@ QUOTIENT_GRIDS = 5  # number of grids for the largest quotient, each four times 
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when the half width of its square is smaller
 # The square moves and keeps its size if the best pair is farther from the center than this share of the half width
 MOVING_FRACTION = 0.8
-NODES, MANY_NODES = 3, 5  # nodes of the polynomial along each axis: at first, and after a poor prediction
+# Nodes of the interpolating polynomial along each axis of the square: at first, and after a poor prediction
+INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
 MAX_GOOD_PREDICTION_ERROR = 0.1  # of the differences of values in the square: a prediction with a smaller error is good
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
 # A search ends if it lies below the highest one by more than PROMISE_FACTOR times the differences in its square, or by
@@ -107,7 +108,7 @@ class LocalSearch:
     error: float
     half_width: float  # rad, half width of the next square
     differences: float = np.inf  # range of the values in the last square
-    nodes: int = NODES  # nodes along each axis of the next square
+    nodes: int = INTERPOLATION_NODES  # nodes along each axis of the next square
     count: int = 1  # number of searches that were merged into this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
 
@@ -140,7 +141,7 @@ def make_square_nodes(nodes: int) -> tuple[Array, Array]:
 
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance all searches by one round: compute their squares, then the best pairs that these predict."""
+    """Advance all searches by one round: the phase pairs of each square region, then its interpolant's maximum."""
     # All searches share two calls of the solver, so that its threads have work. A prediction is good if the value
     # computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly and with
     # more nodes. A square in which neither the values nor the prediction differ by more than the error is closed.
@@ -158,7 +159,7 @@ def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
         search.differences = float(np.ptp(known)) if len(known) else 0.0
         miss = abs(value - float(best.value[n]))
         good = miss <= MAX_GOOD_PREDICTION_ERROR * search.differences
-        search.nodes = NODES if good else MANY_NODES
+        search.nodes = INTERPOLATION_NODES if good else INTERPOLATION_NODES_AFTER_MISS
         if np.abs(search.phases - center).max() < MOVING_FRACTION * search.half_width:
             search.half_width *= FAST_SHRINKING if good else SLOW_SHRINKING
         search.history.append((search.half_width, search.value))
@@ -175,13 +176,14 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
     nodes = math.isqrt(len(numerator))
     coefficients = (make_square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
 
-    def quotient(first: Array, second: Array) -> Array:
+    def predicted_amplification(first: Array, second: Array) -> Array:
+        """Return the interpolated numerator over the exact denominator at coordinates in [-1, 1] of the square."""
         phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
         denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
         return values
 
-    place, value = _maximize_on_square(quotient, [COARSE_PLACES, *[FINE_PLACES] * (QUOTIENT_GRIDS - 1)])
+    place, value = _maximize_on_square(predicted_amplification, [COARSE_PLACES, *[FINE_PLACES] * (QUOTIENT_GRIDS - 1)])
     return search.phases + search.half_width * place, value
 
 
@@ -189,6 +191,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], readings: lis
     """Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value."""
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
+        """Return the second coordinate with the largest value for each first coordinate, and these values."""
         second, half = np.zeros((len(first), 1)), 1.0
         for offsets in readings:
             tried = np.clip(second + half * offsets, -1.0, 1.0)
@@ -214,6 +217,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
     center, half_width = search.phases, JUMP_SEARCH_HALF_WIDTH
 
     def value(first: Array, second: Array) -> Array:
+        """Return the computed values at coordinates in [-1, 1] of the square; move the search to the best pair."""
         phases = center + half_width * np.stack([first, second], axis=-1)
         points = surface.compute(phases.reshape(-1, 2))
         search.move_to_best(points)

@@ -23,7 +23,7 @@ from reference.problem.validation import LocatedError
 from reference.support.arguments import Range
 from reference.support.plain_values import as_hashable, as_plain_values
 
-USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
+MODEL_COPY_REFUSAL = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 # Readers of a key: models, or other parts of the program
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
 ENSEMBLE = "`ensemble --check`"
@@ -130,7 +130,7 @@ class Table(BaseModel):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
         if update:
-            raise ValueError(USE_WITH_VALUES)
+            raise ValueError(MODEL_COPY_REFUSAL)
         return super().model_copy(deep=deep)
 
 

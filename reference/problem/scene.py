@@ -352,7 +352,7 @@ class Scene(Table):
 
     @property
     def bar_links(self) -> list[BarLink | None]:
-        """Links of bars that give way in every direction, from below; None for a link of any other kind."""
+        """Column links, flexible in shear, bending, axially and in torsion, from below; None for any other link."""
         return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property

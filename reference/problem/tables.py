@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from reference.problem.beam_column import LoadFactors, load_factors
+from reference.problem.beam_column import StabilityFunctions, stability_functions
 from reference.problem.friction import Friction
 from reference.problem.keys import (
     NONE,
@@ -183,11 +183,11 @@ class Bars(Table):
         """Stiffness of the link without load, k = 12 n E J / l^3, N/m: (2.3) with its factor 12 put right."""
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
-    def factors(self, load: float) -> LoadFactors:
+    def factors(self, load: float) -> StabilityFunctions:
         """Return the stiffness factors of the bars under a load, N, on all together; 1 without `load_effect`."""
         if self.load_effect is None:
-            return load_factors(0.0)
-        return load_factors(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
+            return stability_functions(0.0)
+        return stability_functions(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
 
 
 LINKS = ("period", "stiffness", "bars")

@@ -48,13 +48,13 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coupling of body i to an acceleration of the body below in channel j; root = h lambda_j."""
+    """Return (h lambda_j)^2 k/m_i + h lambda_j c/m_i of the link below body i; root = h lambda_j of the collocation."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coupling of body i to an acceleration of the body above in channel j; root = h lambda_j."""
+    """Return (h lambda_j)^2 k/m_i + h lambda_j c/m_i of the link above body i; root = h lambda_j of the collocation."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 

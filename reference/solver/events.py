@@ -8,7 +8,7 @@ from reference.solver.collocation import SEARCH_POINTS, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import static_limit
 from reference.solver.contact.platform import load_at_stages, rest_excess
-from reference.solver.ground import k_t_at
+from reference.solver.ground import friction_temperature_factor_at
 from reference.solver.polynomial import evaluate_polynomial, set_coefficients
 from reference.solver.rows import Row, broadcast_like, put, row, row_maximum, where_positive
 from reference.solver.system import Load, System
@@ -76,7 +76,7 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
         ux = ux * theta + powers[2, k]
         uy = uy * theta + powers[3, k]
         uz = uz * theta + powers[4, k]
-    k_t = k_t_at(system, work.time + theta * work.elapsed[STAGES - 1])
+    k_t = friction_temperature_factor_at(system, work.time + theta * work.elapsed[STAGES - 1])
     excess, _ = rest_excess(system, Load(work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, uz, k_t))
     return excess
 

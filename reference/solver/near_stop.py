@@ -219,7 +219,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
 
 @compiled
 def correct_log_speeds(work: Workspace, h: float) -> bool:
-    """Correct the logarithms of the speed in `levels` by Newton's method; return False if it has no step."""
+    """Correct the logarithms of the speed in `levels` by one Newton step; return False if its matrix is singular."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     turn = row(residual, 0)

@@ -24,7 +24,7 @@ from reference.solver.work import SQUARED_SPEED, Workspace
 # In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
 # exceeds the higher one by less than this share of the squared acceleration.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_PATH_FACTOR = 1.5  # bound on the path within a step over its length times the larger speed at its ends
+MAX_PATH_FACTOR = 1.5  # bound on (path in a step) / (step h x larger end speed)
 NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
 IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components of a vector; no literals (system.py)
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))

@@ -155,11 +155,11 @@ def _exit_code_of(main: Callable[[], int]) -> int:
         return CLOSED_OUTPUT_CODE if error.closed else UNEXPECTED_ERROR_CODE
     except Exception as error:
         what = " ".join(f"{type(error).__name__}: {error}".split())
-        _print_line(f"unexpected error: {what[:500]}; {_write_details()}")
+        _print_line(f"unexpected error: {what[:500]}; {_write_traceback_file()}")
         return UNEXPECTED_ERROR_CODE
 
 
-def _write_details() -> str:
+def _write_traceback_file() -> str:
     """Write the traceback of the present exception to a file; return the path of the file."""
     text = f"{sys.argv}\n{sys.version}\n{traceback.format_exc()}"
     try:

@@ -31,7 +31,7 @@ def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient
 
 
 @compiled
-def _scale_by_load_factor(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
+def _coefficient_at_load_and_temperature(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
     """Return the friction coefficient at the temperature factor k_T and under a reaction, from the cold one."""
     return coefficient * load_factor(system, k_t, reaction)
 
@@ -48,7 +48,7 @@ def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number
     return slip * (1.0 + elasticity(system, reaction))
 
 
-scale_by_load = choose_variant("exponent", _keep_coefficient, _scale_by_load_factor)
+scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
 """Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
 
 scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)

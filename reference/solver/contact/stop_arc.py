@@ -108,9 +108,10 @@ def arc_peak(system: System, load: Load, angle: float, end: float, floor: float,
 
     Where it is sure to lie below `floor`, the largest sample is returned.
     """
-    # The square of an absolute acceleration on the arc is smooth in the angle: samples find the largest hump, golden
-    # sections between the neighbors of the best sample its top. Where even a hump MAX_RISE_BETWEEN_SAMPLES above the
-    # best sample would stay below `floor`, no peak depends on it and the sections are saved.
+    # The square of an absolute acceleration on the arc is smooth in the angle: sampling finds the highest
+    # local maximum, and golden-section search between the neighbors of the best sample refines it. If even a rise of
+    # MAX_RISE_BETWEEN_SAMPLES above the best sample would stay below `floor`, no peak depends on it and the refinement
+    # is skipped.
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0

@@ -139,17 +139,21 @@ def commit_stopping_step(system: System, work: Workspace, settings: RunSettings,
 
 
 @compiled
-def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: bool) -> bool:
-    """Raise the peaks to those on the rest of the arc; return False if the arc decides and may still be `followed`."""
+def update_peaks_by_arc(system: System, work: Workspace, load: Load, can_integrate_closer: bool) -> bool:
+    """
+    Raise the peaks to those reached while the sliding direction still turns before the stop.
+
+    Return False if these govern and the stop can still be integrated more closely (`can_integrate_closer`).
+    """
     # The direction still turns while the speed goes to zero, so every direction between the present one and the one in
     # which it settles belongs to the motion (contact/stop_arc.py; docs/theory.md, supremum). The arc is computed with
-    # the forces of this instant. Where it decides a peak, the stop is followed down to MIN_FOLLOWED_SPEED first, so
-    # that the forces hardly change in what is left. The bodies above share the vertical acceleration of the platform;
-    # their horizontal ones stay.
+    # the forces of this instant. Where a peak on it governs, the slide is integrated down to
+    # MIN_FOLLOWED_SPEED first, so that the forces hardly change in the time left. The bodies above share the vertical
+    # acceleration of the platform; their horizontal accelerations stay.
     bodies, total, best = work.x.shape[0], work.total0, work.best
     end = direction_at_stop(system, load, work.angle, MAX_ROUNDING_TURN)
     arc = arc_peak(system, load, work.angle, end, SETTLED_FRACTION**2 * best[0], 1.0)
-    if followed and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
+    if can_integrate_closer and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
         return False
     update_peak_by_limit(work, PLATFORM, arc)
     if bodies == 1 or system.small:
@@ -158,7 +162,7 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: b
     for i in range(1, bodies):
         squared = total[i, 0] ** 2 + total[i, 1] ** 2
         rises = vertical - total[i, 2] ** 2 > NEGLIGIBLE_RISE * best[i]
-        if followed and rises and squared + vertical > DECISIVE_RISE_FRACTION * best[i]:
+        if can_integrate_closer and rises and squared + vertical > DECISIVE_RISE_FRACTION * best[i]:
             return False
         update_peak_by_limit(work, i, squared + vertical)
     return True
