@@ -176,6 +176,7 @@ class _ProgressLines:
         self._line = ""
 
     def start(self, line: str) -> None:
+        """Set the text that the progress line begins with; empty: no line is shown."""
         self._line = line
 
     def count(self, seconds: float) -> None:

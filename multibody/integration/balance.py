@@ -171,4 +171,5 @@ class _EquilibriumSolver:
         return forces - (loading - already_loads) * shaken, np.array(self._solver.GetSystemJacobian())
 
     def _set_coordinates(self, coordinates: Array) -> None:
+        """Set the engine's present coordinates, in units of the model."""
         self.model.mbs.systemData.SetODE2Coordinates(coordinates, configuration=CURRENT_CONFIGURATION)

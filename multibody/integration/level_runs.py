@@ -46,10 +46,10 @@ Array = NDArray[np.float64]
 # Outcomes of a run that stops before the end of the motion without an event.
 UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 
-# Largest share of the tolerance that the warping load of closed supports may cause as an error.
+# Largest error that the warping load of closed supports may cause, as a share of the tolerance.
 MAX_WARPING_ERROR_SHARE = 0.2
 
-# Largest share of the work of a phase pair that its first run may take where supports may rattle.
+# Largest share of the work of a phase pair that the first run may take where supports may rattle.
 MAX_WORK_SHARE_OF_TRIAL = 0.2
 
 # Largest work of a level over that of the level before, for the prediction of work: steps are half as long.
@@ -62,7 +62,7 @@ STEPS_AFTER_SETTLING = 20.0
 MAX_CHANGE_FOR_EARLY_STOP = 0.2
 
 # Smallest distance of the first run from the rim or the end of its travel, relative, and from the opening of the
-# contact, in weights, at which later runs may stop early: where it comes closer, all runs go to the end.
+# contact, in weights, at which later runs may stop early: if the first run comes closer, all runs go to the end.
 MIN_END_MARGIN = 0.1
 
 
@@ -142,13 +142,13 @@ class LevelRuns:
         return run
 
     def make_candidate(self) -> Candidate | None:
-        """Return the answer of the last level with its error; None if its run on springs of real bearings has none."""
+        """Return the answer of the last level with its error; None if the run on springs of real bearings has none."""
         # The error is a sum of parts that different comparisons show: step, iteration and contact from the levels
-        # before, rounding of contact forces from the stiffness of two levels, load sharing from what warping takes, and
-        # the springs of real bearings from a run on them. Two rules keep the parts from hiding each other. Levels on
-        # other springs are other models, so they show no rate of convergence and confirm nothing. And behind impacts,
-        # whose order rounding decides, levels agree by chance: both the sum and what rounding adds to it are widened,
-        # so that rounding counts as the difference of two widened errors.
+        # before, rounding of contact forces from the stiffness of two levels, load sharing from the load that warping
+        # takes, and the springs of real bearings from a run on them. Two rules keep the parts from hiding each other.
+        # Levels on other springs are other models, so they show no rate of convergence and confirm nothing. And behind
+        # impacts, whose order rounding decides, levels agree by chance: both the sum and the part of rounding are
+        # widened: rounding counts as the difference of two widened errors.
         number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
         level, before = self.levels[number], self.levels[number - 1]
         finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]
@@ -200,6 +200,7 @@ class LevelRuns:
         return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
 
     def _run_level(self, level: Level, stop: float = math.inf) -> EngineRun:
+        """Run the model at one level of step sizes, up to `stop`, within the work left."""
         return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
     def _run_trial(self, level: Level) -> EngineRun:

@@ -21,6 +21,7 @@ from multibody.integration.chunk import has_larger_entry
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
+# Empty instants and row numbers, for a loading without kinks and for nothing kept
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 
 # Number of samples carried over to the next chunk: as many as the extrapolations from both sides of an instant need.

@@ -25,29 +25,29 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
-# Coordinates along each axis of the square at which the quotient is computed: first, and then around the largest
+# Coordinates along each axis of the square at which the predicted quotient is computed: first, then around its maximum
 COARSE_PLACES, FINE_PLACES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids for the largest quotient, each four times finer than the one before
-MIN_HALF_WIDTH = 1e-7  # rad: a search ends when the half width of its square is smaller
+MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
 # The square moves and keeps its size if the best pair is farther from the center than this share of the half width
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of the square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # of the differences of values in the square: a prediction with a smaller error is good
+MAX_GOOD_PREDICTION_ERROR = 0.1  # a prediction with a smaller error is good; over the range of values
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
-# A search ends if it lies below the highest one by more than PROMISE_FACTOR times the differences in its square, or by
-# more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump a square has large differences
-# however small it is.
+# A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
+# values in its square, or by more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump even a
+# small square has a large range.
 PROMISE_FACTOR = 2.0
 LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0
-MAX_MERGED_WIDTH = 0.04  # rad: two searches that share a square of smaller width have found the same maximum
+MAX_MERGED_WIDTH = 0.04  # rad: two searches in one square of smaller width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
 JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # squares in which a search follows a jump, and grids in each square
 FALL_DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
 # Ratio of the falls at the near and the far distance: it is 0.01 for a parabola, 0.1 for an edge, 1 for a jump
 KINK_FALL, JUMP_FALL = 0.03, 0.3
-CLEAR_FALL = 10.0  # a fall of fewer errors of the value shows nothing
+CLEAR_FALL = 10.0  # smallest fall, in errors of the value, that classifies a maximum
 
 
 @dataclass(frozen=True)
@@ -142,9 +142,10 @@ def make_square_nodes(nodes: int) -> tuple[Array, Array]:
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
     """Advance all searches by one round: the phase pairs of each square region, then its interpolant's maximum."""
-    # All searches share two calls of the solver, so that its threads have work. A prediction is good if the value
-    # computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly and with
-    # more nodes. A square in which neither the values nor the prediction differ by more than the error is closed.
+    # All searches share two calls of the solver, which computes their pairs in parallel. A prediction is good if the
+    # value computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly
+    # and with more nodes. A search ends where neither the values of its square nor the prediction differ by more than
+    # the error.
     places = [search.phases + search.half_width * make_square_nodes(search.nodes)[0] for search in searches]
     ends = np.cumsum([len(place) for place in places]).tolist()
     computed = surface.compute(np.concatenate(places))
@@ -168,7 +169,7 @@ def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
 
 
 def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) -> tuple[Array, float]:
-    """Return the pair of the square with the largest quotient, from the interpolated numerator, and this quotient."""
+    """Return the pair of the square with the largest predicted amplification, and this amplification."""
     known = np.isfinite(square.numerator)
     if not known.any():
         return search.phases, -np.inf
@@ -231,7 +232,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
 
 
 def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
-    """Return the searches without those whose best pair, shifted by a row of (K, 2), rad, lies in a higher square."""
+    """Return the searches whose best pair, shifted by any row of (K, 2), rad, lies in no square of a higher search."""
     kept: list[LocalSearch] = []
     for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:
@@ -249,9 +250,9 @@ def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSea
 def classify_maximum(surface: Surface, search: LocalSearch) -> tuple[str, tuple[float, float]]:
     """Return "jump", "kink" or "smooth" for a maximum, and the direction from a jump to its high side."""
     # The surface falls from its maximum like the square of the distance where it is smooth, like the distance at an
-    # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance tells which, in any of the
-    # DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the
-    # directions without one.
+    # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance distinguishes them, in any of
+    # FALL_DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the
+    # directions without a jump.
     angle = 2.0 * np.pi * np.arange(FALL_DIRECTIONS) / FALL_DIRECTIONS
     directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     far, near = (

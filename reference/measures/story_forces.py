@@ -133,10 +133,12 @@ def _depression_radius(scene: Scene) -> float:
 
 
 def _support_forces_of_model(samples: DemandSamples) -> Array:
+    """Return the support forces that the model itself computed, (T, K), N."""
     return samples.support
 
 
 def _uplift_of_model(samples: DemandSamples) -> Array:
+    """Return the uplift of each support that the model itself computed, (T, K), m."""
     return samples.uplift
 
 
@@ -168,12 +170,12 @@ def _read_supports(
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
-    """Return a reader of the forces of inertia from a body on upwards (T, 2), N; or with arms of their moments, N m."""
+    """Return a reader of inertial forces of a body and those above (T, 2), N; with masses times arms: moments, N m."""
     return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 
 def _arms_below(scene: Scene, heights: Array, body: int) -> Array:
-    """Return masses times heights above the body below, from a body on upwards, kg m."""
+    """Return masses times heights above the body below, for a body and those above it, kg m."""
     arms: Array = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
     return arms
 
@@ -184,10 +186,12 @@ def _drift_above(link: int) -> ReadVectors:
 
 
 def _largest_length(vectors: ReadVectors, samples: DemandSamples) -> float:
+    """Return the largest magnitude of vectors (T, 2) over time."""
     return float(np.linalg.norm(vectors(samples), axis=1).max())
 
 
 def _largest_along(vectors: ReadVectors, axis: int, samples: DemandSamples) -> float:
+    """Return the largest absolute component along one axis of vectors (T, 2) over time."""
     return float(np.abs(vectors(samples)[:, axis]).max())
 
 

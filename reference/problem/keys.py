@@ -55,6 +55,7 @@ def range_of(table: type[Table], name: str) -> Range:
 
 
 def _schema_of_key(table: type[Table], name: str) -> dict[str, Any]:
+    """Return what the function `key` stored of a key: meaning, range, unit, models that read it."""
     return cast("dict[str, Any]", table.model_fields[name].json_schema_extra or {})
 
 
@@ -112,6 +113,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
+        """Require the numbers of a key to lie in its range, also in lists unless a list is another form of the key."""
         said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])

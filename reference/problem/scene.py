@@ -575,6 +575,7 @@ class Scene(Table):
 
     @cached_property
     def _digest(self) -> str:
+        """Sixteen hexadecimal digits that change with every key of the scene on which results depend."""
         content = self.model_dump_json(
             exclude=dict.fromkeys(("title", "name", "acceptance", "analyses", "measured"), True)
             | {"excitation": {"record": True, "origin": True}, "bodies": {"__all__": {"floor": True}}},

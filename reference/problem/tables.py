@@ -42,6 +42,7 @@ from reference.support.scene_error import MisfitError
 
 
 def _check_damping(value: Any) -> Any:
+    """Return a damping ratio, or coefficients [cx, cy] in N s/m, unchanged; refuse any other form."""
     if isinstance(value, list) and len(value) == 2:
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -50,6 +51,7 @@ def _check_damping(value: Any) -> Any:
 
 
 def _kind_of_damping(value: Any) -> str:
+    """Return the form of a damping value, a member of DAMPING_FORMS, which selects its validator."""
     return DAMPING_FORMS[isinstance(value, list)]
 
 
@@ -121,6 +123,7 @@ class Isolator(Table):
 
     @model_validator(mode="after")
     def _check_alternatives(self) -> Isolator:
+        """Require one key of each pair that states the same, and the keys that other keys need."""
         exactly_one(self, "period", "radius")
         exactly_one(self, "friction", "lubrication")
         bearings = self.support_stiffness
@@ -190,7 +193,7 @@ class Bars(Table):
         return stability_functions(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
 
 
-LINKS = ("period", "stiffness", "bars")
+LINKS = ("period", "stiffness", "bars")  # keys of a body of which exactly one states the link below it
 
 
 class Body(Table):

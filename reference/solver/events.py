@@ -18,13 +18,14 @@ from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, 
 # a given one. The kinds are numbers of NumPy, no literals (system.py).
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
 NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
-# Golden sections of an interval that may hide an event: one shorter than 1e-6 of a step changes nothing
+# Number of golden sections of an interval that may contain an event: an excursion shorter than 1e-6 of a step is
+# ignored
 GOLDEN_SECTIONS = 30
 GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
-MAX_SECANTS = 200  # iterations of regula falsi at most
+MAX_SECANTS = 200  # largest number of iterations of regula falsi
 SECANTS_PER_HALVING = 3  # after so many iterations that do not halve the interval, a bisection follows
 LOCATION_TOLERANCE = 1e-15  # error of the location of an event, as a share of the step
-# Share of the squared friction limit by which the excess over it at rest changes at most between two stages
+# Largest change of the excess at rest between two stages, as a share of the squared friction limit
 NEAR_LIMIT = 0.5
 
 

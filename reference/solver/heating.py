@@ -21,9 +21,8 @@ from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System, dry_friction_of
 from reference.support.build_cache import cache_on_disk
 
-NEWTON_STEPS = (
-    8  # iterations to the instant at which the slider begins or stops covering the center of the concave surface
-)
+# Newton iterations to the instant at which the slider begins or stops covering the center of the concave surface
+NEWTON_STEPS = 8
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
 MIN_PIECE = 1e-10  # share of the duration that the shortest piece has

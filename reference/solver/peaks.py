@@ -27,9 +27,10 @@ MAX_RISE_BETWEEN_STAGES = 0.2
 MAX_PATH_FACTOR = 1.5  # bound on (path in a step) / (step h x larger end speed)
 NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
 IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components of a vector; no literals (system.py)
+# SEARCH_POINTS in rows of ROW_LENGTH; the last row repeats the first points
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
-MAX_RATE = 60.0  # bound on rate times step length: a faster response of friction adds no more to the error
-SETTLED_FRACTION = 0.9  # share of the largest acceleration so far: below it no peak is near
+MAX_RATE = 60.0  # largest rate times step length that counts: a faster response of friction adds nothing to the error
+SETTLED_FRACTION = 0.9  # an acceleration below this share of the largest so far is not near a peak
 
 
 @compiled
@@ -51,7 +52,7 @@ def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[floa
 @compiled
 def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
     """Return the largest sum of squares of the first polynomials in `powers` over [low, high], and its theta."""
-    # SEARCH_POINTS are twice as many as the stages, so the best of them is next to the largest maximum of a step that
+    # SEARCH_POINTS are twice as many as the stages, so the best point is next to the largest maximum of a step that
     # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
     # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
     # polynomial, and so never above the true maximum.

@@ -24,6 +24,7 @@ from typing import Any, NoReturn, TextIO, cast
 from reference.support.scene_error import SceneError
 from reference.support.version import __version__
 
+# Exit codes: after an error that no rule foresees, and after the reader of standard output has closed it
 UNEXPECTED_ERROR_CODE, CLOSED_OUTPUT_CODE = 3, 141
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 

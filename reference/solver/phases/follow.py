@@ -68,8 +68,8 @@ from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 # Rounding error of an acceleration, which is a difference of forces, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
 MAX_VIBRATION_ANGLE = 5.0  # rad, largest phase angle of the chain's fastest vibration in a step that resolves it
-# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the angle by which the
-# vibration turns. The vibration itself is the defect over twice that (docs/decisions/0002).
+# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the phase angle of the
+# vibration. The vibration itself is the defect over twice this power (docs/decisions/0002).
 DRIFT_SHARE = 6e-8
 # Rad: a hundred steps with smaller angles add less than a thousandth of their tolerance to the drift
 MIN_DRIFT_ANGLE = 2.0
@@ -257,7 +257,7 @@ def mark_counted_parts(
 
     Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
-    # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); that time is none of rest.
+    # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); this time is not rest.
     # A creep may begin or end above v_reg by the accuracy of an event, where its linear law has more friction than any
     # slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:
