@@ -147,8 +147,8 @@ class LevelRuns:
         # before, rounding of contact forces from the stiffness of two levels, load sharing from the load that warping
         # takes, and the springs of real bearings from a run on them. Two rules keep the parts from hiding each other.
         # Levels on other springs are other models, so they show no rate of convergence and confirm nothing. And behind
-        # impacts, whose order rounding decides, levels agree by chance: both the sum and the part of rounding are
-        # widened: rounding counts as the difference of two widened errors.
+        # impacts, whose order depends on rounding, levels agree by chance: both the sum and the part of rounding are
+        # widened, and rounding counts as the difference of the two widened errors.
         number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
         level, before = self.levels[number], self.levels[number - 1]
         finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]

@@ -39,7 +39,7 @@ SAMPLES_BEHIND_CORNER = 3
 # Ratio of the last step to the one before beyond which the samples do not count as equally spaced.
 MIN_LONGER_STEP_RATIO = 1.5
 
-# Share of the peak: interpolation at a resolved step raises no sample below this share above the peak.
+# Share of the peak: between resolved steps, no maximum next to a sample below this share exceeds the peak.
 CANDIDATE_FRACTION = 0.97
 
 

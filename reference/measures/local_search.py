@@ -33,7 +33,7 @@ MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of the square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # a prediction with a smaller error is good; over the range of values
+MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction over the range of values in the square
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
 # values in its square, or by more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump even a
@@ -107,7 +107,7 @@ class LocalSearch:
     value: float
     error: float
     half_width: float  # rad, half width of the next square
-    differences: float = np.inf  # range of the values in the last square
+    value_range: float = np.inf  # range of the values in the last square
     nodes: int = INTERPOLATION_NODES  # nodes along each axis of the next square
     count: int = 1  # number of searches that were merged into this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
@@ -120,7 +120,7 @@ class LocalSearch:
 
     def may_reach(self, highest: float) -> bool:
         """Return True if the search goes on: its square is not too small and may contain the highest value."""
-        promise = PROMISE_FACTOR * self.differences
+        promise = PROMISE_FACTOR * self.value_range
         if len(self.history) > LATEST_ROUNDS:
             promise = min(promise, GAIN_FACTOR * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
         return self.half_width > MIN_HALF_WIDTH and self.value + promise >= highest
@@ -157,14 +157,14 @@ def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
         search.move_to_best(square)
         search.move_to_best(best.select(slice(n, n + 1)))
         known = square.value[np.isfinite(square.value)]
-        search.differences = float(np.ptp(known)) if len(known) else 0.0
+        search.value_range = float(np.ptp(known)) if len(known) else 0.0
         miss = abs(value - float(best.value[n]))
-        good = miss <= MAX_GOOD_PREDICTION_ERROR * search.differences
+        good = miss <= MAX_GOOD_PREDICTION_ERROR * search.value_range
         search.nodes = INTERPOLATION_NODES if good else INTERPOLATION_NODES_AFTER_MISS
         if np.abs(search.phases - center).max() < MOVING_FRACTION * search.half_width:
             search.half_width *= FAST_SHRINKING if good else SLOW_SHRINKING
         search.history.append((search.half_width, search.value))
-        if max(miss, search.differences) <= search.error:
+        if max(miss, search.value_range) <= search.error:
             search.half_width = 0.0
 
 

@@ -35,7 +35,7 @@ from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000
 MIN_STATIC_SHARE = 1e-9  # support load over the weight: a support with a smaller share carries nothing
-MAX_SUPPORT_DEFLECTION = 0.1  # the supports may give way under the weight by at most this share of the radius
+MAX_SUPPORT_DEFLECTION = 0.1  # largest deflection of the supports under the weight, over the radius
 DERIVED_ROUNDING = 1e-12  # relative rounding error of a value that is computed from other values
 
 

@@ -43,8 +43,7 @@ MIN_STEP_TOLERANCE = 1e-11
 STEP_TOLERANCE_FACTOR = 10.0
 # Factor on that tolerance for elastoplastic friction: both runs may miss a slide that is shorter than a step
 YIELDING_TOLERANCE_FACTOR = 0.01
-# Time by which the coarser run goes beyond the last peak, over RunSettings.period: events of the two runs differ in
-# time
+# Time of the coarser run beyond the last peak, over RunSettings.period: the two runs differ in the times of events
 EVENT_MARGIN = 0.01
 
 FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: steps, and steps per knot of the loading

@@ -18,8 +18,7 @@ from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, 
 # a given one. The kinds are numbers of NumPy, no literals (system.py).
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
 NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
-# Number of golden sections of an interval that may contain an event: an excursion shorter than 1e-6 of a step is
-# ignored
+# Number of golden sections in the search for an event between two stages: one shorter than 1e-6 of a step is ignored
 GOLDEN_SECTIONS = 30
 GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
 MAX_SECANTS = 200  # largest number of iterations of regula falsi
@@ -133,10 +132,10 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
     """Return the first theta after `begin` at which `event_value` is positive; `start` is its value at `begin`."""
-    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter one may hide: the
-    # value passes zero and returns between two points. That is possible only if the largest value seen lies below zero
-    # by no more than the largest change from point to point. Then golden sections look for a positive value around it.
-    # Once a positive value is found, `locate_crossing` locates the passage before it.
+    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
+    # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
+    # no more than the largest change from point to point. Then a golden-section search looks for a positive value
+    # around the largest one. Once a positive value is found, `locate_crossing` locates the passage before it.
     top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] <= begin:

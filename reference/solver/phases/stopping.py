@@ -21,7 +21,7 @@ from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA,
 
 # "Period" below is RunSettings.period, the time in which forces change; "the loading's velocity" is the size of the
 # loading's acceleration times the period over 2 pi.
-FIRST_STEP = 1.0  # largest change of the direction, rad, or of ln v in the first step
+FIRST_STEP = 1.0  # estimated change of the direction, rad, and of ln v in the first step
 # Share of the loading that accelerates the platform at least in the estimate of the first step's length
 MIN_FIRST_ACCELERATION = 1e-3
 MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the last one would have met the tolerance
@@ -53,7 +53,7 @@ NEGLIGIBLE_FRICTION_RISE = 1e-12
 # Duration of a slide at almost constant speed, as a multiple of the time within which a slide counts as stopping
 MIN_STEADY_TIMES = 2.0
 MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction: with a smaller one a slide turns back on its own line
-# Share of the loading's velocity: a slower straight slide that friction cannot hold reverses here
+# Share of the loading's velocity: a slower straight slide that friction cannot hold reverses
 MAX_TURNING_POINT_SPEED = 1e-12
 NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of the angle ends Newton's method
 # Bounds on the change of ln v in one step. Time and position are integrals of v and v^2 over tau: where forces stay
@@ -190,8 +190,8 @@ def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -
     if excess > 0.0:
         straight = abs(across) <= MAX_STRAIGHT_TURN * kinetic_coefficient(system) * reaction
         if system.rate > 0.0:
-            # Where friction grows with the speed, a negative acceleration at speed 0 means a reversal. A slide along
-            # the drive slows down by friction and does not reverse.
+            # Where friction grows with the speed, a negative acceleration along the slide at speed 0 means a reversal.
+            # A slide along the drive slows down by friction and does not reverse.
             ex, ey = slip_direction_cosines(work.angle, system.axes)
             ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
             along = ax * ex + ay * ey
