@@ -265,7 +265,7 @@ def prepare_run(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """Return the time in which forces change, s: the shortest of periods, decay times and the time to cross the surface."""
+    """Return the time in which forces change, s: the shortest period or decay time of loading, pendulum and chain."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()

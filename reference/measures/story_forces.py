@@ -97,9 +97,11 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     drifts = [_drift_above(link) for link in bodies[:-1]]
 
     def lengths(vectors: Sequence[ReadVectors]) -> tuple[Estimate, ...]:
+        """Return the largest magnitude of each vector over time, with its error."""
         return tuple(read.extreme(partial(_largest_length, vector)) for vector in vectors)
 
     def along(vectors: Sequence[ReadVectors]) -> tuple[tuple[Estimate, ...], ...]:
+        """Return the largest components along x, then along y, of each vector over time, with their errors."""
         return tuple(tuple(read.extreme(partial(_largest_along, v, axis)) for v in vectors) for axis in (0, 1))
 
     return StoryForces(
@@ -206,8 +208,9 @@ def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> C
     """
     Return a function for forces (T, K), N, of equally stiff supports in balance with the normal force and the moment.
 
-    The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
-    the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
+    The spheres stay with the ground and the depressions go with the platform. So the weight acts beside the middle of
+    the supports by the eccentricity of the mass, by R / rho times the platform's displacement, since the normals lean,
+    and by the mean drift of the floors.
     """
     middle = places.mean(axis=0)
     arms = places - middle

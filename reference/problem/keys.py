@@ -80,6 +80,7 @@ def range_validator(allowed: Range) -> AfterValidator:
 
 
 def _check_text(text: str) -> str:
+    """Return a text without control characters, which could change a report or a terminal."""
     if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
         raise ValueError("must have no control characters")
     return text

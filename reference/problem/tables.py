@@ -173,6 +173,7 @@ class Bars(Table):
 
     @model_validator(mode="after")
     def _check_arrangement(self) -> Bars:
+        """Require axial_stiffness for the load effect "shortening", and enough bars around the axis for bending."""
         if self.load_effect == "shortening" and self.axial_stiffness is None:
             raise ValueError("load_effect 'shortening' needs axial_stiffness: state it, or take 'softening'")
         if self.axial_stiffness is not None and self.count < MIN_SPREAD_BARS and self.spread != 0.0:

@@ -269,6 +269,7 @@ def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path]
 
     @lru_cache(maxsize=MAX_FILES)
     def read_uncached(file: Path, modified_ns: int, size: int) -> FileContent:
+        """Read a file; time of change and size serve as key of the cache alone."""
         return read(file)
 
     def read_cached(file: Path) -> FileContent:
