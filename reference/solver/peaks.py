@@ -177,7 +177,7 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
     Raise work.squared_reach to the largest |x|^2 of the platform in the step just solved.
 
     It is read from the polynomial of the acceleration through the stages. In stretched time near a stop, where h is no
-    length of time and the way left is short, it is read at the stages. Return True if the displacement is near the
+    length of time and the remaining distance is short, the stages are read. Return True if the displacement is near the
     largest so far.
     """
     squared_speed = 0.0

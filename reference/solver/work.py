@@ -30,7 +30,7 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 # drive, friction force, acceleration, rate of the force. The acceleration and the rate each have four derivatives in
 # Workspace.shear_slopes. One row each: the squared force minus the squared friction limit, the velocity along the
 # force, m/s, and the friction limit.
-ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
+ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, FRICTION_LIMIT = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # largest number of separate parts of one step that count for the peaks
 SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics in a step
 

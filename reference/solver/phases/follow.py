@@ -82,7 +82,7 @@ def follow_phase(
     system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
 ) -> tuple[int, int]:
     """Follow the motion until the contact changes or the run ends; return outcome and next contact, see run.py."""
-    # A step goes through five gates. (1) The phase proposes its length; a slide about to stop proposes none and hands
+    # A step goes through five checks. (1) The phase proposes its length; a slide about to stop proposes none and hands
     # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
     # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
     # it ends it: the shorter step is solved again, in rest by `shorten_step_to_onset`, otherwise by the next pass,
