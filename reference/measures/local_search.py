@@ -26,7 +26,7 @@ from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
 # Coordinates along each axis of the square at which the predicted quotient is computed: first, then around its maximum
-COARSE_PLACES, FINE_PLACES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
+COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids for the largest quotient, each four times finer than the one before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
 # The square moves and keeps its size if the best pair is farther from the center than this share of the half width
@@ -184,17 +184,24 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
         return values
 
-    place, value = _maximize_on_square(predicted_amplification, [COARSE_PLACES, *[FINE_PLACES] * (QUOTIENT_GRIDS - 1)])
+    place, value = _maximize_on_square(
+        predicted_amplification, [COARSE_COORDINATES, *[FINE_COORDINATES] * (QUOTIENT_GRIDS - 1)]
+    )
     return search.phases + search.half_width * place, value
 
 
-def _maximize_on_square(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
-    """Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value."""
+def _maximize_on_square(function: Callable[[Array, Array], Array], offset_grids: list[Array]) -> tuple[Array, float]:
+    """
+    Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value.
+
+    offset_grids: coordinates in [-1, 1] to try around the best point, on one grid after another, each scaled to the
+    spacing of the grid before.
+    """
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
         """Return the second coordinate with the largest value for each first coordinate, and these values."""
         second, half = np.zeros((len(first), 1)), 1.0
-        for offsets in readings:
+        for offsets in offset_grids:
             tried = np.clip(second + half * offsets, -1.0, 1.0)
             values = function(np.repeat(first[:, None], len(offsets), axis=1), tried)
             top = values.argmax(axis=1)[:, None]
@@ -202,7 +209,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], readings: lis
         return second[:, 0], np.take_along_axis(values, top, axis=1)[:, 0]
 
     middle, half = 0.0, 1.0
-    for offsets in readings:
+    for offsets in offset_grids:
         first = np.clip(middle + half * offsets, -1.0, 1.0)
         second, values = largest_along_second(first)
         top = int(values.argmax())
@@ -226,7 +233,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
 
     for _ in range(JUMP_ROUNDS):
         search.history.append((half_width, search.value))
-        _maximize_on_square(value, [FINE_PLACES] * JUMP_REFINEMENTS)
+        _maximize_on_square(value, [FINE_COORDINATES] * JUMP_REFINEMENTS)
         center, half_width = search.phases, 0.1 * half_width
     search.history.append((half_width, search.value))
 
