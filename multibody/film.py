@@ -192,6 +192,7 @@ def draw_film(scene: Scene, motion: Trajectory, model: str, settings: FilmSettin
     background = canvas.copy_from_bbox(figure.bbox)
 
     def draw_frame(frame: int) -> Image.Image:
+        """Return one frame as a picture: the fixed background with the moving artists drawn on it."""
         canvas.restore_region(background)
         clock.set_text(f"t = {frame * settings.speed / settings.rate:.2f} s")
         for view in views:

@@ -24,8 +24,8 @@ from reference.support.arguments import Range, check_choice, check_number
 
 # Largest number of steps of a single run, whose motion is held in memory.
 MAX_STEPS = 1e7
-PENETRATION_RANGE = Range(1e-14, 0.1, "of rho")
-NEWTON_RANGE = Range(1e-14, 1.0)
+PENETRATION_RANGE = Range(1e-14, 0.1, "of rho")  # penetration of the contact under the weight
+NEWTON_RANGE = Range(1e-14, 1.0)  # relative tolerance of the forces in Newton's iteration
 
 
 @require_scene

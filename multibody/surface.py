@@ -206,6 +206,7 @@ def _reduce_model(scene: Scene, model: str, regularization: float | None, full: 
     built = assemble(moving, chosen, regularization, **axes)
 
     def complete() -> tuple[Scene, EngineModel]:
+        """Assemble the model that the caller names, for phase pairs at which the reduced model has no answer."""
         return scene, assemble(scene, model, regularization)
 
     return _ReducedModel(moving, built, complete if chosen != model else None, full)

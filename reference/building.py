@@ -279,5 +279,6 @@ def _word_axes(values: Array, unit: str) -> str:
 
 
 def _word_values(values: Sequence[float] | Array, unit: str) -> str:
+    """Return values to three digits and their unit as text; behind MAX_NAMES_PER_LINE values only their number."""
     more = f" and {len(values) - MAX_NAMES_PER_LINE} more" if len(values) > MAX_NAMES_PER_LINE else ""
     return f"{', '.join(f'{value:.3g}' for value in values[:MAX_NAMES_PER_LINE])} {unit}{more}"

@@ -176,6 +176,7 @@ class _ProgressLines:
         self._line = ""
 
     def start(self, line: str) -> None:
+        """Set the text of the next progress line, which `count` prints once with the time left."""
         self._line = line
 
     def count(self, seconds: float) -> None:

@@ -29,7 +29,7 @@ from reference.support.arguments import check_array
 from reference.surface import OUTCOMES, loads_are_finite, prepare_run
 
 SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
-STEP_SAMPLES = 8000  # default number of samples in the steps, if the steps are few
+STEP_SAMPLES = 8000  # target number of output instants over all time steps; more if there are many steps
 MAX_SAMPLES = 200_000  # limit of the even samples, and of those in the steps
 # Lower bound on the error of a peak, as a share of the tolerance: a closer agreement of two runs is accidental
 # (measured errors reach 0.2)

@@ -33,7 +33,7 @@ from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")
 GRID_TOLERANCE = 1e-4  # relative error of mu on the grid of phases
-MAX_ROUNDS = 60
+MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
 MAX_SHORTFALL = 0.01  # share of the maximum: a search that ends lower by more need not follow its jump
 
 

@@ -12,18 +12,18 @@ from reference.problem import GRAVITY, Scene
 from reference.records.description import G_UNIT_QUESTION, RecordDescription
 from reference.support.arguments import Range, name_some
 
-SUPPORT_LOAD_RANGE = Range(1e3, 1e8, "N")
+SUPPORT_LOAD_RANGE = Range(1e3, 1e8, "N")  # dead load per support
 MAX_UNIT_MASS_SCENE = 10.0  # kg: a lighter scene is of unit masses, as those of the paper, and is no building
 MIN_FRICTION_RATE = 1.0  # s/m: a smaller rate of the growth of friction with speed is hardly intended
 MAX_SUPPORT_EXTENT = 300.0  # m: a larger extent of the supports is hardly intended
 MAX_EXTENT_OVER_SIZE = 2.0  # largest extent of the supports over the size of the platform
 FIXED_BASE_PERIOD_RANGE = Range(0.05, 5.0, "s")  # period of the first fixed-base mode along either axis
 MAX_RADIUS = 50.0  # m, largest radius of a pendulum
-MAX_FRICTION = 1.0
+MAX_FRICTION = 1.0  # largest friction coefficient
 MAX_DAMPING_RATIO = 0.2  # largest damping ratio of the fixed-base modes that matter
 MIN_MODAL_MASS_SHARE = 0.05  # a mode matters if it moves more than this share of the mass above the platform
 MAX_GROUND_PEAK = 3.0  # g, largest peak of the ground
-MAX_DRIFT_RATIO = 0.1
+MAX_DRIFT_RATIO = 0.1  # largest story drift over the story height
 MASS_RATIO_RANGE = Range(0.01, 100.0)  # mass of a body over the mean of the other bodies
 MAX_LOAD_RATIO = 1.5  # largest dead load of a support over the smallest
 MIN_ACCELERATION_LIMIT = 1.0  # m/s^2: a smaller limit on the acceleration of a floor is hardly intended

@@ -35,6 +35,7 @@ from reference.solver.system import (
 )
 from reference.support.arguments import check_choice, check_number
 
+# Outcome that a user reads for each status of the compiled solver
 OUTCOMES = {
     SOLVED: Outcome.OK,
     NOT_MET: Outcome.TOLERANCE_NOT_MET,
@@ -51,7 +52,7 @@ STEPS_PER_KNOT = 10  # further steps per knot of a record
 STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
 # Periods of the chain's fastest vibration in which forces hardly change, so that stiff links follow without vibrating
 VIBRATIONS_PER_TIME_SCALE = 10.0
-BASE_STEPS = 20_000
+BASE_STEPS = 20_000  # steps that a run may take, before those for the length of the loading and for vibrations
 MAX_STEPS = 3_000_000  # hard limit of steps per run; about 30 s for two bodies
 PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that no thread waits long for another
 
@@ -264,7 +265,7 @@ def prepare_run(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """Return the time in which forces change, s: the shortest of periods, decay times and the way across the cap."""
+    """Return the time in which forces change, s: the shortest period or decay time of loading, pendulum and chain."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()

@@ -34,8 +34,8 @@ Mask = NDArray[np.bool_]
 # Largest number of iterations of Newton's method: after them the equilibrium counts as not found.
 MAX_ITERATIONS = 50
 
-# Largest residual of the forces, in weights, at which Newton's iteration may end. The rounding of the forces is added
-# to it, times a safety factor for many contacts and stiff links.
+# Largest residual of the forces, in weights, at which Newton's iteration may end. The rounding error of the
+# forces is added, times a safety factor for many contacts and stiff links.
 MAX_RESIDUAL = 1e-9
 SAFETY_OF_FORCE_ROUNDING = 100.0
 
@@ -124,11 +124,11 @@ class _EquilibriumSolver:
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
         """Solve for coordinates, from `begin` along `moved` (n, s), at which the residual lies in `held` (n, t)."""
-        # Newton's method on the engine's own forces and their Jacobian. The unknowns are displacements along `moved`
-        # and forces along `held`, which hold the slow motions in place. The gap of every open contact must be zero, so
-        # that a contact that would have to pull carries no force. The matrix may be singular where friction alone holds
-        # a platform on a plane, hence least squares. Iterations continue below the bound of the residual until they no
-        # longer halve it, because of rounding.
+        # Newton's method is applied to the engine's own forces and their Jacobian. The unknowns are displacements along
+        # `moved` and forces along `held`, which hold the slow motions in place. The gap of every open contact must be
+        # zero, so that a contact that would have to pull carries no force. The matrix may be singular where friction
+        # alone holds a platform on a plane, hence least squares. Iterations continue below the bound of the residual
+        # until they no longer halve it, because of rounding.
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf
@@ -171,4 +171,5 @@ class _EquilibriumSolver:
         return forces - (loading - already_loads) * shaken, np.array(self._solver.GetSystemJacobian())
 
     def _set_coordinates(self, coordinates: Array) -> None:
+        """Set the engine's present coordinates, in units of the model."""
         self.model.mbs.systemData.SetODE2Coordinates(coordinates, configuration=CURRENT_CONFIGURATION)

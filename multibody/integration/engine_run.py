@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 # Acceleration (T, 3) of the plate as a function of times (T,), in units of the model.
 Ground = Callable[[Array], Array]
 
-# Share of a largest value: where later values of a run stay below it, they exceed the largest at no other level either.
+# If later values of a run stay below this share of its largest value, they exceed the largest at no other level either.
 SETTLED_FRACTION = 0.9
 
 # Time within which warping of the supports dies out after they close, over the square root of the warping compliance.
@@ -154,7 +154,7 @@ def _record_last_large(run: EngineRun, time: Array, size: Array, displacement: A
 
 
 def _record_warping(run: EngineRun, motion: EngineMotion, model: EngineModel, level: Level) -> None:
-    """Record the largest warping load while all contacts are closed, an error: elastic supports would carry none."""
+    """Record the largest warping load while all contacts are closed; elastic supports would carry no such load."""
     if model.warping_displacement is None:
         return
     displacement = model.warping_displacement(motion.coordinates)

@@ -41,7 +41,7 @@ SAFETY_OF_ROUNDING = 3.0
 FORCE_NOISE_RATIO = 0.5
 FORCE_NOISE_RATIO_OF_TURNING = 0.2
 
-# Force on the platform of a flat slider, over Newton's residual, above which the residual acts only in part (measured:
+# Force on the platform of a flat slider over Newton's residual: above it only a part of the residual acts (measured:
 # 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
@@ -86,11 +86,11 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
     The estimate is Richardson's, with Roache's safety factors.
     """
     # If every level divides the error by `rate`, the change between two levels is (rate - 1) times the error of the
-    # finer one. Two levels show no rate, nor do two changes of opposite sign, so that the lowest rate that occurs, at
-    # stops, is assumed. A rate above that of smooth motion means that two errors cancel at one level; then the earlier
-    # change counts, at the lowest rate. A slow contact enlarges the error by 1 + x, where x is `contact_lag`. The error
-    # is never below the typical one of the level, nor below the tolerance of Newton's iteration. On a plane the latter
-    # is added, since friction alone accelerates the platform there.
+    # finer one. Two levels show no rate, nor do two changes of opposite sign: then the lowest rate that occurs, at
+    # stops, is assumed. A rate above that of smooth motion means that two errors cancel at one level; then the error
+    # follows from the earlier change, at the lowest rate. A slow contact enlarges the error by 1 + x, where x is
+    # `contact_lag`. The error is never below the typical one of the level, nor below the tolerance of Newton's
+    # iteration. On a plane the latter is added, since friction alone accelerates the platform there.
     last, before = peaks[-1].value, peaks[-2].value
     change = np.abs(last - before)
     safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)

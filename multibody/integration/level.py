@@ -70,7 +70,7 @@ NEWTON_TOLERANCE_RATIO_OF_SPRINGS = 1e-3
 # first residual of a step, which is the error of the predicted position times the contact stiffness.
 MAX_SQUARED_STEP_OVER_PENETRATION = 1e3
 
-# Largest share of the tolerance that rounding of the forces may take, and the peak, in units of g, that it refers to.
+# Largest share of the tolerance that rounding of the forces may take for a peak of at least MIN_PEAK, in units of g.
 MAX_ROUNDING_SHARE = 0.25
 MIN_PEAK = 0.2
 
@@ -88,7 +88,7 @@ MIN_PEAK_AS_DIVISOR = 1e-300
 
 # Compliance of the supports against warping, in units of rho under the weight: of real bearings, to which answers with
 # open supports refer, and of supports that all stay closed, whose spheres only follow the platform's misfit.
-REAL_WARPING_COMPLIANCE = 4e-4
+PHYSICAL_WARPING_COMPLIANCE = 4e-4
 COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4
 
 # Ratio of the penetrations, and so of the contact compliances, of two successive levels.

@@ -33,7 +33,7 @@ from multibody.integration.estimate import (
 )
 from multibody.integration.level import (
     COMPLIANCE_OF_CLOSED_SUPPORTS,
-    REAL_WARPING_COMPLIANCE,
+    PHYSICAL_WARPING_COMPLIANCE,
     Level,
     soften_for_small_peaks,
 )
@@ -46,10 +46,10 @@ Array = NDArray[np.float64]
 # Outcomes of a run that stops before the end of the motion without an event.
 UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 
-# Largest share of the tolerance that the warping load of closed supports may cause as an error.
+# Largest error that the warping load of closed supports may cause, as a share of the tolerance.
 MAX_WARPING_ERROR_SHARE = 0.2
 
-# Largest share of the work of a phase pair that its first run may take where supports may rattle.
+# Largest share of the work of a phase pair that the first run may take where supports may rattle.
 MAX_WORK_SHARE_OF_TRIAL = 0.2
 
 # Largest work of a level over that of the level before, for the prediction of work: steps are half as long.
@@ -62,7 +62,7 @@ STEPS_AFTER_SETTLING = 20.0
 MAX_CHANGE_FOR_EARLY_STOP = 0.2
 
 # Smallest distance of the first run from the rim or the end of its travel, relative, and from the opening of the
-# contact, in weights, at which later runs may stop early: where it comes closer, all runs go to the end.
+# contact, in weights, at which later runs may stop early: if the first run comes closer, all runs go to the end.
 MIN_END_MARGIN = 0.1
 
 
@@ -132,7 +132,7 @@ class LevelRuns:
         rattles = trial and run.outcome == Outcome.STEP_LIMIT
         if rattles or run.lifts_off:
             run = self._choose_springs_for_opening(run)
-        if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
+        if self.levels[number].warping_compliance == PHYSICAL_WARPING_COMPLIANCE:
             self.real_bearings_run = None
         self.runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not self.runs_to_end:
@@ -142,13 +142,13 @@ class LevelRuns:
         return run
 
     def make_candidate(self) -> Candidate | None:
-        """Return the answer of the last level with its error; None if its run on springs of real bearings has none."""
+        """Return the answer of the last level with its error; None if the run on springs of real bearings has none."""
         # The error is a sum of parts that different comparisons show: step, iteration and contact from the levels
-        # before, rounding of contact forces from the stiffness of two levels, load sharing from what warping takes, and
-        # the springs of real bearings from a run on them. Two rules keep the parts from hiding each other. Levels on
-        # other springs are other models, so they show no rate of convergence and confirm nothing. And behind impacts,
-        # whose order rounding decides, levels agree by chance: both the sum and what rounding adds to it are widened,
-        # so that rounding counts as the difference of two widened errors.
+        # before, rounding of contact forces from the stiffness of two levels, load sharing from the load that warping
+        # takes, and the springs of real bearings from a run on them. Two rules keep the parts from hiding each other.
+        # Levels on other springs are other models, so they show no rate of convergence and confirm nothing. And behind
+        # impacts, whose order depends on rounding, levels agree by chance: both the sum and the part of rounding are
+        # widened, and rounding counts as the difference of the two widened errors.
         number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
         level, before = self.levels[number], self.levels[number - 1]
         finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]
@@ -200,6 +200,7 @@ class LevelRuns:
         return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
 
     def _run_level(self, level: Level, stop: float = math.inf) -> EngineRun:
+        """Run the model at one level of step sizes, up to `stop`, within the work left."""
         return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
     def _run_trial(self, level: Level) -> EngineRun:
@@ -219,22 +220,22 @@ class LevelRuns:
         # springs.
         number = len(self.runs)
         level = self.levels[number]
-        if level.warping_compliance == REAL_WARPING_COMPLIANCE:
+        if level.warping_compliance == PHYSICAL_WARPING_COMPLIANCE:
             return self._run_level(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
         if self.real_bearings_run is not None:
             return run
         real, change = self._run_on_real_bearings(level, run)
-        stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
+        stiff = level.warping_compliance < PHYSICAL_WARPING_COMPLIANCE
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
             self.real_bearings_run = real, change
             return run
-        self.max_warping_compliance = self.max_warping_compliance if stiff else REAL_WARPING_COMPLIANCE
+        self.max_warping_compliance = self.max_warping_compliance if stiff else PHYSICAL_WARPING_COMPLIANCE
         self._use_real_bearings(number)
         return real
 
     def _run_on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
         """Run a level on springs of real bearings; return this run and the differences (N,) of its peaks from `run`."""
-        real = self._run_level(_with_real_bearings(level))
+        real = self._run_level(_with_physical_warping_compliance(level))
         if real.outcome in UNFINISHED_OUTCOMES or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
@@ -256,14 +257,14 @@ class LevelRuns:
 
     def _use_real_bearings(self, number: int) -> None:
         """Set the springs of real bearings for all levels from `number` on."""
-        self.levels[number:] = [_with_real_bearings(level) for level in self.levels[number:]]
+        self.levels[number:] = [_with_physical_warping_compliance(level) for level in self.levels[number:]]
         self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
         """Soften supports and contact of the levels to come as the warping load and the peaks of `run` require."""
         done = len(self.runs)
         if run.lifts_off:
-            self.max_warping_compliance = REAL_WARPING_COMPLIANCE
+            self.max_warping_compliance = PHYSICAL_WARPING_COMPLIANCE
         coming = [
             _adapt_warping_compliance(level, run, self.tolerance, self.max_warping_compliance)
             for level in self.levels[done:]
@@ -275,9 +276,9 @@ class LevelRuns:
         self.levels[done:] = coming
 
 
-def _with_real_bearings(level: Level) -> Level:
-    """Return `level` with the warping compliance of real bearings."""
-    return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
+def _with_physical_warping_compliance(level: Level) -> Level:
+    """Return `level` with the compliance of supports whose contact points do not lie in one plane, as of bearings."""
+    return replace(level, warping_compliance=PHYSICAL_WARPING_COMPLIANCE)
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:

@@ -24,10 +24,10 @@ from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
-# Share of a largest value: where values of a scan stay below it, the accurate run has no larger value there either.
+# If a scan stays below this share of the largest value so far, the accurate run has no larger value there either.
 NEAR_PEAK_FRACTION = 0.8
 
-# Contact force, in weights: where it falls below this value in a scan, the contact might open in the accurate run.
+# If a contact force of a scan falls below this value, in weights, the contact might open in the accurate run.
 NEAR_OPENING_FORCE = 0.2
 
 # Time from the last large value to the scan of the later motion, in units of time: one period of the pendulum.
@@ -52,8 +52,8 @@ def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineR
     # The maximum in (5.1) needs no accurate motion where the accelerations are small. A scan takes a quarter of the
     # steps, and its error hides no large value: a value counts as near the largest above NEAR_PEAK_FRACTION of it,
     # while the largest values of scans were 0.96 of those in accurate steps at worst (measured on 200 random scenes:
-    # docs/records/multibody.md). The scan has a result of its own, which starts with that fraction of the largest
-    # values, so that every change of it is a value near the largest. The scan stops at a large value, an opening or a
+    # docs/records/multibody.md). The scan has a separate result, which starts with that fraction of the largest values,
+    # so that every change of this result is a value near the largest. The scan stops at a large value, an opening or a
     # failure. The run then continues from its own checkpoint to a period of the pendulum beyond that instant.
     model, end = integration.solver.model, integration.end
     run, checkpoint = begin_run(model), Checkpoint(start)

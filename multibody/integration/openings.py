@@ -48,7 +48,7 @@ MAX_QUIET_FORCE = 1e-3
 CONTACT_SETTLING_TIME = 40.0
 BEARING_SETTLING_TIME = 0.04
 
-# Numbers by which a step is divided in the search for a flight that begins and ends within the step.
+# Numbers by which a step is divided to find a flight that begins and ends within the step.
 FLIGHT_SEARCH_DIVISORS = 2.0 ** np.arange(1, 8)
 
 # First step after an impact over the response time of the contact, which is the square root of the penetration.
@@ -129,8 +129,8 @@ class Openings:
         # same state until the smallest gap of the event's contacts is zero (Brent's method). There are two special
         # cases. A contact that touches within the tolerance at the start has no later change of sign, unless the
         # platform leaves it and comes back within the step; such a flight is searched for in shorter and shorter steps.
-        # And because of rounding that gap may still be positive after the whole step; then the event lies at the end
-        # of that step.
+        # And because of rounding the gap may still be positive after the whole step; then the event lies at the end
+        # of the step.
         sign = 1.0 if event.closes else -1.0
         done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}

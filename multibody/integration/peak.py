@@ -21,6 +21,7 @@ from multibody.integration.chunk import has_larger_entry
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
+# Empty instants and row numbers, for a loading without kinks and for nothing kept
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 
 # Number of samples carried over to the next chunk: as many as the extrapolations from both sides of an instant need.
@@ -38,7 +39,7 @@ SAMPLES_BEHIND_CORNER = 3
 # Ratio of the last step to the one before beyond which the samples do not count as equally spaced.
 MIN_LONGER_STEP_RATIO = 1.5
 
-# Share of the peak: interpolation at a resolved step raises no sample below this share above the peak.
+# Share of the peak: between resolved steps, no maximum next to a sample below this share exceeds the peak.
 CANDIDATE_FRACTION = 0.97
 
 

@@ -35,9 +35,9 @@ WORK_RANGE = Range(1.0, 1e12, "steps")
 # Number of successive levels with impacts, each another motion than the level before, after which refinement ends.
 MAX_DIFFERENT_MOTIONS = 3
 
-# Smallest number of levels with an error estimate where friction yields. Short slides that occur at one level and not
-# at the next decide how the platform oscillates on its springs: levels 0 and 1 may agree and both be wrong (measured:
-# by seven times the error that their difference shows, and level 2 by a seventeenth of their error).
+# Smallest number of levels with an error estimate where friction yields. How the platform oscillates on its springs
+# depends on short slides, which may occur at one level and not at the next: levels 0 and 1 may agree and both be wrong
+# (measured: by seven times the error that their difference shows, and level 2 by a seventeenth of their error).
 MIN_LEVELS_OF_YIELDING = 3
 
 
@@ -99,8 +99,8 @@ class _AnswerSearch:
 
     # Levels are added until one meets the tolerance, or until no further level can help. Three cases end the search
     # early. Two runs do not reach their end, or one run does not after an answer: a finer run takes even more steps.
-    # Three levels in a row are different motions because of impacts: rounding decides in which order supports close,
-    # and no step changes that. Rounding exceeds both the tolerance and the error that the next level would leave: a
+    # Three levels in a row are different motions because of impacts: the order in which supports close depends on
+    # rounding, at any step. Rounding exceeds both the tolerance and the error that the next level would leave: a
     # stiffer contact rounds more. The best complete answer with its error is then returned, with the outcome "tolerance
     # not met". Other springs under the supports make another model, so that the answers before a change of springs are
     # forgotten.
@@ -115,7 +115,7 @@ class _AnswerSearch:
         self.has_ended = False
 
     def add_level(self) -> None:
-        """Run the next level, and decide by its answer, if it has one, whether the search ends."""
+        """Run the next level, and decide by the answer, if any, whether the search ends."""
         run = self.runs.run_next_level()
         done = self.runs.runs
         if run.outcome in UNFINISHED_OUTCOMES:
@@ -172,6 +172,7 @@ class _AnswerSearch:
             self.best = candidate
 
     def _end_with(self, answer: Refinement) -> None:
+        """End the refinement: no further level runs."""
         self.answer, self.has_ended = answer, True
 
     def _complete(self, candidate: Candidate) -> Candidate:
@@ -216,5 +217,6 @@ def _make_answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> 
 
 
 def _make_no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
+    """Return a refinement without peaks (NaN), with the outcome and the instant that ended it."""
     nothing = np.full(len(model.bodies), np.nan)
     return Refinement(nothing, nothing, outcome, instant, run)

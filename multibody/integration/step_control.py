@@ -36,9 +36,8 @@ MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096
 # Largest first step behind a kink of the loading, over slip_change times the relaxation time of friction.
 KINK_STEP_RATIO = 4.0
 
-# Largest step times the rate at which friction that depends on the slip speed acts back on it (`SpeedFriction`), over
-# the allowed change of the slip velocity, and at any level. The latter is well below 2/3, from which on errors of
-# friction alternate and grow.
+# Largest step times the rate at which friction that depends on the slip speed changes this speed (`SpeedFriction`):
+# over the allowed change of the slip velocity, and at any level. From 2/3 on, errors of friction alternate and grow.
 FEEDBACK_PER_SLIP_CHANGE, MAX_STEP_TIMES_FEEDBACK = 2.0, 0.3
 
 # Largest number of steps, an even one, over which the rate of a gap is averaged.
@@ -81,9 +80,9 @@ class StepControl:
         """Return the ratio (T,) of the first step behind a kink to the allowed one, near peaks; zero in other rows."""
         # While the platform creeps, its acceleration follows that of the ground within the relaxation time of friction.
         # Behind a kink the slope changes within that time, and longer steps would show an oscillation. Bodies that turn
-        # with the platform and dampers follow it. So the first step behind a kink is bounded, but only if the platform
-        # creeps, a body is near its peak, and its samples show the kink. Samples whose third difference is within the
-        # error floor of the peak lie on one parabola and show no kink.
+        # with the platform, and dampers, follow the acceleration of the platform. So the first step behind a kink is
+        # bounded, but only if the platform creeps, a body is near its peak, and its samples show the kink. Samples
+        # whose third difference is within the error floor of the peak lie on one parabola and show no kink.
         step_ratio, model, last = np.zeros(len(motion.time)), self.model, len(motion.time) - 1
         rows = find_kinks(motion.time, model.ground.knots, model.ground.near)
         rows = rows[rows < last]

@@ -19,9 +19,9 @@ from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
-# Work of a phase pair (two levels, and a softer contact at the second) over that of the first level in its largest
-# steps. The factor of two is for smaller steps at stops, which are as many again.
-WORK_OF_PHASE_PAIR = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
+# Work of one motion (two levels, and a softer contact at the second) over that of the first level in its largest
+# steps. The factor of two: smaller steps at stops double the number of steps.
+WORK_PER_MOTION_OVER_COARSEST_RUN = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
 @require_scene
@@ -74,10 +74,10 @@ def refusal(
     if Budget(max_work).has_work_left_for(scene.duration / built.units.time, longest):
         return ""
     first_step, step = (level.step * built.units.time for level in (first, longest))
-    needed, work = scene.duration / step, WORK_OF_PHASE_PAIR * scene.duration / first_step
+    needed, work = scene.duration / step, WORK_PER_MOTION_OVER_COARSEST_RUN * scene.duration / first_step
     period = STEPS_PER_PERIOD * first_step / (1 + first.precedes_level_0)
     looser_helps = scene.recorded and not first.precedes_level_0
-    tried, enough = max_work * step, max_work * first_step / WORK_OF_PHASE_PAIR
+    tried, enough = max_work * step, max_work * first_step / WORK_PER_MOTION_OVER_COARSEST_RUN
     return (
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "

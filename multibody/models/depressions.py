@@ -107,6 +107,7 @@ class FlatUnderside(Depressions):
         return np.zeros(len(coordinates), dtype=bool)
 
     def _platform_normals(self, coordinates: Array) -> Array:
+        """Return the vertical axis of the turned platform, a unit vector, once for each support: (K, 3)."""
         upright = rotation_matrices(coordinates[3:6])[:, 2]
         return np.tile(upright, (len(self.ring), 1))
 

@@ -94,6 +94,7 @@ def load_coordinates(mbs: Any, ground: Ground, pushes: Iterable[LoadedCoordinate
     """Add the load -m times the plate's acceleration to every coordinate, and return the symbolic expressions."""
 
     def force(mass: float, axis: int) -> Any:
+        """Return the inertial load -m a(t) on a coordinate, as the engine calls it."""
         return lambda mbs, t, load: -mass * ground.acceleration_along(axis, t)
 
     expressions = []

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 MIN_TRIANGLE_EXTENT = 1e4
 
 # Extent of the contact triangle over the largest distance that the loading and the start alone may move the platform.
-EXTENT_RATIO = 2.0
+TRIANGLE_EXTENT_OVER_TRAVEL = 2.0
 
 
 def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, height: float, law: ContactLaw) -> Any:
@@ -43,7 +43,7 @@ def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, height
 
 def set_plane_extent(mbs: Any, contact: Any, distance: float, height: float) -> None:
     """Set the contact triangle at `height` large enough for a platform that moves by `distance`, in units of length."""
-    extent = max(MIN_TRIANGLE_EXTENT, EXTENT_RATIO * distance)
+    extent = max(MIN_TRIANGLE_EXTENT, TRIANGLE_EXTENT_OVER_TRAVEL * distance)
     mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(extent, height))
 
 

@@ -19,6 +19,7 @@ def add_recorders(
     kind = exudyn.OutputVariableType
 
     def sense_node(node: Any, quantity: Any) -> Any:
+        """Return a new sensor that keeps a quantity of a node in memory."""
         sensor = items.SensorNode(nodeNumber=node, outputVariableType=quantity, storeInternal=True, writeToFile=False)
         return mbs.AddSensor(sensor)
 

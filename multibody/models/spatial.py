@@ -297,6 +297,7 @@ class _SpatialSystem:
         index, pressed = self.index, self.bearing_penetration or penetration
 
         def set_extent(distance: float) -> None:
+            """Make the contact triangles large enough for a platform that moves by `distance`, in units of length."""
             for contact in self.contacts:
                 set_plane_extent(self.mbs, contact, distance, 1.0 + self.radius)
 

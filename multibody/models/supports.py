@@ -79,7 +79,9 @@ def add_fixed_supports(mbs: Any, ring: Array) -> Supports:
     """Add spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
     plate = mbs.AddObject(items.ObjectGround())
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate, localPosition=[*place, 1.0])) for place in ring]
-    return Supports(markers, [], 0, np.empty(0, np.int_), np.zeros((0, len(ring))), lambda penetration, share: None)
+    return Supports(
+        markers, [], 0, np.empty(0, np.int_), np.zeros((0, len(ring))), lambda penetration, warping_compliance: None
+    )
 
 
 def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
@@ -105,17 +107,20 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=np.full(count, 1.0 / count)))
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
 
-    def set_stiffness(penetration: float, share: float) -> None:
-        stiffness, damping = _sharing_springs(count, penetration, share)
+    def set_stiffness(penetration: float, warping_compliance: float) -> None:
+        """Set the springs from penetration and warping compliance under the weight, both in units of rho."""
+        stiffness, damping = _sharing_springs(count, penetration, warping_compliance)
         mbs.SetObjectParameter(springs, "stiffnessMatrix", _combine_tilt_and_warping(warped, *stiffness))
         mbs.SetObjectParameter(springs, "dampingMatrix", _combine_tilt_and_warping(warped, *damping))
 
     return Supports(markers, [springs], count, np.arange(count), warped, set_stiffness)
 
 
-def _sharing_springs(count: int, penetration: float, share: float) -> tuple[tuple[float, float], tuple[float, float]]:
+def _sharing_springs(
+    count: int, penetration: float, warping_compliance: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return stiffness and critical damping of the springs under the spheres: against heave and tilt, and warping."""
-    stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
+    stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * warping_compliance)
     return (stiff, soft), (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
 
@@ -130,11 +135,12 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
     vertical = 2 + BODY_COORDINATES * np.arange(count) if shared else np.empty(0, np.int_)
     warped = warping_projection(ring) if shared else np.zeros((0, count))
 
-    def set_stiffness(penetration: float, share: float) -> None:
+    def set_stiffness(penetration: float, warping_compliance: float) -> None:
+        """Set the springs from penetration and warping compliance under the weight, both in units of rho."""
         if not shared:
             return
         block = np.ix_(vertical, vertical)
-        stiffness, damping = _sharing_springs(count, penetration, share)
+        stiffness, damping = _sharing_springs(count, penetration, warping_compliance)
         for name, held, parts in (
             ("stiffnessMatrix", turning.stiffness, stiffness),
             ("dampingMatrix", turning.damping, damping),

@@ -15,8 +15,8 @@ from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
 FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-END_TOLERANCE = 1e-9  # time by which a motion may miss its end, over the duration
-DECIMATION = 5  # the sampling error is the largest change of a value if every fifth sample is taken
+DURATION_TOLERANCE = 1e-9  # time by which a complete motion may end before the scene, over the duration
+DECIMATION = 5  # number n: the sampling error is the largest change of a value if only every n-th sample is taken
 
 
 @dataclass(frozen=True)
@@ -52,10 +52,10 @@ def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
 
 
 def squared_lengths_and_interval_maxima(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the squared length of `place` (T, 2), m^2, at the instants, and its maxima over the intervals between."""
+    """Return the squared length of `place` (T, 2), m^2, at the instants, and the maxima over the intervals between."""
     # Between two instants the rate p . v of half the squared length is taken as linear. Where it passes zero downward,
-    # the length has a summit: the squared length there exceeds the one before by rate^2 over the fall of the rate,
-    # times the interval.
+    # the length has a maximum: its square exceeds the squared length at the earlier instant by rate^2 over the fall of
+    # the rate, times the interval.
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
     before, behind = rate[:-1], rate[1:]
     turns = (before > 0.0) & (behind < 0.0)
@@ -78,6 +78,7 @@ class DemandSamples(NamedTuple):
 
     @staticmethod
     def from_motion(motion: Trajectory) -> DemandSamples:
+        """Return the instants and histories of a motion; a history is empty where the motion has none."""
         moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
         support = motion.support_force
         uplift = motion.extra.get("uplift", np.zeros_like(support))
@@ -134,7 +135,7 @@ class DemandReader:
         scene, stick = self.motion.scene, self.motion.stick
         yields = scene.dry_friction.elastic
         stick = stick[-1:] if yields else stick  # elastic displacements of several rests do not add up
-        if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
+        if not stick or stick[-1][1] < (1.0 - DURATION_TOLERANCE) * scene.duration:
             rests = scene.has_dry_friction or yields
             return Estimate(math.nan, math.nan, MOVING_AT_END if rests else NEVER_RESTS)
         if stick[-1][0] > self.samples.time[-1]:

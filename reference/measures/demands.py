@@ -171,6 +171,7 @@ def _support_displacement_reader(scene: Scene) -> ReadNumber:
     arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]
 
     def largest(samples: DemandSamples) -> float:
+        """Return the largest |u + (exp(i psi) - 1) arm| over supports and time: displacement u, yaw psi."""
         place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
         return float(np.abs(place + (turn - 1.0) * arms).max())
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from reference.measures.demand_reader import Estimate
 from reference.support.arguments import check_array
 
-FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
+FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # probabilities of not exceeding the value
 # Sampling error over the largest difference from a grid of twice the spacing. Measured on the paper's scenes, 8 to 64
 # phases per axis against 256: the error was at most 1.6 of these differences in 336 values.
 SAMPLING_FACTOR = 2.0
@@ -18,7 +18,7 @@ SAMPLING_FACTOR = 2.0
 
 def fractile(values: ArrayLike, probability: float) -> float:
     """
-    Return the value below which a share `probability` of M values lies, in any order, as for every fractile here.
+    Return the value below which a share `probability` of M values lies; the order of the values does not matter.
 
     The fractile is linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (plotting positions of
     Hazen, Trans. ASCE 77, 1914), and the smallest or largest value beyond these. Values may be infinite: the fractile

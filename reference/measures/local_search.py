@@ -25,28 +25,29 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
-# Coordinates along each axis of the square at which the quotient is computed: first, and then around the largest
-COARSE_PLACES, FINE_PLACES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
+# Coordinates along each axis of the square at which the predicted quotient is computed: first, then around its maximum
+COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids for the largest quotient, each four times finer than the one before
-MIN_HALF_WIDTH = 1e-7  # rad: a search ends when the half width of its square is smaller
+MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
 # The square moves and keeps its size if the best pair is farther from the center than this share of the half width
 MOVING_FRACTION = 0.8
-NODES, MANY_NODES = 3, 5  # nodes of the polynomial along each axis: at first, and after a poor prediction
-MAX_GOOD_PREDICTION_ERROR = 0.1  # of the differences of values in the square: a prediction with a smaller error is good
+# Nodes of the interpolating polynomial along each axis of the square: at first, and after a poor prediction
+INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
+MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction over the range of values in the square
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
-# A search ends if it lies below the highest one by more than PROMISE_FACTOR times the differences in its square, or by
-# more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump a square has large differences
-# however small it is.
+# A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
+# values in its square, or by more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump even a
+# small square has a large range.
 PROMISE_FACTOR = 2.0
 LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0
-MAX_MERGED_WIDTH = 0.04  # rad: two searches that share a square of smaller width have found the same maximum
+MAX_MERGED_WIDTH = 0.04  # rad: two searches in one square of smaller width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
 JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # squares in which a search follows a jump, and grids in each square
 FALL_DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
 # Ratio of the falls at the near and the far distance: it is 0.01 for a parabola, 0.1 for an edge, 1 for a jump
 KINK_FALL, JUMP_FALL = 0.03, 0.3
-CLEAR_FALL = 10.0  # a fall of fewer errors of the value shows nothing
+CLEAR_FALL = 10.0  # smallest fall, in errors of the value, that classifies a maximum
 
 
 @dataclass(frozen=True)
@@ -106,8 +107,8 @@ class LocalSearch:
     value: float
     error: float
     half_width: float  # rad, half width of the next square
-    differences: float = np.inf  # range of the values in the last square
-    nodes: int = NODES  # nodes along each axis of the next square
+    value_range: float = np.inf  # range of the values in the last square
+    nodes: int = INTERPOLATION_NODES  # nodes along each axis of the next square
     count: int = 1  # number of searches that were merged into this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
 
@@ -119,7 +120,7 @@ class LocalSearch:
 
     def may_reach(self, highest: float) -> bool:
         """Return True if the search goes on: its square is not too small and may contain the highest value."""
-        promise = PROMISE_FACTOR * self.differences
+        promise = PROMISE_FACTOR * self.value_range
         if len(self.history) > LATEST_ROUNDS:
             promise = min(promise, GAIN_FACTOR * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
         return self.half_width > MIN_HALF_WIDTH and self.value + promise >= highest
@@ -140,10 +141,11 @@ def make_square_nodes(nodes: int) -> tuple[Array, Array]:
 
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance all searches by one round: compute their squares, then the best pairs that these predict."""
-    # All searches share two calls of the solver, so that its threads have work. A prediction is good if the value
-    # computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly and with
-    # more nodes. A square in which neither the values nor the prediction differ by more than the error is closed.
+    """Advance all searches by one round: the phase pairs of each square region, then its interpolant's maximum."""
+    # All searches share two calls of the solver, which computes their pairs in parallel. A prediction is good if the
+    # value computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly
+    # and with more nodes. A search ends where neither the values of its square nor the prediction differ by more than
+    # the error.
     places = [search.phases + search.half_width * make_square_nodes(search.nodes)[0] for search in searches]
     ends = np.cumsum([len(place) for place in places]).tolist()
     computed = surface.compute(np.concatenate(places))
@@ -155,19 +157,19 @@ def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
         search.move_to_best(square)
         search.move_to_best(best.select(slice(n, n + 1)))
         known = square.value[np.isfinite(square.value)]
-        search.differences = float(np.ptp(known)) if len(known) else 0.0
+        search.value_range = float(np.ptp(known)) if len(known) else 0.0
         miss = abs(value - float(best.value[n]))
-        good = miss <= MAX_GOOD_PREDICTION_ERROR * search.differences
-        search.nodes = NODES if good else MANY_NODES
+        good = miss <= MAX_GOOD_PREDICTION_ERROR * search.value_range
+        search.nodes = INTERPOLATION_NODES if good else INTERPOLATION_NODES_AFTER_MISS
         if np.abs(search.phases - center).max() < MOVING_FRACTION * search.half_width:
             search.half_width *= FAST_SHRINKING if good else SLOW_SHRINKING
         search.history.append((search.half_width, search.value))
-        if max(miss, search.differences) <= search.error:
+        if max(miss, search.value_range) <= search.error:
             search.half_width = 0.0
 
 
 def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) -> tuple[Array, float]:
-    """Return the pair of the square with the largest quotient, from the interpolated numerator, and this quotient."""
+    """Return the pair of the square with the largest predicted amplification, and this amplification."""
     known = np.isfinite(square.numerator)
     if not known.any():
         return search.phases, -np.inf
@@ -175,22 +177,31 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
     nodes = math.isqrt(len(numerator))
     coefficients = (make_square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
 
-    def quotient(first: Array, second: Array) -> Array:
+    def predicted_amplification(first: Array, second: Array) -> Array:
+        """Return the interpolated numerator over the exact denominator at coordinates in [-1, 1] of the square."""
         phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
         denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
         return values
 
-    place, value = _maximize_on_square(quotient, [COARSE_PLACES, *[FINE_PLACES] * (QUOTIENT_GRIDS - 1)])
+    place, value = _maximize_on_square(
+        predicted_amplification, [COARSE_COORDINATES, *[FINE_COORDINATES] * (QUOTIENT_GRIDS - 1)]
+    )
     return search.phases + search.half_width * place, value
 
 
-def _maximize_on_square(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
-    """Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value."""
+def _maximize_on_square(function: Callable[[Array, Array], Array], offset_grids: list[Array]) -> tuple[Array, float]:
+    """
+    Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value.
+
+    offset_grids: coordinates in [-1, 1] to try around the best point, on one grid after another, each scaled to the
+    spacing of the grid before.
+    """
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
+        """Return the second coordinate with the largest value for each first coordinate, and these values."""
         second, half = np.zeros((len(first), 1)), 1.0
-        for offsets in readings:
+        for offsets in offset_grids:
             tried = np.clip(second + half * offsets, -1.0, 1.0)
             values = function(np.repeat(first[:, None], len(offsets), axis=1), tried)
             top = values.argmax(axis=1)[:, None]
@@ -198,7 +209,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], readings: lis
         return second[:, 0], np.take_along_axis(values, top, axis=1)[:, 0]
 
     middle, half = 0.0, 1.0
-    for offsets in readings:
+    for offsets in offset_grids:
         first = np.clip(middle + half * offsets, -1.0, 1.0)
         second, values = largest_along_second(first)
         top = int(values.argmax())
@@ -214,6 +225,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
     center, half_width = search.phases, JUMP_SEARCH_HALF_WIDTH
 
     def value(first: Array, second: Array) -> Array:
+        """Return the computed values at coordinates in [-1, 1] of the square; move the search to the best pair."""
         phases = center + half_width * np.stack([first, second], axis=-1)
         points = surface.compute(phases.reshape(-1, 2))
         search.move_to_best(points)
@@ -221,13 +233,13 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
 
     for _ in range(JUMP_ROUNDS):
         search.history.append((half_width, search.value))
-        _maximize_on_square(value, [FINE_PLACES] * JUMP_REFINEMENTS)
+        _maximize_on_square(value, [FINE_COORDINATES] * JUMP_REFINEMENTS)
         center, half_width = search.phases, 0.1 * half_width
     search.history.append((half_width, search.value))
 
 
 def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
-    """Return the searches without those whose best pair, shifted by a row of (K, 2), rad, lies in a higher square."""
+    """Return the searches whose best pair, shifted by any row of (K, 2), rad, lies in no square of a higher search."""
     kept: list[LocalSearch] = []
     for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:
@@ -245,9 +257,9 @@ def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSea
 def classify_maximum(surface: Surface, search: LocalSearch) -> tuple[str, tuple[float, float]]:
     """Return "jump", "kink" or "smooth" for a maximum, and the direction from a jump to its high side."""
     # The surface falls from its maximum like the square of the distance where it is smooth, like the distance at an
-    # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance tells which, in any of the
-    # DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the
-    # directions without one.
+    # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance distinguishes them, in any of
+    # FALL_DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the
+    # directions without a jump.
     angle = 2.0 * np.pi * np.arange(FALL_DIRECTIONS) / FALL_DIRECTIONS
     directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     far, near = (

@@ -22,9 +22,9 @@ from reference.support.build_cache import cache_on_disk
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, periods of a spectrum by default
 DAMPING_RANGE = Range(0.0, 1.0, "of critical")
 SERIES_TERMS = 8  # number of terms in the power series of a step
-MAX_ANGLE = 0.25  # rad: the oscillator turns by at most this angle in a step, so that the series has an error of 1e-12
+MAX_ANGLE = 0.25  # rad, largest phase angle of the oscillator in a step: the series has an error of 1e-12
 # The sampling error is SAMPLING_FACTOR times the largest change if every third sample is taken. On the built-in
-# scenes, against ten times as many samples, the errors were at most 0.6 of that.
+# scenes, against ten times as many samples, the errors were at most 0.6 of this estimate.
 SAMPLING_FACTOR, DECIMATION = 2.0, 3
 
 
@@ -222,6 +222,7 @@ def response_spectrum(
 
 
 def _check_periods(periods: ArrayLike) -> Array:
+    """Return periods of oscillators, (P,), s, that are all positive. Raises ValueError, one line."""
     rule = "must be positive numbers (P,), s"
     period = check_array("periods", periods, rule)
     if period.ndim != 1 or not len(period) or not (period > 0.0).all():
@@ -269,7 +270,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
                     y1 = y - s * pulled + b * v - r * change
                     v1 = d * v - b * pulled - f * change
                     top = abs(y1)
-                    if v * v1 < 0.0:  # where the oscillator turns back its speed is taken as linear
+                    if v * v1 < 0.0:  # where the oscillator reverses, its speed is taken as linear
                         top = max(top, abs(y + 0.5 * v * v / (v - v1) * angle))
                     if top > largest[i, p]:
                         largest[i, p] = top

@@ -97,9 +97,11 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     drifts = [_drift_above(link) for link in bodies[:-1]]
 
     def lengths(vectors: Sequence[ReadVectors]) -> tuple[Estimate, ...]:
+        """Return the largest magnitude of each vector over time, with its error."""
         return tuple(read.extreme(partial(_largest_length, vector)) for vector in vectors)
 
     def along(vectors: Sequence[ReadVectors]) -> tuple[tuple[Estimate, ...], ...]:
+        """Return the largest components along x, then along y, of each vector over time, with their errors."""
         return tuple(tuple(read.extreme(partial(_largest_along, v, axis)) for v in vectors) for axis in (0, 1))
 
     return StoryForces(
@@ -133,10 +135,12 @@ def _depression_radius(scene: Scene) -> float:
 
 
 def _support_forces_of_model(samples: DemandSamples) -> Array:
+    """Return the support forces that the model itself computed, (T, K), N."""
     return samples.support
 
 
 def _uplift_of_model(samples: DemandSamples) -> Array:
+    """Return the uplift of each support that the model itself computed, (T, K), m."""
     return samples.uplift
 
 
@@ -168,12 +172,12 @@ def _read_supports(
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
-    """Return a reader of the forces of inertia from a body on upwards (T, 2), N; or with arms of their moments, N m."""
+    """Return a reader of inertial forces of a body and those above (T, 2), N; with masses times arms: moments, N m."""
     return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 
 def _arms_below(scene: Scene, heights: Array, body: int) -> Array:
-    """Return masses times heights above the body below, from a body on upwards, kg m."""
+    """Return masses times heights above the body below, for a body and those above it, kg m."""
     arms: Array = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
     return arms
 
@@ -184,10 +188,12 @@ def _drift_above(link: int) -> ReadVectors:
 
 
 def _largest_length(vectors: ReadVectors, samples: DemandSamples) -> float:
+    """Return the largest magnitude of vectors (T, 2) over time."""
     return float(np.linalg.norm(vectors(samples), axis=1).max())
 
 
 def _largest_along(vectors: ReadVectors, axis: int, samples: DemandSamples) -> float:
+    """Return the largest absolute component along one axis of vectors (T, 2) over time."""
     return float(np.abs(vectors(samples)[:, axis]).max())
 
 
@@ -202,8 +208,9 @@ def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> C
     """
     Return a function for forces (T, K), N, of equally stiff supports in balance with the normal force and the moment.
 
-    The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
-    the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
+    The spheres stay with the ground and the depressions go with the platform. So the weight acts beside the middle of
+    the supports by the eccentricity of the mass, by R / rho times the platform's displacement, since the normals lean,
+    and by the mean drift of the floors.
     """
     middle = places.mean(axis=0)
     arms = places - middle

@@ -16,7 +16,7 @@ FRACTION_TERMS = 20  # the continued fraction is exact in double precision up to
 
 
 @dataclass(frozen=True)
-class LoadFactors:
+class StabilityFunctions:
     """Stiffness of a bar under load over that of the unloaded bar; sway_slope: d sway / dq, q = P l^2 / (4 E J)."""
 
     sway: float
@@ -24,17 +24,20 @@ class LoadFactors:
     bending: float
 
 
-def load_factors(q: float) -> LoadFactors:
+def stability_functions(axial_load_parameter: float) -> StabilityFunctions:
     """
-    Return the stiffness factors of a bar under load at q = P l^2 / (4 E J), from 0 to buckling at (pi / 2)^2.
+    Return the stiffness factors of a clamped bar under an axial load P.
 
-    >>> load_factors(0.0)
-    LoadFactors(sway=1.0, sway_slope=-0.4, bending=1.0)
+    axial_load_parameter: q = P l^2 / (4 E J), from 0 to buckling at (pi / 2)^2.
+
+    >>> stability_functions(0.0)
+    StabilityFunctions(sway=1.0, sway_slope=-0.4, bending=1.0)
     """
+    q = axial_load_parameter
     fraction, slope = 2.0 * FRACTION_TERMS + 1.0, 0.0
     for odd in range(2 * FRACTION_TERMS - 1, 1, -2):
         fraction, slope = odd - q / fraction, -1.0 / fraction + q * slope / fraction**2
-    return LoadFactors((fraction - q) / 3.0, (slope - 1.0) / 3.0, 1.0 - q / fraction)
+    return StabilityFunctions((fraction - q) / 3.0, (slope - 1.0) / 3.0, 1.0 - q / fraction)
 
 
 def buckling_load(bending_stiffness: float, length: float) -> float:

@@ -194,23 +194,23 @@ def _check_instants(time: ArrayLike) -> Array:
     return check_array("time", time, "must be instants (T,), s").reshape(np.shape(time))
 
 
-def _integrate_record(knots: Array, time: ArrayLike, times: int) -> Array:
-    """Return the acceleration of a record (K, 4), integrated `times` times from rest, at instants (T,): (T, 3)."""
+def _integrate_record(knots: Array, time: ArrayLike, order: int) -> Array:
+    """Return the acceleration of a record (K, 4), integrated `order` times from rest, at instants (T,): (T, 3)."""
     t = np.asarray(time, float)
     instant, start = knots[:, 0], knots[:, 1:]
     span = np.diff(instant)[:, None]
     slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # no slope behind the last knot
     parts = [start]  # acceleration, then velocity and displacement at the knots
-    if times > 0:
+    if order > 0:
         parts.append(_cumulative_sums(span * (start[:-1] + 0.5 * span * slope[:-1])))
-    if times > 1:
+    if order > 1:
         parts.append(_cumulative_sums(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
     k = np.clip(np.searchsorted(instant, t, side="right") - 1, 0, len(instant) - 1)
     since = (t - instant[k])[..., None]
     result: Array = parts[-1][k]
     power = np.ones_like(since)
-    for order, derivative in enumerate([*parts[-2::-1], slope], start=1):
-        power = power * since / order
+    for exponent, derivative in enumerate([*parts[-2::-1], slope], start=1):
+        power = power * since / exponent
         result = result + power * derivative[k]
     return np.where(t[..., None] < instant[0], 0.0, result)
 

@@ -46,9 +46,9 @@ from reference.support.scene_error import SceneError, printable
 if TYPE_CHECKING:
     import xarray as xr
 
-ALL_MOTIONS = "all"
+ALL_MOTIONS = "all"  # stands for every motion of a suite
 MOTION_KEY = ("excitation", "record", "motion")
-COMBINATIONS = ("product", "zip")
+COMBINATIONS = ("product", "zip")  # every value with every other one; or the n-th values of all keys together
 MAX_SCENES = 1000  # a family has at most so many scenes
 MAX_BODIES_IN_ALL = 50_000  # all scenes of a family together have at most so many bodies
 MAX_KEYS = 20  # at most so many keys of a file may have several values
@@ -408,6 +408,7 @@ def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | 
 
 
 def _is_table_of_files(value: Any) -> bool:
+    """Return whether a value names one record file per axis."""
     named = map(file_name, files_by_axis(value).values())
     return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in named)
 

@@ -217,6 +217,7 @@ class VelocityFriction(Table):
 
     @model_validator(mode="after")
     def _check_pairs(self) -> VelocityFriction:
+        """Require keys that belong together, and refuse keys that exclude each other."""
         if (self.fast is None) != (self.rate is None):
             raise ValueError("give fast and rate together, or neither")
         yields = self.initial_stiffness is not None or self.yield_displacement is not None

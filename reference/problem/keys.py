@@ -23,7 +23,7 @@ from reference.problem.validation import LocatedError
 from reference.support.arguments import Range
 from reference.support.plain_values import as_hashable, as_plain_values
 
-USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
+MODEL_COPY_REFUSAL = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 # Readers of a key: models, or other parts of the program
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
 ENSEMBLE = "`ensemble --check`"
@@ -55,6 +55,7 @@ def range_of(table: type[Table], name: str) -> Range:
 
 
 def _schema_of_key(table: type[Table], name: str) -> dict[str, Any]:
+    """Return what the function `key` stored of a key: meaning, range, unit, models that read it."""
     return cast("dict[str, Any]", table.model_fields[name].json_schema_extra or {})
 
 
@@ -79,6 +80,7 @@ def range_validator(allowed: Range) -> AfterValidator:
 
 
 def _check_text(text: str) -> str:
+    """Return a text without control characters, which could change a report or a terminal."""
     if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
         raise ValueError("must have no control characters")
     return text
@@ -112,6 +114,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
+        """Require the numbers of a key to lie in its range, also in lists unless a list is another form of the key."""
         said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])
@@ -130,7 +133,7 @@ class Table(BaseModel):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
         if update:
-            raise ValueError(USE_WITH_VALUES)
+            raise ValueError(MODEL_COPY_REFUSAL)
         return super().model_copy(deep=deep)
 
 

@@ -28,6 +28,7 @@ QUANTITIES = (*BODY_QUANTITIES, *ISOLATOR_QUANTITIES)
 
 
 def _check_quantity(quantity: str) -> str:
+    """Return the name of a quantity; refuse an unknown one and suggest the nearest name."""
     if quantity not in QUANTITIES:
         nearest = get_close_matches(quantity, QUANTITIES, n=1, cutoff=0.5)
         raise ValueError(f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(QUANTITIES)}")
@@ -61,6 +62,7 @@ class Measured(Table):
 
     @model_validator(mode="after")
     def _check_body(self) -> Measured:
+        """Require the number of a body for a quantity of bodies, and no number for one of the isolator."""
         first = BODY_QUANTITIES.get(self.quantity)
         if first is None and self.body is not None:
             raise ValueError(f"{self.quantity} is of the isolator: remove body")

@@ -35,7 +35,7 @@ from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000
 MIN_STATIC_SHARE = 1e-9  # support load over the weight: a support with a smaller share carries nothing
-MAX_SUPPORT_DEFLECTION = 0.1  # the supports may give way under the weight by at most this share of the radius
+MAX_SUPPORT_DEFLECTION = 0.1  # largest deflection of the supports under the weight, over the radius
 DERIVED_ROUNDING = 1e-12  # relative rounding error of a value that is computed from other values
 
 
@@ -352,7 +352,7 @@ class Scene(Table):
 
     @property
     def bar_links(self) -> list[BarLink | None]:
-        """Links of bars that give way in every direction, from below; None for a link of any other kind."""
+        """Column links, flexible in shear, bending, axially and in torsion, from below; None for any other link."""
         return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property
@@ -575,6 +575,7 @@ class Scene(Table):
 
     @cached_property
     def _digest(self) -> str:
+        """Sixteen hexadecimal digits that change with every key of the scene on which results depend."""
         content = self.model_dump_json(
             exclude=dict.fromkeys(("title", "name", "acceptance", "analyses", "measured"), True)
             | {"excitation": {"record": True, "origin": True}, "bodies": {"__all__": {"floor": True}}},

@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from reference.problem.beam_column import LoadFactors, load_factors
+from reference.problem.beam_column import StabilityFunctions, stability_functions
 from reference.problem.friction import Friction
 from reference.problem.keys import (
     NONE,
@@ -42,6 +42,7 @@ from reference.support.scene_error import MisfitError
 
 
 def _check_damping(value: Any) -> Any:
+    """Return a damping ratio, or coefficients [cx, cy] in N s/m, unchanged; refuse any other form."""
     if isinstance(value, list) and len(value) == 2:
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -50,6 +51,7 @@ def _check_damping(value: Any) -> Any:
 
 
 def _kind_of_damping(value: Any) -> str:
+    """Return the form of a damping value, a member of DAMPING_FORMS, which selects its validator."""
     return DAMPING_FORMS[isinstance(value, list)]
 
 
@@ -121,6 +123,7 @@ class Isolator(Table):
 
     @model_validator(mode="after")
     def _check_alternatives(self) -> Isolator:
+        """Require one key of each pair that states the same, and the keys that other keys need."""
         exactly_one(self, "period", "radius")
         exactly_one(self, "friction", "lubrication")
         bearings = self.support_stiffness
@@ -170,6 +173,7 @@ class Bars(Table):
 
     @model_validator(mode="after")
     def _check_arrangement(self) -> Bars:
+        """Require axial_stiffness for the load effect "shortening", and enough bars around the axis for bending."""
         if self.load_effect == "shortening" and self.axial_stiffness is None:
             raise ValueError("load_effect 'shortening' needs axial_stiffness: state it, or take 'softening'")
         if self.axial_stiffness is not None and self.count < MIN_SPREAD_BARS and self.spread != 0.0:
@@ -183,14 +187,14 @@ class Bars(Table):
         """Stiffness of the link without load, k = 12 n E J / l^3, N/m: (2.3) with its factor 12 put right."""
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
-    def factors(self, load: float) -> LoadFactors:
+    def factors(self, load: float) -> StabilityFunctions:
         """Return the stiffness factors of the bars under a load, N, on all together; 1 without `load_effect`."""
         if self.load_effect is None:
-            return load_factors(0.0)
-        return load_factors(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
+            return stability_functions(0.0)
+        return stability_functions(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
 
 
-LINKS = ("period", "stiffness", "bars")
+LINKS = ("period", "stiffness", "bars")  # keys of a body of which exactly one states the link below it
 
 
 class Body(Table):

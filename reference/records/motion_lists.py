@@ -182,6 +182,7 @@ def _whole_number(name: str, text: str) -> int:
 
 
 def _is_file(file: Path) -> bool:
+    """Return whether a path names a file; False where the system refuses the path."""
     try:
         return file.is_file()
     except (OSError, ValueError):  # the name is too long, or is no path

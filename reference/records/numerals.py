@@ -20,6 +20,7 @@ SPELLED_UNIT = re.compile(
     r"(m|cm|mm|in|inch|inches|ft|feet)[ .*]?(?:/ ?\(?s(?:ec)?(?:\^?2|²| ?/ ?s(?:ec)?)\)?| ?s\^?-2)"
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
+# A number in a run of fixed-width numbers without blanks between them
 NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
 NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 WORD = re.compile(r"[^\W\d_]{2,}")  # two letters in a row: a line with them is no line of numbers

@@ -136,6 +136,7 @@ def check_samples(samples: Any) -> Array:
 
 
 def _check_numbers(name: str, values: Any, shape: str) -> Array:
+    """Return instants or accelerations as an array of bounded finite numbers. Raises RecordError."""
     try:
         array = check_array(name, values, f"must be {shape}")
     except ValueError as error:

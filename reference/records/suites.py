@@ -46,6 +46,7 @@ NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"
 SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
 RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, whatever they contain
 OTHER_SUFFIXES = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
+# Names of the lists that a database of records adds to a download
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)
 NAMED_KINDS = ("texts", "other files")  # kinds of files whose names a sentence lists
 TEXT_SUFFIXES = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
@@ -56,7 +57,7 @@ FileContent = TypeVar("FileContent")
 
 def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]:
     """Return numbers of the motions of a suite: "fema-p695:SET" or a directory in `folder`. Raises SuiteError."""
-    name = _find_record_set(suite)
+    name = _parse_built_in_set_name(suite)
     if name is not None:
         return _list_record_set_numbers(name)
     return list(range(1, len(list_motions(suite, folder, components).motions) + 1))
@@ -64,7 +65,7 @@ def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]
 
 def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, str]:
     """Return names of the motions by number: names of their files, or the part that the files of a motion share."""
-    name = _find_record_set(suite)
+    name = _parse_built_in_set_name(suite)
     if name is not None:
         return {int(number): str(first) for number, first in _load_record_set(name).records["ComponentA"].items()}
     return {number: motion.name for number, motion in enumerate(list_motions(suite, folder, components).motions, 1)}
@@ -79,7 +80,7 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
     record: its keys `suite`, `motion`, `normalized`, as FEMA P695 does, and `components`.
     """
     suite, motion, components = record["suite"], record["motion"], record.get("components")
-    name = _find_record_set(suite)
+    name = _parse_built_in_set_name(suite)
     listed = () if name is not None else list_motions(suite, folder, components).motions
     numbers = range(1, len(listed) + 1) if name is None else _list_record_set_numbers(name)
     if not isinstance(motion, int) or isinstance(motion, bool) or motion not in numbers:
@@ -164,7 +165,7 @@ def _list_record_set_numbers(name: str) -> list[int]:
     return [int(number) for number in _load_record_set(name).records.index]
 
 
-def _find_record_set(suite: Any) -> str | None:
+def _parse_built_in_set_name(suite: Any) -> str | None:
     """Return the record set that `suite` names; None for a directory. Raises SuiteError."""
     if not isinstance(suite, str) or not suite:
         raise SuiteError("suite", SUITE_RULE)
@@ -268,6 +269,7 @@ def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path]
 
     @lru_cache(maxsize=MAX_FILES)
     def read_uncached(file: Path, modified_ns: int, size: int) -> FileContent:
+        """Read a file; time of change and size serve as key of the cache alone."""
         return read(file)
 
     def read_cached(file: Path) -> FileContent:

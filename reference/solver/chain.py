@@ -1,7 +1,7 @@
 """
 The linear bodies above the platform (4.4), eliminated from a collocation step at a cost linear in their number.
 
-In the eigenbasis of the collocation matrix each channel j is a tridiagonal system with L = (h lambda_j)^2,
+For each eigenvector (channel) j of the collocation matrix this is a tridiagonal system with L = (h lambda_j)^2,
     (1 + L (b_i + c_i)) a_i - L b_i a_{i-1} - L c_i a_{i+1} = r_i,   b_i = k_{i,i-1}/m_i,  c_i = k_{i+1,i}/m_i,
 solved from the top down: d_i = e_i + L b_i with e_i = 1 + L c_i e_{i+1} / d_{i+1}, which subtracts nothing and so keeps
 its digits however stiff a link is. With dampers L b_i becomes L b_i + h lambda_j c_{i,i-1}/m_i, and L c_i becomes
@@ -48,13 +48,13 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coupling of body i to an acceleration of the body below in channel j; root = h lambda_j."""
+    """Return (h lambda_j)^2 k/m_i + h lambda_j c/m_i of the link below body i; root = h lambda_j of the collocation."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coupling of body i to an acceleration of the body above in channel j; root = h lambda_j."""
+    """Return (h lambda_j)^2 k/m_i + h lambda_j c/m_i of the link above body i; root = h lambda_j of the collocation."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 

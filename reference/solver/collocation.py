@@ -18,7 +18,7 @@ import math
 import numpy as np
 from numpy.polynomial import legendre
 
-STAGES = 7
+STAGES = 7  # collocation points of one time step
 ROW_LENGTH = STAGES + 1  # length of a row (rows.py)
 CHANNELS = (STAGES + 1) // 2  # number of channels: one for the real eigenvalue, and one for each conjugate pair
 GUESSED_DIGITS = 3  # number of decimals of LAPACK's results that serve as first guesses
@@ -54,6 +54,7 @@ def _exact_dot(row: list[complex], column: list[complex]) -> complex:
 
 
 def _legendre_basis(order: int) -> legendre.Legendre:
+    """Return the Legendre polynomial of an order, shifted to [0, 1]."""
     return legendre.Legendre.basis(order, domain=[0.0, 1.0])
 
 
@@ -96,6 +97,7 @@ def _defect_polynomial() -> np.ndarray:
 DEFECT_POLYNOMIAL = _defect_polynomial()
 # Weights of the accelerations in the defect at theta = 0 of the polynomial through the velocities, over h
 VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
+# Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from theta = 0
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 
@@ -132,6 +134,7 @@ def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     return value, vector[:, 0]
 
 
+# Eigenvalues lambda_j of the collocation matrix, and the matrices from stages to eigenvectors (channels) and back
 EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _compute_channels())
 
 # Shares of a step, theta, at which the search for peaks and events begins

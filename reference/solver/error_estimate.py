@@ -28,28 +28,28 @@ from reference.solver.system import (
 TOLERANCE_RATIO = 30.0  # ratio of the tolerance inside a step of the coarser run to that of the finer run
 # Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO would be expected
 DIFFERENCE_FRACTION = 0.4
-# Lower bounds on the error, since closer agreement of two runs is accidental. The first is in units of the tolerance
-# inside a step, the second in those of the requested tolerance. The third takes the place of the second where friction
-# yields, or depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
+# Lower bounds on the error, since closer agreement of two runs is accidental: over the tolerance inside a step, and
+# over the requested tolerance. The third bound replaces the second one where friction yields or depends on the
+# velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
 MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
 MIN_ERROR_FRACTION = 0.007
 MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07
-READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at the peak: the step before may add as much
+READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at the peak: the preceding step may add an equal error
 ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations each
 # Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps
 MAX_STEP_TOLERANCE = 1e-5
 MIN_STEP_TOLERANCE = 1e-11
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
-# Factor on it for friction that yields, whose short slides are changes within a step that both runs may miss
+# Factor on that tolerance for elastoplastic friction: both runs may miss a slide that is shorter than a step
 YIELDING_TOLERANCE_FACTOR = 0.01
-# Time by which the coarser run goes beyond the last peak, over RunSettings.period: its events come earlier or later
+# Time of the coarser run beyond the last peak, over RunSettings.period: the two runs differ in the times of events
 EVENT_MARGIN = 0.01
 
 FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: steps, and steps per knot of the loading
-# With heating the last run changes peaks and mean k_T by less than the first share of the tolerance, or by less than
-# the tolerance and more than the second share of the change before: what remains is the steps' own error. In the first
-# runs a change may be larger than the one before it: runs agree up to an instant that comes later with each run.
+# With heating, runs repeat until peaks and mean k_T change by less than the first share of the tolerance; or by less
+# than the tolerance but more than the second share of the change before: then the change is the error of the steps. In
+# the first runs a change may exceed the one before: runs agree up to an instant that comes later with each run.
 MAX_SETTLED_CHANGE, MIN_CONTRACTION_RATIO = 0.02, 0.5
 MAX_HEATED_RUNS = 30  # largest number of runs in the iteration for the friction factor k_T
 SMALLEST_VALUE = 1e-300  # m/s^2: changes are divided by at least this peak

@@ -8,7 +8,7 @@ from reference.solver.collocation import SEARCH_POINTS, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import static_limit
 from reference.solver.contact.platform import load_at_stages, rest_excess
-from reference.solver.ground import k_t_at
+from reference.solver.ground import friction_temperature_factor_at
 from reference.solver.polynomial import evaluate_polynomial, set_coefficients
 from reference.solver.rows import Row, broadcast_like, put, row, row_maximum, where_positive
 from reference.solver.system import Load, System
@@ -18,13 +18,13 @@ from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, 
 # a given one. The kinds are numbers of NumPy, no literals (system.py).
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
 NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
-# Golden sections of an interval that may hide an event: one shorter than 1e-6 of a step changes nothing
+# Number of golden sections in the search for an event between two stages: one shorter than 1e-6 of a step is ignored
 GOLDEN_SECTIONS = 30
 GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
-MAX_SECANTS = 200  # iterations of regula falsi at most
+MAX_SECANTS = 200  # largest number of iterations of regula falsi
 SECANTS_PER_HALVING = 3  # after so many iterations that do not halve the interval, a bisection follows
 LOCATION_TOLERANCE = 1e-15  # error of the location of an event, as a share of the step
-# Share of the squared friction limit by which the excess over it at rest changes at most between two stages
+# Largest change of the excess at rest between two stages, as a share of the squared friction limit
 NEAR_LIMIT = 0.5
 
 
@@ -76,7 +76,7 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
         ux = ux * theta + powers[2, k]
         uy = uy * theta + powers[3, k]
         uz = uz * theta + powers[4, k]
-    k_t = k_t_at(system, work.time + theta * work.elapsed[STAGES - 1])
+    k_t = friction_temperature_factor_at(system, work.time + theta * work.elapsed[STAGES - 1])
     excess, _ = rest_excess(system, Load(work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, uz, k_t))
     return excess
 
@@ -132,10 +132,10 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
     """Return the first theta after `begin` at which `event_value` is positive; `start` is its value at `begin`."""
-    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter one may hide: the
-    # value passes zero and returns between two points. That is possible only if the largest value seen lies below zero
-    # by no more than the largest change from point to point. Then golden sections look for a positive value around it.
-    # Once a positive value is found, `locate_crossing` locates the passage before it.
+    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
+    # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
+    # no more than the largest change from point to point. Then a golden-section search looks for a positive value
+    # around the largest one. Once a positive value is found, `locate_crossing` locates the passage before it.
     top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] <= begin:

@@ -28,7 +28,7 @@ def next_knot(record: Array, t: float) -> int:
 
 
 @compiled
-def k_t_at(system: System, t: float) -> float:
+def friction_temperature_factor_at(system: System, t: float) -> float:
     """Return the friction factor k_T at time t from the polynomial of its piece; after the last piece its end value."""
     table = system.k_t
     if table.shape[0] == 0:
@@ -43,7 +43,7 @@ def k_t_at(system: System, t: float) -> float:
 @compiled
 def record_acceleration_at(system: System, t: float) -> Ground:
     """Return the ground acceleration of a record, linear between its knots and zero behind them, and k_T."""
-    record, k_t = system.record, k_t_at(system, t)
+    record, k_t = system.record, friction_temperature_factor_at(system, t)
     k = next_knot(record, t)
     if k == 0:
         return Ground(record[0, 1], record[0, 2], record[0, 3], k_t)
@@ -64,7 +64,8 @@ def ground_at(system: System, work: Workspace, t: float) -> Ground:
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
     a = system.amplitudes
     return Ground(
-        a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1, k_t_at(system, t)
+        a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1,
+        friction_temperature_factor_at(system, t),
     )  # fmt: skip
 
 
@@ -97,7 +98,7 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
         a[0, 0] * z0.real + a[0, 1] * z1.real,
         a[1, 0] * z0.real + a[1, 1] * z1.real,
         a[2, 0] * z0.real + a[2, 1] * z1.real,
-        k_t_at(system, t),
+        friction_temperature_factor_at(system, t),
     )
 
 
@@ -124,7 +125,7 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
         put(ground, axis, a[axis, 0] * z0 + a[axis, 1] * z1)
     if system.k_t.shape[0] > 0:
         for k in range(STAGES):
-            ground[3, k] = k_t_at(system, work.time + elapsed[k])
+            ground[3, k] = friction_temperature_factor_at(system, work.time + elapsed[k])
 
 
 @compiled

@@ -2,7 +2,7 @@
 The temperature factor k_T of friction as a function of time, from the heat that the steps of a run produce.
 
 The temperature is T0 + rise * integral of P(t - s) / sqrt(s), the conduction into a half-space (Carslaw and Jaeger,
-Conduction of Heat in Solids), with P the power of friction while the slider covers the center of the cap. Time is cut
+Conduction of Heat in Solids), with P the power of friction while the slider covers the surface's center. Time is cut
 into pieces at the run's steps and at the instants at which covering begins or ends. On a piece P is a polynomial and
 the kernel is integrated exactly. P itself has the factor k_T: both are found together, piece by piece.
 """
@@ -21,7 +21,8 @@ from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System, dry_friction_of
 from reference.support.build_cache import cache_on_disk
 
-NEWTON_STEPS = 8  # iterations to the instant at which the slider begins or stops covering the cap's center
+# Newton iterations to the instant at which the slider begins or stops covering the center of the concave surface
+NEWTON_STEPS = 8
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
 MIN_PIECE = 1e-10  # share of the duration that the shortest piece has
@@ -43,11 +44,11 @@ def set_initial_friction_factor(system: System) -> System:
 
 def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
     """Return the system with the friction factor k_T by the heat of a run that ends at `end`, s."""
-    # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or enters the
-    # cap's center: there k_T changes like a root of time. So pieces are graded behind these instants, the latter of
-    # which are located by Newton's method. By the error of the integration k_T jumps from piece to piece, and a jump
-    # inside a step of the next run would cost its order. So each piece gets a multiple of DEFECT_POLYNOMIAL, which is 0
-    # at the nodes and 1 at the start: the table is continuous.
+    # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or covers the
+    # center of the concave surface: there k_T changes like a root of time. So pieces are graded behind these instants,
+    # and those of the jump are located by Newton's method. By the error of the integration k_T jumps from piece to
+    # piece, and a jump inside a step of the next run would cost its order. So each piece gets a multiple of
+    # DEFECT_POLYNOMIAL, which is 0 at the nodes and 1 at the start: the table is continuous.
     start = record.start[: record.counts[0]]
     bounds = np.append(start, end)
     times = _nodes_of_pieces(bounds)
@@ -138,11 +139,11 @@ def past_temperature(
     moments: Array,
 ) -> float:
     """Return the temperature at a time within a piece that the heat of all pieces before it causes."""
-    # That sums over all pieces before. Long past, only the sum, mean time and variance of a block's heat count: with d
-    # the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...) / sqrt(d), whose linear term vanishes
-    # about the mean. Row l of the moments holds blocks of 2^l pieces; walking back in time the blocks grow with the
-    # distance, which leaves of the order of log K terms. Near pieces are integrated exactly, those at a middle distance
-    # by quadrature.
+    # The temperature is a sum over all pieces before. For pieces long past, only sum, mean time and variance of the
+    # heat of a block of pieces count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
+    # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
+    # back in time the blocks grow with the distance, which leaves of the order of log K terms. Near pieces are
+    # integrated exactly, those at a middle distance by quadrature.
     past, j = initial, piece
     while j > 0:
         level, size, first = 0, 1, j - 1
@@ -205,7 +206,7 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
 @njit(**NUMBA_OPTIONS)
 def describe_block(start: float, length: float, heat: Array, moments: Array) -> None:
     """Set total heat, mean time and variance of one piece."""
-    total, center, variance = 0.0, 0.0, 0.0  # whole arrays in place of loops would take three times as long to compile
+    total, center, variance = 0.0, 0.0, 0.0  # loops: whole arrays would take three times as long to compile
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * heat[k]
     for k in range(STAGES):

@@ -78,7 +78,7 @@ def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
 
 @compiled
 def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> float:
-    """Return the largest size of the entries of column i below the diagonal, which is in `block`."""
+    """Return the largest size of the entries of column i below the diagonal; `block`: the one with the diagonal."""
     sizes = abs(row(columns, (i, block))) * row(BELOW_DIAGONAL, (i, block))
     if block + 1 < blocks:
         sizes = max(sizes, abs(row(columns, (i, block + 1))))

@@ -42,10 +42,10 @@ STEPS_PER_PERIOD = 25.0  # number of steps of a rough run per RunSettings.period
 # Largest number of steps of a rough run per accurate step so far, which costs about as much as 50 of them
 MAX_STEPS_PER_STEP = 50.0
 MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the chain's fastest vibration in one step
-# A rough run that stays below this share of the largest value so far shows that the accurate run has no larger one
+# If a rough run stays below this share of the largest value so far, the accurate run has no larger value
 LARGE_FRACTION = 0.85
-# Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox below which no rough run is
-# trusted, so that the accurate run goes on
+# Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox: below it a rough run proves
+# nothing, so that the accurate run goes on
 MIN_DISTANCE_TO_SINGULARITY = 0.1
 MAX_SLOW_STEPS = 2.0  # a slide is near its stop if friction would stop it in fewer steps
 DIRECTION_MARGIN = 0.35  # rad, uncertainty of the direction of a slide near its stop

@@ -50,7 +50,7 @@ ROUNDING_ANGLE = 1e-13  # rad, change of the angles that rounding alone makes
 DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, which needs only a few digits
 SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by the logarithm of the speed
 MAX_GUESSED_TURN = 0.5  # rad: the direction turns towards the force, and the guess must not turn beyond it
-MAX_CHANGE = 1e3  # a change of angle, rad, or logarithm of the speed beyond this ends the iteration
+MAX_CHANGE = 1e3  # a larger change of the angle, rad, or of the logarithm of the speed ends the iteration
 
 
 @compiled
@@ -155,7 +155,7 @@ def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
 
 @compiled
 def is_inside_rim(system: System, work: Workspace) -> bool:
-    """Return True if the platform is within the cap at every stage (4.1)."""
+    """Return True if the platform is inside the rim of the concave surface at every stage (4.1)."""
     x, y = row(work.stage, POSITION), row(work.stage, POSITION + 1)
     inside: bool = row_maximum(x * x + y * y) < system.radius**2
     return inside
@@ -189,11 +189,11 @@ def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
 @compiled
 def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> float:
     """Correct directions and speeds by Newton's method, with `fresh` or kept slopes; return the largest change."""
-    # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, with the derivative of the
-    # sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from the corrected
-    # directions, for constant friction hardly depends on the speed. Where friction depends on the speed that iteration
-    # converges slowly or not at all, and Newton's method takes its place (`correct_log_speeds`). Infinity means no
-    # solution of the linear equations.
+    # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, linearized by the
+    # derivative of the sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from
+    # the corrected directions, since constant friction hardly depends on the speed. Where friction depends on the
+    # speed, this iteration converges slowly or not at all, and Newton's method takes its place (`correct_log_speeds`).
+    # The return value is infinite if the linear equations have no solution.
     turning, residual = work.turning, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     put(residual, 0, work.angle - row(turning, DIRECTION) + h * integrate_to_stages(row(turning, ACROSS)))
@@ -219,7 +219,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
 
 @compiled
 def correct_log_speeds(work: Workspace, h: float) -> bool:
-    """Correct the logarithms of the speed in `levels` by Newton's method; return False if it has no step."""
+    """Correct the logarithms of the speed in `levels` by one Newton step; return False if its matrix is singular."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     turn = row(residual, 0)

@@ -24,12 +24,13 @@ from reference.solver.work import SQUARED_SPEED, Workspace
 # In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
 # exceeds the higher one by less than this share of the squared acceleration.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_PATH_FACTOR = 1.5  # bound on the path within a step over its length times the larger speed at its ends
+MAX_PATH_FACTOR = 1.5  # bound on (path in a step) / (step h x larger end speed)
 NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
 IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components of a vector; no literals (system.py)
+# SEARCH_POINTS in rows of ROW_LENGTH; the last row repeats the first points
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
-MAX_RATE = 60.0  # bound on rate times step length: a faster response of friction adds no more to the error
-SETTLED_FRACTION = 0.9  # share of the largest acceleration so far: below it no peak is near
+MAX_RATE = 60.0  # largest rate times step length that counts: a faster response of friction adds nothing to the error
+SETTLED_FRACTION = 0.9  # an acceleration below this share of the largest so far is not near a peak
 
 
 @compiled
@@ -51,7 +52,7 @@ def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[floa
 @compiled
 def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
     """Return the largest sum of squares of the first polynomials in `powers` over [low, high], and its theta."""
-    # SEARCH_POINTS are twice as many as the stages, so the best of them is next to the largest maximum of a step that
+    # SEARCH_POINTS are twice as many as the stages, so the best point is next to the largest maximum of a step that
     # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
     # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
     # polynomial, and so never above the true maximum.
@@ -176,7 +177,7 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
     Raise work.squared_reach to the largest |x|^2 of the platform in the step just solved.
 
     It is read from the polynomial of the acceleration through the stages. In stretched time near a stop, where h is no
-    length of time and the way left is short, it is read at the stages. Return True if the displacement is near the
+    length of time and the remaining distance is short, the stages are read. Return True if the displacement is near the
     largest so far.
     """
     squared_speed = 0.0

@@ -57,6 +57,7 @@ _ROW = _RowType()
 
 
 def _index(k: int) -> Any:
+    """Return LLVM's constant for the place k in a row."""
     return ir.IntType(32)(k)
 
 
@@ -153,11 +154,13 @@ for _function in (math.exp, math.expm1, math.log):
 
 @type_callable(operator.getitem)
 def _type_getitem(context: Any) -> Callable[..., Any]:
+    """Type row[k] as a float, for a whole number k."""
     return lambda values, k: types.float64 if values == _ROW and isinstance(k, types.Integer) else None
 
 
 @lower_builtin(operator.getitem, _ROW, types.Integer)
 def _lower_getitem(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """Write code that reads one number of a row."""
     return builder.extract_element(*arguments)
 
 

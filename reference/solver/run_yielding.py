@@ -1,5 +1,5 @@
 """
-One run under friction that yields: elastic until its force reaches the bound, plastic until the slip would turn back.
+One run under friction that yields: elastic until its force reaches the limit mu N, plastic until slip would reverse.
 
 Every change is located; the steps are those of run.py, with their error, peaks and record.
 """
@@ -63,9 +63,9 @@ from reference.solver.work import (
     system_by_reference,
 )
 
-# Length of a phase's first step over that of an ordinary step. A short one misses no event before its first stage.
+# Length of a phase's first step over that of an ordinary step: a short step misses no event before its first stage.
 FIRST_STEP_SHARE = 0.1
-# Error of the end of a step at yield and at unloading, as a share of the step, and the most steps that aim at an event.
+# Error of the end of a step at yield and at unloading, as a share of the step; most steps that aim at an event.
 # An error of the instant of unloading has an effect of second order.
 YIELD_SHARE, UNLOADING_SHARE, MAX_AIMED_STEPS = 1e-11, 1e-6, 8
 MIN_EVENT_TIME = 1e-12  # events closer to the start count as events at the start; in units of RunSettings.period
@@ -127,7 +127,7 @@ def change_contact(system: System, work: Workspace, record: StepRecord, contact:
 @compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
     """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s, as `integrate` does."""
-    # The gates of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
+    # The checks of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)
     work.force[0] = work.force[1] = 0.0

@@ -12,7 +12,7 @@ from reference.solver.system import STOPPING, Array, StepRecord
 
 BISECTIONS = 60  # number of bisections that locate an instant in a step near a stop to rounding
 INSTANTS_PER_BLOCK = 1024  # number of instants at a time, whose stages fit into the processor's cache
-FEWEST_PLACES, MOST_PLACES = 4, 48  # bounds on the number of instants per step in `step_instants`
+MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP = 4, 48  # bounds on the number of instants per step in `step_instants`
 
 
 class SampledMotion(NamedTuple):
@@ -59,7 +59,7 @@ def step_instants(record: StepRecord, count: int, most: int) -> Array:
     """Return about `count` rising instants (T,), s, at most `most`: some in every step, one just before its end."""
     steps = int(record.counts[0])
     start = record.start[:steps]
-    places = int(np.clip(count // max(steps, 1), FEWEST_PLACES, MOST_PLACES))
+    places = int(np.clip(count // max(steps, 1), MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP))
     theta = np.arange(places) / places
     inside = start[:, None] + record.length[:steps, None] * theta
     near = record.contact[:steps] == STOPPING

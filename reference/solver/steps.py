@@ -45,9 +45,10 @@ MAX_ITERATIONS = 14  # iterations of Newton's method after which a step counts a
 SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed again
 FORCE_ROUNDING = 1e-13  # share of the forces: rounding leaves so much in the defect at the start of a step
 ROUNDING_CHANGE = 4e-15  # relative change of the accelerations from iteration to iteration that rounding alone makes
-# Growth of a slide's squared speed beyond which a derivative understates tenfold how far the direction turns
+# Growth of a slide's squared speed beyond which a derivative understates tenfold the turn of the direction
 MAX_SPEED2_GROWTH = 100.0
-RIM_SQUARED_FRACTION = 0.99  # share of rho^2: a step farther out whose iteration leaves the cap has reached the rim
+# Share of rho^2: a step farther out whose iteration leaves the concave surface has reached the rim
+RIM_SQUARED_FRACTION = 0.99
 
 
 @compiled
@@ -83,10 +84,10 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
     """
     # A derivative serves several iterations while these converge fast. The error that remains is then far smaller than
     # the last change, which is what `tolerance` bounds.
-    # In a slide the derivative of friction by the velocity is mu N / v across the direction of slip. Computed at a
-    # guess that is far too slow it is far too large: Newton's method then hardly corrects a wrong direction, and its
-    # small change looks like convergence. So a derivative serves no iteration at a much higher speed
-    # (MAX_SPEED2_GROWTH).
+    # In a slide the derivative of friction by the velocity is mu N / v across the direction of slip. If it is computed
+    # at a guess that is far too slow, the derivative is far too large: Newton's method then hardly corrects a wrong
+    # direction, and the small change looks like convergence. So a derivative serves no iteration at a much higher
+    # speed (MAX_SPEED2_GROWTH).
     set_feedback(system, work, h)
     pivots = work.pivots[: system.axes * STAGES]
     known = row(work.stage, SQUARED_SPEED)
@@ -227,14 +228,16 @@ def step_error(system: System, work: Workspace, tolerance: float, weight: float)
     # The acceleration at the start of the step is known. The polynomial through the stages, evaluated there, misses it
     # by the interpolation error of the step, which falls like h^7: Radau IIA has no stage at theta = 0. This defect is
     # the error of the step.
-    # Rounding limits it from below: FORCE_ROUNDING of the forces always, CHANNEL_ROUNDING where the chain is solved in
-    # the eigenbasis. No shorter step would reduce an error of that size, so it counts as the tolerance at most.
+    # Rounding limits the defect from below: FORCE_ROUNDING of the forces always, CHANNEL_ROUNDING where the chain is
+    # solved in the eigenbasis. No shorter step would reduce an error of that size, so it counts as the tolerance at
+    # most.
     # On a plane the platform's acceleration relative to the plate counts as well: without a restoring force no absolute
     # acceleration shows an error of the position.
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
     load = max(load, row_maximum(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
-    # Friction may decelerate a platform without any drive, so its own acceleration is a measure of the forces, too.
+    # Friction may decelerate a platform without any drive, so the acceleration of the platform is a measure of the
+    # forces, too.
     load = max(load, row_maximum(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)

@@ -26,11 +26,11 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
-# Rows of Workspace.shear of friction that yields (contact/yielding.py), x and y. First what its motion depends on:
-# position, velocity, drive, friction force; then acceleration and rate of the force, each of which has four slopes in
-# Workspace.shear_slopes; at last the excess of the squared force over the squared bound, the velocity along the
-# force, m/s, and the bound
-ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
+# Row numbers in Workspace.shear, elastoplastic friction (contact/yielding.py; x row, then y row): position, velocity,
+# drive, friction force, acceleration, rate of the force. The acceleration and the rate each have four derivatives in
+# Workspace.shear_slopes. One row each: the squared force minus the squared friction limit, the velocity along the
+# force, m/s, and the friction limit.
+ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, FRICTION_LIMIT = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # largest number of separate parts of one step that count for the peaks
 SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics in a step
 

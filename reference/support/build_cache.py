@@ -94,6 +94,7 @@ def user_cache() -> Path | None:
 
 
 def _find_writable(folder: Path) -> Path | None:
+    """Return the folder, made if absent, if files can be written there; else None."""
     try:
         if folder.is_absolute():  # the path is relative where the home directory is unknown
             folder.mkdir(parents=True, exist_ok=True)

@@ -24,6 +24,7 @@ from typing import Any, NoReturn, TextIO, cast
 from reference.support.scene_error import SceneError
 from reference.support.version import __version__
 
+# Exit codes: after an error that no rule foresees, and after the reader of standard output has closed it
 UNEXPECTED_ERROR_CODE, CLOSED_OUTPUT_CODE = 3, 141
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
@@ -155,11 +156,11 @@ def _exit_code_of(main: Callable[[], int]) -> int:
         return CLOSED_OUTPUT_CODE if error.closed else UNEXPECTED_ERROR_CODE
     except Exception as error:
         what = " ".join(f"{type(error).__name__}: {error}".split())
-        _print_line(f"unexpected error: {what[:500]}; {_write_details()}")
+        _print_line(f"unexpected error: {what[:500]}; {_write_traceback_file()}")
         return UNEXPECTED_ERROR_CODE
 
 
-def _write_details() -> str:
+def _write_traceback_file() -> str:
     """Write the traceback of the present exception to a file; return the path of the file."""
     text = f"{sys.argv}\n{sys.version}\n{traceback.format_exc()}"
     try:

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 import multibody
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.estimate import widen_by_impacts
-from multibody.integration.level import REAL_WARPING_COMPLIANCE
+from multibody.integration.level import PHYSICAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import BEARING_SETTLING_TIME
 from multibody.integration.peak import PeakReader
@@ -178,7 +178,7 @@ def tower(ring: float) -> Scene:
 
 def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float) -> EngineRun:
     """The run of one level on springs of real bearings."""
-    level = replace(multibody.levels(scene, "spatial")[number], warping_compliance=REAL_WARPING_COMPLIANCE)
+    level = replace(multibody.levels(scene, "spatial")[number], warping_compliance=PHYSICAL_WARPING_COMPLIANCE)
     pair = PhasePair(scene, assemble(scene, "spatial", 1e-3), np.array(phase), in_full=True)
     return pair.run_level(level, Budget(work))
 

@@ -12,7 +12,12 @@ import pytest
 
 import multibody
 from multibody.integration.engine_run import Budget, EngineRun
-from multibody.integration.level import COMPLIANCE_OF_CLOSED_SUPPORTS, COMPLIANCE_RATIO, REAL_WARPING_COMPLIANCE, Level
+from multibody.integration.level import (
+    COMPLIANCE_OF_CLOSED_SUPPORTS,
+    COMPLIANCE_RATIO,
+    PHYSICAL_WARPING_COMPLIANCE,
+    Level,
+)
 from multibody.integration.level_runs import MAX_WORK_SHARE_OF_TRIAL
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
@@ -22,7 +27,7 @@ from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from reference.problem import Outcome, load_scene
 
 TOLERANCE = 1e-3
-STIFF, REAL = MIN_WARPING_COMPLIANCE, REAL_WARPING_COMPLIANCE
+STIFF, REAL = MIN_WARPING_COMPLIANCE, PHYSICAL_WARPING_COMPLIANCE
 SOFTER = -1.0  # in place of how far supports give way: a contact softer than that of the level
 NAMES = {STIFF: "s", REAL: "r", COMPLIANCE_OF_CLOSED_SUPPORTS: "c", SOFTER: "~"}
 STEPS = 1000  # of every run

@@ -48,7 +48,9 @@ NAMED_STEP = re.compile(
     re.IGNORECASE,
 )
 WRITE = "write record = "  # begins the proposal for a scene
+# Words of a header whose numbers are a spectrum, not accelerations over time
 NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
+# A line of two numbers: the number of samples and the sampling interval, s
 COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*", re.IGNORECASE)
 
 

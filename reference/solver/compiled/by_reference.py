@@ -59,6 +59,8 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
 @infer_getattr
 class _Fields(AttributeTemplate):  # type: ignore[misc]
+    """Types of the fields of a structure, as numba asks for them."""
+
     key = ByReference
 
     def generic_resolve(self, kind: ByReference, name: str) -> Any:

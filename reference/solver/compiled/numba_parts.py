@@ -78,6 +78,7 @@ class _LowerAsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
+        """Give the function a `_PartLibrary` and switch off reference counting; return False: its code is unchanged."""
         context = state.targetctx  # numba makes a context for every function
         state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
         context.nrt = NRTContext(context, True)  # fields of structures are still read through this context

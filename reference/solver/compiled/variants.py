@@ -17,6 +17,7 @@ def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]
         return (without if getattr(system, field) is None else present)(system, *numbers)
 
     def choose(system: Any) -> Any:
+        """Return the variant for numba's type of a system."""
         return types.Dispatcher(without if system.field_dict[field] == types.none else present)
 
     @type_callable(call)

@@ -65,7 +65,7 @@ def coefficient_slope(system: System, speed: Number) -> Number:
 
 @compiled
 def rising_rate(system: System, speed: float) -> float:
-    """Return the rate at which friction damps the speed, 1/s, if it rises with the speed; 0 otherwise."""
+    """Return the rate at which friction damps the speed, 1/s, if friction rises with the speed; 0 otherwise."""
     return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
@@ -143,7 +143,7 @@ def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
 
 @compiled
 def slip_direction_cosines(angle: float, axes: int) -> tuple[float, float]:
-    """Return cosine and sine of a slip direction; exactly along x if the motion stays in that plane."""
+    """Return cosine and sine of a slip direction; exactly along x if the motion stays in the plane of x and z."""
     cosine, sine = cos(angle), sin(angle)  # side by side, so that LLVM makes one call of both
     if axes == 1:
         return (1.0 if cosine > 0.0 else -1.0), 0.0
@@ -182,6 +182,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Return the rate at which friction turns with the direction of a slide, 1/s: it changes by 1/e in its inverse."""
+    """Return the rate at which friction makes a velocity across the direction of a slide decay, 1/s."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
     return rate

@@ -18,9 +18,9 @@ from reference.solver.equations import exact_acceleration
 from reference.solver.rows import Number, broadcast_like, row_maximum, where_positive
 from reference.solver.system import Load, System
 
-MAX_ITERATIONS = 40  # iterations of Newton's method for the reaction at most
+MAX_ITERATIONS = 40  # largest number of Newton iterations for the reaction
 LAST_CHANGE = 1e-8  # relative change of the reaction that ends the iteration: the next change would be below rounding
-# Share of the drive along the normal that may be missing before the last change; beyond it no reaction is a solution
+# Residual of the equation for the reaction over the drive along the normal: above it the iteration found no solution
 MAX_MISFIT = 1e-7
 
 
@@ -31,7 +31,7 @@ def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient
 
 
 @compiled
-def _scale_by_load_factor(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
+def _coefficient_at_load_and_temperature(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
     """Return the friction coefficient at the temperature factor k_T and under a reaction, from the cold one."""
     return coefficient * load_factor(system, k_t, reaction)
 
@@ -48,7 +48,7 @@ def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number
     return slip * (1.0 + elasticity(system, reaction))
 
 
-scale_by_load = choose_variant("exponent", _keep_coefficient, _scale_by_load_factor)
+scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
 """Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
 
 scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)
@@ -83,10 +83,11 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return the acceleration, with the reaction by Newton's method and its equation's derivative as determinant."""
-    # Friction that eases with the load (n < 0) makes the equation for R nonlinear. Its derivative takes the place of
-    # the inertia determinant: where it vanishes, no acceleration exists (Painleve's paradox). If the iteration ends far
-    # from a solution, none exists either: the determinant is set to -1, which the callers read as the paradox.
+    """Return acceleration, reaction by Newton's method, and as determinant the derivative of its equation."""
+    # A friction coefficient that falls with the load (n < 0) makes the equation for R nonlinear. The derivative of this
+    # equation takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's
+    # paradox). If the iteration ends far from a solution, no acceleration exists either: the determinant is set to -1,
+    # which the callers read as the paradox.
     curvature = 1.0 / system.radius
     nx, ny = -load.px * curvature, -load.py * curvature
     tilt = nx * nx + ny * ny

@@ -16,7 +16,7 @@ from reference.solver.contact.platform import acceleration_along, solve_platform
 from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48  # number of directions per full turn at which an arc is sampled
-# Rad, first stride of the search for the direction that does not turn, which may be close to the first
+# Rad, first stride of the search for the direction that does not turn, which may be close to the present one
 FIRST_STRIDE = 1e-3
 GOLDEN_SECTIONS = 20  # golden sections around the best sample, which leave 1e-5 of the distance of two samples
 # A peak between two samples exceeds the largest squared sample by at most this share
@@ -48,8 +48,8 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
     """Return the direction at which the turning from `angle` ends; `angle` itself for accelerations below no_turn."""
     # theta' keeps its sign until it vanishes, so the first zero of a . e_perp in the sense of the turning is the end.
-    # It may be close by, or there may be several: the search goes in strides that double from FIRST_STRIDE up to the
-    # distance of two samples, and ends at the first change of sign, or after a full turn.
+    # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
+    # up to the distance of two samples, and ends at the first change of sign, or after a full turn.
     here = turning_acceleration(system, load, angle)
     drive = sqrt(load.fx * load.fx + load.fy * load.fy) + kinetic_coefficient(system) * abs(system.gravity + load.uz)
     if abs(here) <= no_turn * drive:
@@ -67,7 +67,7 @@ def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) 
 
 @compiled
 def can_begin_slide(system: System, load: Load, angle: float) -> bool:
-    """Return True if a slide from rest in this direction has an acceleration (Painleve), which does not brake it."""
+    """Return True if a slide from rest in this direction has an acceleration (Painleve) and is not braked."""
     ex, ey = cos(angle), sin(angle)
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, 0.0, sx, sy)
@@ -79,7 +79,7 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """Return the direction between both that does not turn, by regula falsi (Illinois; Dowell and Jarratt 1971)."""
+    """Return the direction in between that does not turn, by regula falsi (Illinois; Dowell and Jarratt 1971)."""
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)
@@ -104,13 +104,13 @@ def locate_direction_at_stop(system: System, load: Load, inside: float, outside:
 @compiled
 def arc_peak(system: System, load: Load, angle: float, end: float, floor: float, horizontal: float) -> float:
     """
-    Return the largest `squared_absolute_acceleration` over the arc from `angle` to `end`, m^2/s^4.
+    Return the largest `squared_absolute_acceleration` over the directions from `angle` to `end`, m^2/s^4.
 
-    Where it is sure to lie below `floor`, the largest sample is returned.
+    If the maximum is sure to lie below `floor`, the largest sample is returned.
     """
-    # The square of an absolute acceleration on the arc is smooth in the angle: samples find the largest hump, golden
-    # sections between the neighbors of the best sample its top. Where even a hump MAX_RISE_BETWEEN_SAMPLES above the
-    # best sample would stay below `floor`, no peak depends on it and the sections are saved.
+    # The square of an absolute acceleration on the arc is smooth in the angle: sampling finds the highest local
+    # maximum, and golden-section search between the neighbors of the best sample refines it. If this maximum cannot
+    # exceed `floor`, no peak depends on it and the refinement is skipped.
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0

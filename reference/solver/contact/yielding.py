@@ -8,7 +8,7 @@ by its horizontal part, and kappa = k / m1.
            velocity across it. q is kept up to its size.
 Transport along the sphere, n (v . q) / rho, keeps q in the tangent plane. v is the velocity of the platform, also
 in mu.
-The bound mu R of friction, its dependence on speed and load, and the equations of motion are those of sliding friction.
+The friction limit mu R, its dependence on speed and load, and the equations of motion are those of sliding friction.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def yielding_motion(
     """
     Return the motion of the platform and of its friction force q, elastic or plastic.
 
-    Those are ax, ay, reaction / m1, inertia determinant, the rates of q along x and y, the bound of |q|, |q| itself
+    Those are ax, ay, reaction / m1, inertia determinant, the rates of q along x and y, the limit of |q|, |q| itself
     (both m/s^2, of full vectors in the tangent plane), and the velocity along q, m/s.
     """
     nx = ny = qz = vz = broadcast_like(0.0, qx)

@@ -68,8 +68,8 @@ from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 # Rounding error of an acceleration, which is a difference of forces, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
 MAX_VIBRATION_ANGLE = 5.0  # rad, largest phase angle of the chain's fastest vibration in a step that resolves it
-# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the angle by which the
-# vibration turns. The vibration itself is the defect over twice that (docs/decisions/0002).
+# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the phase angle of the
+# vibration. The vibration itself is the defect over twice this power (docs/decisions/0002).
 DRIFT_SHARE = 6e-8
 # Rad: a hundred steps with smaller angles add less than a thousandth of their tolerance to the drift
 MIN_DRIFT_ANGLE = 2.0
@@ -82,7 +82,7 @@ def follow_phase(
     system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
 ) -> tuple[int, int]:
     """Follow the motion until the contact changes or the run ends; return outcome and next contact, see run.py."""
-    # A step goes through five gates. (1) The phase proposes its length; a slide about to stop proposes none and hands
+    # A step goes through five checks. (1) The phase proposes its length; a slide about to stop proposes none and hands
     # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
     # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
     # it ends it: the shorter step is solved again, in rest by `shorten_step_to_onset`, otherwise by the next pass,
@@ -257,7 +257,7 @@ def mark_counted_parts(
 
     Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
-    # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); that time is none of rest.
+    # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); this time is not rest.
     # A creep may begin or end above v_reg by the accuracy of an event, where its linear law has more friction than any
     # slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:

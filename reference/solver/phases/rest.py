@@ -34,10 +34,10 @@ def begin_rest(system: System, work: Workspace) -> float:
 @compiled
 def shorten_step_to_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
     """Solve a step of rest again up to just past the onset of sliding in it; return its length and the next contact."""
-    # The slide that follows begins in the direction in which its acceleration does not turn it, which the excess over
-    # the friction limit decides. At the limit itself that direction is undefined, so the onset is located between
-    # MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their error.
-    # Newton's method with a slope taken from them locates it on steps that end there.
+    # The slide that follows begins in the direction that its own acceleration does not turn; this direction depends on
+    # the excess over the friction limit. At the limit itself that direction is undefined, so the onset is located
+    # between MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their
+    # error. Newton's method with a slope taken from them locates it on steps that end there.
     onset = locate_onset(system, work)
     if onset > 1.0 or work.hold_time > 0.0:
         return h, REST

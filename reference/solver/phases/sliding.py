@@ -61,13 +61,13 @@ LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at
 NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: a slower slide may pass v_reg between two stages
 # Share of the friction limit times the step: the direction of a slower slide follows the force within the step
 STIFF_SPEED_FRACTION = 0.03
-# Share of the drive that accelerates a slide at least, so that the slide has a direction
+# Smallest acceleration of a slide as a share of the drive: below it the slide has no direction
 MIN_ACCELERATION_FRACTION = 1e-12
 # Share of the squared friction limit: with a smaller excess of the drive a slide need not begin yet
 BARELY_SLIPPING_EXCESS = 1e-4
 # A slide that cannot begin with a step of this share of the period, or of the time in which friction responds to the
 # speed, moves nothing: it is replaced by rest for NEGLIGIBLE_HOLD periods. A crossing this early in a step (share of
-# the step) means that the phase begins on the level.
+# the step) means that the phase begins at v_reg.
 NEGLIGIBLE_STEP = 1e-6
 NEGLIGIBLE_RESPONSE = 1e-3
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP
@@ -107,8 +107,8 @@ def propose_sliding_length(system: System, work: Workspace, settings: RunSetting
     """Return the length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
     # Close to a stop the direction of slip turns like a power of the speed (T6 of docs/theory.md), which no polynomial
     # in time resolves. So a slide that would stop within a step or two goes on in stretched time (near_stop.py), unless
-    # the chain would vibrate in what is left: the chain is solved by iteration there. A step of a slide that stops
-    # later ends well before its stop; without MAX_WAY_TO_STOP a third of the plain steps of fig3-I missed the
+    # the chain would vibrate in the time left: stretched time solves the chain by iteration. A step of a slide that
+    # stops later ends well before its stop; without MAX_WAY_TO_STOP a third of the plain steps of fig3-I missed the
     # tolerance, up to 300 times over (docs/decisions/0001-stretched-time.md).
     h: float = propose_plain_length(system, work, settings)
     vx, vy = work.v[0, 0], work.v[0, 1]

@@ -21,7 +21,7 @@ from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA,
 
 # "Period" below is RunSettings.period, the time in which forces change; "the loading's velocity" is the size of the
 # loading's acceleration times the period over 2 pi.
-FIRST_STEP = 1.0  # change of the direction, rad, or of ln v in the first step
+FIRST_STEP = 1.0  # estimated change of the direction, rad, and of ln v in the first step
 # Share of the loading that accelerates the platform at least in the estimate of the first step's length
 MIN_FIRST_ACCELERATION = 1e-3
 MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the last one would have met the tolerance
@@ -35,29 +35,30 @@ MIN_LEAVING_TIME = 0.05
 MAX_STOPPED_SPEED = 0.03
 # Change of an acceleration by the dampers when rest sets this speed to zero, as a share of the tolerance
 MAX_DAMPED_JUMP = 0.01
-# A stop whose arc decides a peak is followed down to this share of the loading's velocity. The arc decides nothing
-# below these shares: of the platform's peak so far, and of the squared peaks of the bodies above, which feel the arc by
-# its vertical acceleration alone.
+# Accelerations while the direction of a slide turns before its stop (the arc, contact/stop_arc.py) may govern a peak:
+# then the slide is integrated down to MIN_FOLLOWED_SPEED, a share of the loading's velocity. They govern nothing below
+# DECISIVE_ARC_FRACTION of the platform's peak so far, nor below DECISIVE_RISE_FRACTION of the squared peak of a body
+# above, which the arc reaches by its vertical acceleration alone.
 MIN_FOLLOWED_SPEED = 1e-10
 DECISIVE_ARC_FRACTION = 0.97
 DECISIVE_RISE_FRACTION = 0.999
-# Share of a squared peak: a smaller rise that the arc adds to the end of the last step does not count
+# Share of a squared peak: a smaller rise of the squared acceleration along the arc does not count
 NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
 EARLY_CROSSING = 1e-9  # share of a step: an earlier crossing means that the phase begins at v_reg
 # Time left to the stop in which forces count as constant, over the period and the root of the tolerance
 MAX_FROZEN_TIME = 0.01
-# Share of the rise of friction with the speed: a smaller change down to rest counts as none
+# Share of the rise of friction from rest to high speed: a smaller change until rest counts as none
 NEGLIGIBLE_FRICTION_RISE = 1e-12
 # Duration of a slide at almost constant speed, as a multiple of the time within which a slide counts as stopping
 MIN_STEADY_TIMES = 2.0
 MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction: with a smaller one a slide turns back on its own line
-# Share of the loading's velocity: a slower straight slide that friction cannot hold is at its turning point
+# Share of the loading's velocity: a slower straight slide that friction cannot hold reverses
 MAX_TURNING_POINT_SPEED = 1e-12
 NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of the angle ends Newton's method
 # Bounds on the change of ln v in one step. Time and position are integrals of v and v^2 over tau: where forces stay
-# constant no acceleration shows their error. With these bounds it stays below 1e-8 of what is left of the slide at the
-# start of the step.
+# constant, the accelerations do not show the error of these integrals. With the bounds this error stays below 1e-8 of
+# the time and the distance to the stop at the start of the step.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
 LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of that bound per unit by which ln v has fallen since
 
@@ -112,9 +113,9 @@ def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSe
 def commit_stopping_step(system: System, work: Workspace, settings: RunSettings, h: float, factor: float) -> int:
     """Commit time, direction and speed of a step near a stop; return the next state of the contact."""
     # In stretched time a slide never reaches its stop: ln v falls without end. Three things end the phase. The platform
-    # counts as stopped (`contact_after_stop`). It gathers speed again, having passed its slowest point: then plain time
-    # resolves it once v / v' is a good part of a plain step. Or friction that rises with the speed balances the drive,
-    # so that the slide goes on at almost constant speed.
+    # counts as stopped (`contact_after_stop`). Or it gathers speed again behind its slowest point: then plain time
+    # resolves the slide once v / v' is a good part of a plain step. Or friction that rises with the speed balances the
+    # drive, so that the slide goes on at almost constant speed.
     last = STAGES - 1
     work.time, work.angle = work.turning[CLOCK, last], work.turning[DIRECTION, last]
     work.log_speed, work.log_ratio = work.turning[SIGMA, last], log(work.turning[RATIO, last])
@@ -139,17 +140,21 @@ def commit_stopping_step(system: System, work: Workspace, settings: RunSettings,
 
 
 @compiled
-def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: bool) -> bool:
-    """Raise the peaks to those on the rest of the arc; return False if the arc decides and may still be `followed`."""
+def update_peaks_by_arc(system: System, work: Workspace, load: Load, can_integrate_closer: bool) -> bool:
+    """
+    Raise the peaks to those reached while the sliding direction still turns before the stop.
+
+    Return False if these govern and the stop can still be integrated more closely (`can_integrate_closer`).
+    """
     # The direction still turns while the speed goes to zero, so every direction between the present one and the one in
     # which it settles belongs to the motion (contact/stop_arc.py; docs/theory.md, supremum). The arc is computed with
-    # the forces of this instant. Where it decides a peak, the stop is followed down to MIN_FOLLOWED_SPEED first, so
-    # that the forces hardly change in what is left. The bodies above share the vertical acceleration of the platform;
-    # their horizontal ones stay.
+    # the forces of this instant. Where a peak on the arc governs, the slide is first integrated down to
+    # MIN_FOLLOWED_SPEED, so that the forces hardly change in the time left. The bodies above have the vertical
+    # acceleration of the platform; their horizontal accelerations stay those before the stop.
     bodies, total, best = work.x.shape[0], work.total0, work.best
     end = direction_at_stop(system, load, work.angle, MAX_ROUNDING_TURN)
     arc = arc_peak(system, load, work.angle, end, SETTLED_FRACTION**2 * best[0], 1.0)
-    if followed and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
+    if can_integrate_closer and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
         return False
     update_peak_by_limit(work, PLATFORM, arc)
     if bodies == 1 or system.small:
@@ -158,7 +163,7 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: b
     for i in range(1, bodies):
         squared = total[i, 0] ** 2 + total[i, 1] ** 2
         rises = vertical - total[i, 2] ** 2 > NEGLIGIBLE_RISE * best[i]
-        if followed and rises and squared + vertical > DECISIVE_RISE_FRACTION * best[i]:
+        if can_integrate_closer and rises and squared + vertical > DECISIVE_RISE_FRACTION * best[i]:
             return False
         update_peak_by_limit(work, i, squared + vertical)
     return True
@@ -167,11 +172,12 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: b
 @compiled
 def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -> int:
     """Return REST or SLIDING at a stop, STOPPING before it; set work.early_rest to the time left of the slide."""
-    # A platform that friction can hold (excess <= 0) has stopped when the rest of the slide changes nothing: its speed
-    # and the time left are small (both bounds go with the root of the tolerance, since the way left is quadratic in
-    # them), dampers feel no jump, friction is that of rest, and the arc is known. Under a cutoff the arc does not
-    # count; the stop is followed to below v_c. A platform that friction cannot hold turns back if it goes straight
-    # against the drive. Otherwise its direction turns past the stop, and the slide goes on.
+    # A platform that friction can hold (excess <= 0) has stopped when the remaining slide changes nothing: its speed
+    # and the time left are small (both bounds go with the root of the tolerance, since the distance to the stop is
+    # quadratic in speed and time), the dampers feel no jump, friction is that of rest, and the peaks on the arc are
+    # known. Under a cutoff the arc does not count; the slide is integrated to below v_c. A platform that friction
+    # cannot hold turns back if it goes straight against the drive. Otherwise its direction turns past the stop, and the
+    # slide goes on.
     unit = settings.unit * settings.period / (2.0 * pi)
     speed = exp(work.log_speed)
     if speed > MAX_STOPPED_SPEED * sqrt(settings.tolerance) * unit:
@@ -184,8 +190,8 @@ def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -
     if excess > 0.0:
         straight = abs(across) <= MAX_STRAIGHT_TURN * kinetic_coefficient(system) * reaction
         if system.rate > 0.0:
-            # Friction that grows with the speed: the sign of the acceleration at speed 0 decides. A slide along the
-            # drive slows down by friction and does not turn round.
+            # Where friction grows with the speed, a negative acceleration along the slide at speed 0 means a reversal.
+            # A slide along the drive slows down by friction and does not reverse.
             ex, ey = slip_direction_cosines(work.angle, system.axes)
             ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
             along = ax * ex + ay * ey

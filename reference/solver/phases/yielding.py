@@ -31,13 +31,13 @@ from reference.solver.system import OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, L
 from reference.solver.work import (
     ALONG_FORCE,
     ARGUMENTS,
-    BOUND,
     DETERMINANT,
     DRIVE,
     DRIVE_ARGUMENT,
     EXCESS,
     FORCE,
     FORCE_RATE,
+    FRICTION_LIMIT,
     MOTION,
     POSITION,
     REACTION,
@@ -55,7 +55,7 @@ MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of
 
 @compiled
 def begin_yielding(system: System, work: Workspace, contact: int, slid: bool) -> None:
-    """Set the accelerations at the start of a phase; after plastic slip first scale the friction force to its bound."""
+    """Set the accelerations at the start of a phase; after plastic slip first scale the friction force to its limit."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -124,7 +124,7 @@ def set_motion(system: System, work: Workspace, contact: int) -> None:
     put(shear, FORCE_RATE + 1, rate_y)
     put(shear, EXCESS, (size / limit) * (size / limit) - 1.0)  # the square is smooth where the force passes zero
     put(shear, ALONG_FORCE, along)
-    put(shear, BOUND, limit)
+    put(shear, FRICTION_LIMIT, limit)
 
 
 @compiled
@@ -160,13 +160,13 @@ def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
     for k in range(4):
         put(slopes, (8, k), row(shear, MOTION + k))
     speed = abs(row(shear, ARGUMENTS + 2)) + abs(row(shear, ARGUMENTS + 3)) + MIN_SPEED / DIFFERENCE_STEP
-    bound = row(shear, BOUND)
+    limit = row(shear, FRICTION_LIMIT)
     for n in range(8):
         size = broadcast_like(min(system.radius, 1.0) if n < 2 else system.gravity, speed)
         if n == 2 or n == 3:
             size = speed
         elif n > 5:
-            size = bound
+            size = limit
         step, kept = DIFFERENCE_STEP * size, row(shear, ARGUMENTS + n)
         put(shear, ARGUMENTS + n, kept + step)
         set_motion(system, work, contact)
@@ -220,12 +220,12 @@ def correct_unknowns(work: Workspace) -> float:
 @compiled
 def expand_event(system: System, work: Workspace, contact: int, h: float) -> float:
     """Set powers[0] to a polynomial that is positive past the event that ends the phase; return its first stage."""
-    # Elastic friction yields where its force reaches the bound. Plastic friction unloads where the rate of slip,
-    # the velocity along the force less the rate of the bound over k, passes zero.
+    # Elastic friction yields where its force reaches the friction limit. Plastic friction unloads where the rate of
+    # slip, the velocity along the force less the rate of the limit over k, passes zero.
     shear = work.shear
     values = row(shear, EXCESS)
     if contact == PLASTIC:
-        set_coefficients(row(shear, BOUND), work.powers[1])
+        set_coefficients(row(shear, FRICTION_LIMIT), work.powers[1])
         theta = row(NODES_ROW, ())
         growth = broadcast_like(0.0, theta)
         for k in range(STAGES - 1, 0, -1):
@@ -258,7 +258,7 @@ def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> f
     for k in range(1, STAGES):
         slope += k * work.powers[0, k]
     end = evaluate_polynomial(work.powers[0], 1.0)
-    if not slope > 0.0:  # such as behind a kink of the bound, where the value jumps
+    if not slope > 0.0:  # such as behind a kink of the friction limit, where the value jumps
         return 0.0 if end > 0.0 else NOT_IN_STEP
     return min(max(-end / slope, -MAX_SHIFT), MAX_SHIFT)
 

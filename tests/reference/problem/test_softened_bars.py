@@ -11,7 +11,7 @@ from elastic_chain import beam_column
 import multibody
 import reference
 from reference.problem import GRAVITY, Scene, SceneError, load_scene
-from reference.problem.beam_column import buckling_load, load_factors
+from reference.problem.beam_column import buckling_load, stability_functions
 from reference.problem.reductions import is_planar, turn_loading_to_x
 
 PHASES = [(0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (1.0, 3.0)]
@@ -42,12 +42,12 @@ def test_bars_have_the_stiffness_of_beam_columns(masses: list[float], bars: dict
 
 def test_factors_have_their_closed_forms_and_their_slope() -> None:
     for q in (1e-3, 0.3, 1.0, 2.0, 2.46):
-        x, factors, step = math.sqrt(q), load_factors(q), 1e-5
+        x, factors, step = math.sqrt(q), stability_functions(q), 1e-5
         assert factors.sway == pytest.approx(q / (3.0 * (math.tan(x) / x - 1.0)), rel=1e-10)
         assert factors.bending == pytest.approx(x / math.tan(x), rel=1e-10)
-        slope = (load_factors(q + step).sway - load_factors(q - step).sway) / (2.0 * step)
+        slope = (stability_functions(q + step).sway - stability_functions(q - step).sway) / (2.0 * step)
         assert factors.sway_slope == pytest.approx(slope, rel=1e-8)
-    buckled = load_factors(buckling_load(1.0, 1.0) / 4.0)
+    buckled = stability_functions(buckling_load(1.0, 1.0) / 4.0)
     assert (buckled.sway, buckled.bending) == pytest.approx((0.0, 0.0), abs=1e-15)
 
 
