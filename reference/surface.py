@@ -47,7 +47,7 @@ OUTCOMES = {
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
 STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and BASE_STEPS more
-STEPS_PER_KNOT = 10  # further steps per knot of a record
+STEP_LIMIT_PER_KNOT = 10  # steps added to the step limit of a run for each knot of a record
 # Further steps per period of the chain's fastest vibration, and the largest number that these add
 STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
 # Periods of the chain's fastest vibration in which forces hardly change, so that stiff links follow without vibrating
@@ -249,7 +249,7 @@ def prepare_run(
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack_scene(scene, equations == "small", regularization, rest_condition == "printed", axes)
-    period, knots = loading_period(scene), STEPS_PER_KNOT * len(scene.record)
+    period, knots = loading_period(scene), STEP_LIMIT_PER_KNOT * len(scene.record)
     vibrations = min(STEPS_PER_VIBRATION * scene.duration * system.fastest / (2.0 * np.pi), MAX_VIBRATION_STEPS)
     with np.errstate(over="ignore"):  # loads_are_finite refuses infinite loads
         unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))

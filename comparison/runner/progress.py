@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 LINE_INTERVAL = 15.0  # s between two plain lines
-ROUGH_COST_SHARE = 0.1  # share of the work by which the rough costs weigh against the measured time of work done
+ROUGH_COST_SHARE = 0.1  # weight of the costs estimated beforehand in the time left, as a share of all work
 PLAIN_WIDTH = 120  # columns of a table that is written to a file or a pipe
 EXIT_SECONDS = 0.3  # s that the process takes to end after the deadline
 MIN_TIMER = 1e-3  # s, shortest timer: setitimer(0) would switch it off
@@ -97,7 +97,7 @@ class TimeUpError(BaseException):
 
 
 class Deadline:
-    """Context that raises TimeUpError in its block `seconds`, if not None, after `begin`, by `time.monotonic()`."""
+    """Context that stops its block by TimeUpError shortly before `begin + seconds` (`time.monotonic()`), or never."""
 
     def __init__(self, begin: float, seconds: float | None) -> None:
         self._end = None if seconds is None else begin + seconds - EXIT_SECONDS

@@ -91,7 +91,7 @@ class Model:
     One model of the hierarchy. `adds`: the sentence the report prints. `settings`: arguments of its functions.
     `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
     `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
-    whether mirrored phases (symmetry.py) are known to give mirrored motions of the scene and are not computed again.
+    whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they are not computed again.
     `refusal`: the function that tells from the scene alone
     why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
     "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no

@@ -50,16 +50,16 @@ def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, 
     shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
     for share in sorted(set(shares) - {1.0}, reverse=True):
         concerned = [model for model, own in zip(models, shares) if own == share]
-        yield f"mirrored phases, all but 1/{share:.3g}", _titles_of_models(concerned, models), _word_mirror(scene)
+        yield f"mirrored phases, all but 1/{share:.3g}", _name_models(concerned, models), _word_mirror(scene)
     if has_no_friction_law(scene):
         others = [model for model in study.hierarchy if model not in models]
         laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
         if laws:
-            yield "laws of friction", _titles_of_models(laws, study.hierarchy), has_no_friction_law(scene).reason
+            yield "laws of friction", _name_models(laws, study.hierarchy), has_no_friction_law(scene).reason
     for what, decided, setting, values in SKIPPED_COMPUTATIONS:
         concerned = [model for model in models if model.settings.get(setting) in values]
         if concerned and (reduction := decided(scene)):
-            yield what, _titles_of_models(concerned, models), reduction.reason
+            yield what, _name_models(concerned, models), reduction.reason
 
 
 def _word_mirror(scene: Scene) -> str:
@@ -69,6 +69,6 @@ def _word_mirror(scene: Scene) -> str:
     return (has_one_axis_per_harmonic(scene) or has_half_turn_symmetry(scene)).reason
 
 
-def _titles_of_models(concerned: Sequence[Model], models: Sequence[Model]) -> str:
-    """Return the concerned models in words."""
+def _name_models(concerned: Sequence[Model], models: Sequence[Model]) -> str:
+    """Return the keys of the concerned models, or "all models" if they are all of `models`."""
     return "all models" if len(concerned) == len(models) else ", ".join(model.key for model in concerned)

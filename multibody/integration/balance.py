@@ -108,7 +108,7 @@ class _EquilibriumSolver:
         return self._solve_balance(self.start.coordinates, null_space(held.T), held, closed, 0.0)
 
     def solve_under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
-        """Solve for the coordinates (n,) at which the loading deforms the stiff links and the closed contacts (K,)."""
+        """Solve for the coordinates (n,) at which stiff links and closed contacts (K,) balance the loading at rest."""
         mass = self._compute_mass_matrix(equilibrium)
         stiff = self.kinematics.stiff_deformation_rates(equilibrium, np.ones_like(closed))
         spheres = self._size - stiff.shape[1]

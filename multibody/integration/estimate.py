@@ -45,7 +45,7 @@ FORCE_NOISE_RATIO_OF_TURNING = 0.2
 # 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
-# Safety factor on the change of peaks by springs of real bearings, if it is known from a coarser level only.
+# Factor on the change of peaks by springs of bearings where that change was measured at a coarser level only
 SAFETY_OF_BEARINGS = 2.0
 
 # Time from the start, over the square root of the penetration, within which stiff links oscillate (measured: peaks at

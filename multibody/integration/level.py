@@ -181,7 +181,7 @@ class Level:
 
     @property
     def precedes_level_0(self) -> bool:
-        """True if the level comes before level 0, as a record at a loose tolerance has one."""
+        """True for the coarser level with which a record at a loose tolerance begins, before level 0."""
         return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:
@@ -293,7 +293,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return the penetrations of the softest and the stiffest contact; slowest: its largest response time."""
+    """Return the penetrations of the softest and the stiffest contact that respond within the time `slowest`, s."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not follow a force before the end. A stiffer contact than the stiffest would have a rounding error of its force,
     # a position over the penetration, above a share of the tolerance. Under a weak loading that error is compared with

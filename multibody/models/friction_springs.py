@@ -104,7 +104,7 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
     def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
-        """Return the largest change (T,) in each step: of elastic displacement over yield, or velocity over slip."""
+        """Return for each step (T,) the larger change: of elastic over yield displacement, or of velocity over slip."""
         turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
         slip = np.maximum(motion.slip[1:], end)[:, self._mark_sliding(state)].min(axis=1, initial=math.inf)
         turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip

@@ -155,7 +155,7 @@ class Acceptance(Limits):
 
     @property
     def allowed_failures(self) -> int | None:
-        """Number of points that may stay without an answer: 0 with other limits alone, None without any limit."""
+        """Stated number of points that may lack an answer; if none is stated, 0 beside other limits and else None."""
         return (
             0 if self.failed is None and (self.list_limited_differences() or self.closure is not None) else self.failed
         )

@@ -166,8 +166,8 @@ def describe_samples(
 def _list_warnings(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
     """Return warnings about values of one direction that are hardly intended."""
     warnings = []
-    # Velocity less its chord is what remains without the mean. Noise, a walk from rest, ends about as far
-    # from zero as it strays from the chord; with a zero line left in it ends far beyond: its velocity grows with time.
+    # A zero line left in lets the velocity grow with time: its end then exceeds by far how much it departs from the
+    # straight line between its ends. Under noise both are about equal.
     strayed = float(np.abs(velocity - velocity[-1] * time / time[-1]).max())
     drifts = abs(one.final_velocity) > MAX_FINAL_VELOCITY_SHARE * strayed
     if drifts and len(values) >= MIN_SAMPLES and detrend is None:

@@ -49,7 +49,7 @@ LARGE_FRACTION = 0.85
 MIN_DISTANCE_TO_SINGULARITY = 0.1
 MAX_SLOW_STEPS = 2.0  # a slide is near its stop if friction would stop it in fewer steps
 DIRECTION_MARGIN = 0.35  # rad, uncertainty of the direction of a slide near its stop
-MIN_SURE_DRIVE = 0.5  # share of the friction limit: the direction of a smaller drive changes too much until the stop
+MIN_SURE_DRIVE = 0.5  # share of the friction limit; a smaller drive may point anywhere at the stop
 MAX_HELD_DRIVE = 0.8  # share of the squared friction limit: a larger drive may move a platform at rest
 LOOK_AHEAD_DELAY = 0.25  # time from the last large value until the run looks ahead, over RunSettings.period
 

@@ -185,7 +185,7 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return the curves of every body for one question, with the literal supremum for set-valued friction."""
+    """Return mu of every body over v_c or v_reg; with set-valued friction also its literal supremum, at speed 0."""
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)

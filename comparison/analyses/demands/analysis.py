@@ -132,7 +132,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
 
 def _models_with_own_motions(study: Study, scene: Scene) -> list[Model]:
-    """Return the models that move differently: a second reading of (5.1) needs no motion of its own."""
+    """Return the models whose motions are computed: those that share the motion of another one are left out."""
     models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
     return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 

@@ -160,7 +160,7 @@ class MatrixCell:
 
 
 def list_cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COLUMNS) -> list[MatrixCell]:
-    """Return a cell for every model that each extreme concerns; the engine's numerics concern no user's engine."""
+    """Return the cells to compute; engines of users skip extremes that test the numerics of the built-in engine."""
     pairs = [(row, column) for row in rows for column in columns if (column.like or column.key) in row.columns]
     return [MatrixCell(row, column) for row, column in pairs if not (column.like and row.amplification)]
 

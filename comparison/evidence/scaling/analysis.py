@@ -100,7 +100,7 @@ def _name_peak(scene: Scene, supremum: bool) -> str:
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
-    """Analysis of the trends of every scene and body, for the supremum and, if it differs, the resolved peak."""
+    """Analysis of how the effect of geometry on mu falls as loading and friction are scaled down, by scene and body."""
 
     key, stage, level = "scaling", "scaling test", 2
     seconds = 0.1

@@ -84,7 +84,7 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose()}")
     rows, notes = _read_rows(lines, skip, propose)
     values = _column_values(rows, column, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])), propose)
-    _check_count(lines[:skip], len(values))
+    _check_stated_count(lines[:skip], len(values))
     seen = _even_step([row for _, row in rows]) if column is not None and column > 1 else None
     if seen is not None and abs(seen - spacing) > MAX_STEP_VARIATION * spacing:
         notes.append(f"the first column rises by {seen:g}, and the scene says step = {spacing:g} s: one is wrong")
@@ -242,8 +242,8 @@ def _check_widths(
             raise RecordError(f"line {number}: {rule}: {propose()}")
 
 
-def _check_count(header: Sequence[str], count: int) -> None:
-    """Raise RecordError if a skipped line 'count step' states another number of values."""
+def _check_stated_count(header: Sequence[str], count: int) -> None:
+    """Raise RecordError if a header line of count and step states another number of values than `count`."""
     for number, line in enumerate(header, 1):
         stated = COUNT_AND_STEP.fullmatch(line[:MAX_LINE])
         if stated and int(stated[1][:9]) != count:

@@ -26,10 +26,9 @@ FIRST_STEP = 1.0  # estimated change of the direction, rad, and of ln v in the f
 MIN_FIRST_ACCELERATION = 1e-3
 MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the last one would have met the tolerance
 MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the chain's fastest vibration in one step
-# A slide that gathers speed leaves stretched time where its speed over its acceleration exceeds this share of the
-# length of a plain step, and this share of the period.
-LEAVING_TIME_FRACTION = 0.3
-MIN_LEAVING_TIME = 0.05
+# A slide that gathers speed returns from stretched to plain time where speed over acceleration exceeds both of these.
+LEAVING_TIME_FRACTION = 0.3  # share of the length of a plain step
+MIN_LEAVING_TIME = 0.05  # share of the period of the run
 # Speed below which a platform that friction can hold may count as stopped, over the loading's velocity and the root of
 # the tolerance
 MAX_STOPPED_SPEED = 0.03
