@@ -357,4 +357,10 @@ MISTAKES = (
             (SEEN + "the_terminal_ends_with_the_verdict_of_the_engine_and_calls_the_first_provisional",)),
     Mistake(SENTENCES, '[bound, amount]', '[bound]', "The first sentence does not say by how much a limit is not met.",
             (SEEN + "the_report_has_the_verdict_on_every_limit",)),
+    Mistake(SENTENCES, 'any(one.axis == "z" for one in each.components)', 'bool(each.components)',
+            "Every motion is said to have a vertical component.",
+            (REPORT + "how_many_motions_have_a_vertical_component_is_said_where_it_is_known",)),
+    Mistake(HAND_CHECKS, 'name, top, EXACT.key) for', 'name, top - 1, EXACT.key) for',
+            "The drift by hand is that of a story below the top.",
+            (REPORT + "checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong",)),
 )

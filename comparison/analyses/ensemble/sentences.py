@@ -61,6 +61,7 @@ DEFINITIONS = (
 )
 
 
+VERTICAL_MOTION = "Vertical ground motion, except where the record has z."
 NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with the same words.
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
@@ -69,10 +70,19 @@ NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with
     "Unequal dead loads of the supports other than those that follow from the places of supports and centers of mass.",
     "Bearings of different kind, radius or friction under one platform.",
     "Accidental eccentricity: state it by `offset` at the bodies, in a file for each sign.",
-    "Vertical ground motion, except where the record has z.",
+    VERTICAL_MOTION,
     "A damper beside the bearings: `lubrication` in place of `friction` is a viscous one.",
     "Scaling by RotD100 as codes ask for it: `--target` fits the geometric mean of x and y.",
 )
+
+
+def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
+    """Return what is not modeled, with the number of motions that have a vertical component where it is known."""
+    if not ensemble.suite or not all(each.components for each in ensemble.suite):
+        return list(NOT_MODELED)
+    count = sum(any(one.axis == "z" for one in each.components) for each in ensemble.suite)
+    known = f"{VERTICAL_MOTION[:-1]}: {count or 'none'} of {word_motion_count(len(ensemble.suite))} here."
+    return [known if line == VERTICAL_MOTION else line for line in NOT_MODELED]
 
 
 def word_heading(ensemble: EnsembleResult) -> str:
