@@ -562,8 +562,8 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     drift = checks["lower bound", "largest drift below roof"]
     shear, drifted = (1e3 * max(float(row[name]) for row in own) for name in ("story_shear_3 [N]", "drift_3 [m]"))
     stories = [rows.make_profile_rows(found, name, 1.0) for name in ("story_shear", "drift")]
-    shown = [next(row.cells[-1].partition(" ±")[0] for row in each if (row.bound, row.name) == ("lower bound", "below roof"))
-             for each in stories]  # fmt: skip
+    roofs = (next(row for row in each if (row.bound, row.name) == ("lower bound", "below roof")) for each in stories)
+    shown = [row.cells[-1].partition(" ±")[0] for row in roofs]
     assert (f"V = {shown[0]} kN", f"{shown[1]} mm") == (drift.formula.split(", ")[1], drift.in_report), "in the tables"
     assert (drift.low, drift.high) == pytest.approx((shear / 25e6, shear / 20e6), rel=1e-4), "x and y"
     assert drift.found == pytest.approx(drifted, rel=1e-4)
