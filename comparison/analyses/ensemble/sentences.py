@@ -146,7 +146,7 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
     what = "limits" if all(each.key.startswith("acceptance.") for each in ensemble.limits) else "demands"
     said = f"{counts[MET]} of {len(ensemble.limits)} {what} met, {counts[NOT_COMPARED]} not compared"
     broken, open_ones = (_list_limits(ensemble, verdict) for verdict in (NOT_MET, NOT_COMPARED))
-    lacking = f"; not compared: {open_ones}" if open_ones else ""
+    lacking = f". Not compared: {open_ones}" if open_ones else ""
     before = "Provisional, before the engine: " if ensemble.engine.pending else ""
     return f"{before}{said}, {counts[NOT_MET]} not met{': ' * bool(broken)}{broken}{lacking}."
 

@@ -252,7 +252,7 @@ def test_the_terminal_ends_with_the_verdict_of_the_engine_and_calls_the_first_pr
         for each, motions, pending in ((before, [], 1), (after, moved, 0))
     )  # fmt: skip
     print_equations(make_wide_console(), before)
-    first = "0 of 1 limits met, 1 not compared, 0 not met; not compared: largest uplift of a support."
+    first = "0 of 1 limits met, 1 not compared, 0 not met. Not compared: largest uplift of a support."
     assert f"Provisional, before the engine: {first}" in capsys.readouterr().out
     print_engine(make_wide_console(), after)
     assert capsys.readouterr().out.splitlines()[-1] == "1 of 1 limits met, 0 not compared, 0 not met."
@@ -380,8 +380,8 @@ def test_the_report_has_the_verdict_on_every_limit() -> None:
     two = ensemble_of(MOVED, bounds=("lower bound", "upper bound"))
     stated = {each.name: DemandLimits(displacement=0.4, uplift=0.0) for each in two.structures}
     assert limits_sentence(replace(two, limits=list_verdicts(check_limits(two, stated)))).endswith(
-        ": largest displacement of the isolator (lower bound by +25 %, upper bound by +25 %); "
-        "not compared: largest uplift of a support (lower bound, upper bound)."
+        ": largest displacement of the isolator (lower bound by +25 %, upper bound by +25 %). "
+        "Not compared: largest uplift of a support (lower bound, upper bound)."
     )
     least = with_travel(0.45, 0.30, None, 0.43)
     (row,) = make_limit_rows(list_verdicts(check_limits(least, {"job[upper bound]": DemandLimits(displacement=0.4)})))
