@@ -371,8 +371,8 @@ def test_the_report_has_the_verdict_on_every_limit() -> None:
     for row in make_limit_rows(judged.limits):
         assert all(f">{escape(cell)}</td>" in page for cell in row), row
     said = (
-        "1 of 3 limits met, 1 not compared, 1 not met: largest displacement of the isolator (by +25 %); "
-        "not compared: largest uplift of a support."
+        "1 of 3 limits met, 1 not compared, 1 not met: largest displacement of the isolator (by +25 %). "
+        "Not compared: largest uplift of a support."
     )
     assert answer_sentence(judged).startswith(f"{said} Isolator displacement")
     assert f"<p>{said}</p>" in page
