@@ -128,7 +128,7 @@ def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: st
     found: dict[str, list[str]] = {}
     for quantity in own:
         found.setdefault(worst[quantity], []).append(GOVERNING[quantity])
-    return {motion: " and ".join(reasons) for motion, reasons in found.items()}
+    return {motion: " and the ".join(reasons) for motion, reasons in found.items()}
 
 
 def _sign_of_worst(quantity: str) -> float:

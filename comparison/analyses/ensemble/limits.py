@@ -268,8 +268,9 @@ def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, k
     if ended := [motion for motion, number in moved.items() if number.value is None]:
         return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
     governing = list_governing_motions(ensemble, structure.name, key)
-    if lacking := [f"the {why} is that of {motion}" for motion, why in governing.items() if motion not in computed]:
-        return f"by the equations {', '.join(lacking)}, which the engine did not compute: run without --engine"
+    if lacking := [f"{motion} has the {why}" for motion, why in governing.items() if motion not in computed]:
+        it = "it" if len(lacking) == 1 else "them"
+        return f"by the equations {', '.join(lacking)}, and the engine did not compute {it}: run without --engine"
     return ""
 
 

@@ -207,11 +207,11 @@ def test_the_engine_says_nothing_of_motions_that_govern_and_that_it_has_not_comp
     governed: Values = {**MOVED, ("drift", 2): (0.1, 0.2, 0.1), ("drift", 3): (0.1, 0.2, 0.9)}
     (line,) = said_of(ensemble_of(governed, flat), uplift=0.0)
     assert "in the 2 of 3 motions that the spatial engine computed: " in line, "not called governing"
-    reason = "Northridge, which the engine did not compute: run without --engine"
-    assert line.endswith(f"not compared (by the equations the largest drift is that of {reason})")
+    end = "and the engine did not compute it: run without --engine)"
+    assert line.endswith(f"not compared (by the equations Northridge has the largest drift, {end}")
     forces: Values = {("support_force_max", None): (3e5, 9e5, 5e5), ("support_force_min", None): (2e5, 3e5, 1e5)}
     (line,) = said_of(ensemble_of({**governed, **forces}, flat), uplift=0.0)
-    assert line.endswith(f"not compared (by the equations the smallest support force is that of {reason})")
+    assert line.endswith(f"not compared (by the equations Northridge has the smallest support force, {end}")
     carried: Values = {**governed, **forces, ("support_force_min", None): (0.0, 3e5, 1e5)}
     (line,) = said_of(ensemble_of(carried, flat), uplift=0.0)
     assert line.endswith("allowed 0 mm: met"), "the largest drift says nothing of an uplift"
