@@ -19,11 +19,17 @@ if TYPE_CHECKING:
     from comparison.analyses.ensemble.result import EnsembleResult
 
 ALL_MOTIONS = "all"  # word of an option that selects every motion for the engine
-GOVERNING = {  # demands whose largest value chooses a motion (over bodies, if they have it), and the reason in words
+SMALLEST_FORCE = "support_force_min"  # the demand whose smallest value is the worst
+GOVERNING = {  # demands whose worst value chooses a motion (over bodies, if they have it), and the reason in words
     "displacement": "largest displacement",
     "base_shear": "largest base shear",
     "drift": "largest drift",
     "support_force_max": "largest support force",
+    SMALLEST_FORCE: "smallest support force",
+}
+GOVERNING_OF_LIMITS = {  # demands of GOVERNING that govern a demand that the engine alone has, where they are known
+    "uplift": ("support_force_max", SMALLEST_FORCE),
+    "support_displacement": ("displacement",),
 }
 MEDIAN_REASON = "nearest the median displacement"
 ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"
@@ -68,8 +74,8 @@ def bound_motion_count(asked: EngineRequest, scene: Scene, motions: int) -> int:
     """Return the most motions of a structure that the engine may compute: every demand may choose another one."""
     if asked is not None:
         return estimate_engine_motion_count(asked, motions)
-    # A single body has no drift, a scene without supports no support forces
-    absent = (len(scene.bodies) == 1) + (scene.support_places is None)
+    # A single body has no drift, a scene without supports neither of the support forces
+    absent = (len(scene.bodies) == 1) + 2 * (scene.support_places is None)
     return min(len(GOVERNING) + 1 - absent, motions)
 
 
@@ -106,22 +112,30 @@ def _find_governing(points: Sequence[MotionDemandsAtScale]) -> Iterator[tuple[in
         yield int(np.argmin(np.abs(moved - np.median(known)))), MEDIAN_REASON
 
 
-def list_governing_motions(ensemble: EnsembleResult, structure: str) -> list[str]:
-    """Return the motions of a structure that govern by the equations at the largest scale, each once."""
-    found: dict[str, None] = {}
+def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: str) -> dict[str, str]:
+    """Return the motions that govern a limited demand by the equations at the largest scale, each with its reasons."""
+    worst: dict[str, str] = {}
     for quantity in GOVERNING:
         values = [
-            (number.value, motion)
+            (_sign_of_worst(quantity) * number.value, motion)
             for numbers in ensemble.values_by_body(structure, quantity, EXACT.key, ensemble.largest_scale).values()
             for motion, number in numbers.items()
             if number.value is not None
         ]
         if values:
-            found[max(values)[1]] = None
-    return list(found)
+            worst[quantity] = max(values)[1]
+    own = [quantity for quantity in GOVERNING_OF_LIMITS.get(limited, ()) if quantity in worst] or list(worst)
+    found: dict[str, list[str]] = {}
+    for quantity in own:
+        found.setdefault(worst[quantity], []).append(GOVERNING[quantity])
+    return {motion: " and the ".join(reasons) for motion, reasons in found.items()}
+
+
+def _sign_of_worst(quantity: str) -> float:
+    return -1.0 if quantity == SMALLEST_FORCE else 1.0
 
 
 def _largest_demand(point: MotionDemandsAtScale, quantity: str) -> float:
-    """Return the demand of a motion, the largest over the bodies if they have it; minus infinity without a value."""
-    values = [number.value for (name, _), number in point.values.items() if name == quantity]
+    """Return the demand of a motion, the largest over the bodies, a smallest one negative; minus infinity without."""
+    values = [_sign_of_worst(quantity) * number.value for (name, _), number in point.values.items() if name == quantity]
     return max((value for value in values if math.isfinite(value)), default=-math.inf)

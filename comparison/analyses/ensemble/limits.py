@@ -189,7 +189,9 @@ def _check_body(
     per = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
     of_engine = model not in ("", EXACT.key)
     governing = of_engine and len(values) < ensemble.motions
-    lacking = _explain_missing_governing(ensemble, structure, {motion for *_, motion in known}) if governing else ""
+    lacking = (
+        _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if governing else ""
+    )
     least, least_motion = _bound_displacement_by_travel(ensemble, structure, key, statistic, values)
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
     alone = model if of_engine else ""
@@ -260,13 +262,15 @@ def _word_statistic(
     return f"{statistic} of {count}{whole}" + (f" by the {model} engine" if model else "")
 
 
-def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, computed: set[str]) -> str:
+def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, key: str, computed: set[str]) -> str:
     """Return why the engine's motions say nothing about the others; "" if all governing ones are computed."""
     moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     if ended := [motion for motion, number in moved.items() if number.value is None]:
         return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
-    if lacking := [motion for motion in list_governing_motions(ensemble, structure.name) if motion not in computed]:
-        return f"{_name_motions(lacking)} govern{'s' * (len(lacking) == 1)} by the equations: --engine all"
+    governing = list_governing_motions(ensemble, structure.name, key)
+    if lacking := [f"{motion} has the {why}" for motion, why in governing.items() if motion not in computed]:
+        it = "it" if len(lacking) == 1 else "them"
+        return f"by the equations {', '.join(lacking)}, and the engine did not compute {it}: run without --engine"
     return ""
 
 

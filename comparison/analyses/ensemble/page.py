@@ -60,7 +60,7 @@ def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
             sentences.damping_sentence(ensemble.structures[0]),
         ],
         "word_plan_sizes": sentences.word_plan_sizes,
-        "not_modeled": sentences.NOT_MODELED,
+        "not_modeled": sentences.list_not_modeled(ensemble),
     }
 
 

@@ -61,6 +61,7 @@ DEFINITIONS = (
 )
 
 
+VERTICAL_MOTION = "Vertical ground motion, except where the record has z."
 NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with the same words.
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
@@ -69,10 +70,19 @@ NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with
     "Unequal dead loads of the supports other than those that follow from the places of supports and centers of mass.",
     "Bearings of different kind, radius or friction under one platform.",
     "Accidental eccentricity: state it by `offset` at the bodies, in a file for each sign.",
-    "Vertical ground motion, except where the record has z.",
+    VERTICAL_MOTION,
     "A damper beside the bearings: `lubrication` in place of `friction` is a viscous one.",
     "Scaling by RotD100 as codes ask for it: `--target` fits the geometric mean of x and y.",
 )
+
+
+def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
+    """Return what is not modeled, with the number of motions that have a vertical component where it is known."""
+    if not ensemble.suite or not all(each.components for each in ensemble.suite):
+        return list(NOT_MODELED)
+    count = sum(any(one.axis == "z" for one in each.components) for each in ensemble.suite)
+    known = f"{VERTICAL_MOTION[:-1]}: {count or 'none'} of {word_motion_count(len(ensemble.suite))} here."
+    return [known if line == VERTICAL_MOTION else line for line in NOT_MODELED]
 
 
 def word_heading(ensemble: EnsembleResult) -> str:
@@ -129,20 +139,29 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
 
 
 def limits_sentence(ensemble: EnsembleResult) -> str:
-    """Return how many limits are met, which are not, and how many are not compared; "" without limits."""
+    """Return how many limits are met, which are not and by how much, and which are not compared; "" without limits."""
     if not ensemble.limits:
         return ""
     counts = count_verdicts(each.verdict for each in ensemble.limits)
-    broken: dict[str, list[str]] = {}
-    for each in ensemble.limits:
-        if each.verdict == NOT_MET:
-            broken.setdefault(each.what, []).append(each.bound)
-    several = len(ensemble.structures) > 1
-    named = [f"{what} ({', '.join(dict.fromkeys(bounds))})" if several else what for what, bounds in broken.items()]
-    more = f" and {len(named) - MAX_LISTED_MOTIONS} more" if len(named) > MAX_LISTED_MOTIONS else ""
     what = "limits" if all(each.key.startswith("acceptance.") for each in ensemble.limits) else "demands"
     said = f"{counts[MET]} of {len(ensemble.limits)} {what} met, {counts[NOT_COMPARED]} not compared"
-    return f"{said}, {counts[NOT_MET]} not met{': ' * bool(named)}{'; '.join(named[:MAX_LISTED_MOTIONS])}{more}."
+    broken, open_ones = (_list_limits(ensemble, verdict) for verdict in (NOT_MET, NOT_COMPARED))
+    lacking = f". Not compared: {open_ones}" if open_ones else ""
+    before = "Provisional, before the engine: " if ensemble.engine.pending else ""
+    return f"{before}{said}, {counts[NOT_MET]} not met{': ' * bool(broken)}{broken}{lacking}."
+
+
+def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
+    """Return the limits of a verdict, each with its bounds and by how much it is not met; "" without any."""
+    found: dict[str, list[str]] = {}
+    for each in ensemble.limits:
+        if each.verdict == verdict:
+            bound = each.bound if len(ensemble.structures) > 1 else ""
+            amount = each.words.partition("(")[2].removesuffix(")") if verdict == NOT_MET else ""
+            found.setdefault(each.what, []).append(" ".join(filter(None, [bound, amount])))
+    named = [f"{what} ({', '.join(dict.fromkeys(own))})" if any(own) else what for what, own in found.items()]
+    more = f" and {len(named) - MAX_LISTED_MOTIONS} more" if len(named) > MAX_LISTED_MOTIONS else ""
+    return "; ".join(named[:MAX_LISTED_MOTIONS]) + more
 
 
 def pending_sentence(ensemble: EnsembleResult) -> str:

@@ -15,6 +15,7 @@ from comparison.analyses.ensemble.sentences import (
     drift_warning,
     engine_sentences,
     isolator_sentence,
+    limits_sentence,
     missing_sentences,
     support_sentences,
     target_sentence,
@@ -45,6 +46,7 @@ def print_engine(console: Console, ensemble: EnsembleResult) -> None:
         "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
         "table of models": partial(_print_model_ratios, console, ensemble),
         "support forces": lambda: print_lines(console, support_sentences(ensemble)),
+        "limits": lambda: print_lines(console, [line for line in [limits_sentence(ensemble)] if line]),
     }
     for what, act in parts.items() if ensemble.engine.motions else ():
         attempt(what, act)

@@ -261,6 +261,9 @@ def test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median()
     with_supports = [replace(point, values={**point.values, ("support_force_max", 0): sure(k)})
                      for k, point in enumerate(points)]  # fmt: skip
     assert chosen(with_supports)["e"] == ("largest support force",)
+    lifted = [replace(point, values={**point.values, ("support_force_min", 0): sure(-k)})
+              for k, point in enumerate(points)]  # fmt: skip
+    assert chosen(lifted)["e"] == ("smallest support force",)
     assert list(chosen(points, 2)) == ["a", "b"]
     assert list(chosen(points, 4)) == ["a", "b", "c", "d"], "then the next largest displacement"
     assert list(chosen(points, ("b", "e"))) == ["b", "e"]
@@ -522,12 +525,12 @@ def test_the_plan_and_the_line_before_the_engine_count_the_same_seconds(folder, 
 
 def test_the_plan_says_how_many_motions_the_engine_computes_at_most() -> None:
     scene = load_scene("synthetic-pair")
-    assert bound_motion_count(None, scene, 22) == 5
+    assert bound_motion_count(None, scene, 22) == 6
     assert bound_motion_count(None, scene.with_values({"isolator.supports": None}), 22) == 4
     assert bound_motion_count(None, scene, 3) == 3
     assert [bound_motion_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
     members = [EnsembleMember(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
-    assert bound_engine_motion_count(members, None) == 10
+    assert bound_engine_motion_count(members, None) == 12
 
 
 def test_structures_are_told_apart_by_the_values_that_differ() -> None:

@@ -28,6 +28,7 @@ from comparison.analyses.ensemble.result import (
     SCHEMA,
     STORED,
     BuildingRead,
+    ChosenMotion,
     DemandAtScale,
     DemandCurve,
     DemandFractile,
@@ -37,7 +38,9 @@ from comparison.analyses.ensemble.result import (
     Structure,
     SupportExtremes,
 )
-from comparison.analyses.ensemble.sentences import answer_sentence, drift_warning, support_sentences
+from comparison.analyses.ensemble.sentences import answer_sentence, drift_warning, limits_sentence, support_sentences
+from comparison.analyses.ensemble.terminal import print_engine, print_equations
+from comparison.runner.progress import make_wide_console
 from reference.problem.acceptance import DemandLimits
 
 WEIGHT = 2e6  # N
@@ -204,7 +207,16 @@ def test_the_engine_says_nothing_of_motions_that_govern_and_that_it_has_not_comp
     governed: Values = {**MOVED, ("drift", 2): (0.1, 0.2, 0.1), ("drift", 3): (0.1, 0.2, 0.9)}
     (line,) = said_of(ensemble_of(governed, flat), uplift=0.0)
     assert "in the 2 of 3 motions that the spatial engine computed: " in line, "not called governing"
-    assert line.endswith("not compared (Northridge governs by the equations: --engine all)")
+    end = "and the engine did not compute it: run without --engine)"
+    assert line.endswith(f"not compared (by the equations Northridge has the largest drift, {end}")
+    forces: Values = {("support_force_max", None): (3e5, 9e5, 5e5), ("support_force_min", None): (2e5, 3e5, 1e5)}
+    (line,) = said_of(ensemble_of({**governed, **forces}, flat), uplift=0.0)
+    assert line.endswith(f"not compared (by the equations Northridge has the smallest support force, {end}")
+    carried: Values = {**governed, **forces, ("support_force_min", None): (0.0, 3e5, 1e5)}
+    (line,) = said_of(ensemble_of(carried, flat), uplift=0.0)
+    assert line.endswith("allowed 0 mm: met"), "the largest drift says nothing of an uplift"
+    moved: Values = {("support_displacement", None): (0.3, 0.5)}
+    assert said_of(ensemble_of({**governed, **forces}, moved), support_displacement=0.6)[0].endswith(": met")
     ended: Values = {("displacement", None): (0.30, 0.5, None)}
     (line,) = said_of(ensemble_of(ended, flat), uplift=0.0)
     assert line.endswith("(Northridge ended early by the equations, so which motions govern is not known)")
@@ -227,6 +239,23 @@ def test_a_page_before_the_engine_says_that_it_is_provisional_and_not_what_leave
     assert line.endswith("not compared (the engine’s motions are not computed yet)")
     said = "Provisional: written while the engine computes 3 motions. The page is written again with their numbers."
     assert (said in render_ensemble_page(pending), "Provisional" in render_ensemble_page(ensemble)) == (True, False)
+
+
+def test_the_terminal_ends_with_the_verdict_of_the_engine_and_calls_the_first_provisional(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    moved = [ChosenMotion("job[upper bound]", "Kobe", 1.0, ["asked for"], {})]
+    before, after = ensemble_of(MOVED), ensemble_of(MOVED, {("uplift", None): (0.0, 0.0, 0.0)})
+    before, after = (
+        replace(each, engine=replace(each.engine, motions=motions, pending=pending),
+                limits=list_verdicts(check_limits(each, {"job[upper bound]": DemandLimits(uplift=0.0)})))
+        for each, motions, pending in ((before, [], 1), (after, moved, 0))
+    )  # fmt: skip
+    print_equations(make_wide_console(), before)
+    first = "0 of 1 limits met, 1 not compared, 0 not met. Not compared: largest uplift of a support."
+    assert f"Provisional, before the engine: {first}" in capsys.readouterr().out
+    print_engine(make_wide_console(), after)
+    assert capsys.readouterr().out.splitlines()[-1] == "1 of 1 limits met, 0 not compared, 0 not met."
 
 
 def with_travel(travel: float, *moved: float | None, why: str = "travel reached") -> EnsembleResult:
@@ -341,10 +370,19 @@ def test_the_report_has_the_verdict_on_every_limit() -> None:
     assert make_limit_rows(list_verdicts(checks))[0][2:5] == ("430 mm", "450 mm", "none"), "no ratio of some motions"
     for row in make_limit_rows(judged.limits):
         assert all(f">{escape(cell)}</td>" in page for cell in row), row
-    said = "1 of 3 limits met, 1 not compared, 1 not met: largest displacement of the isolator."
+    said = (
+        "1 of 3 limits met, 1 not compared, 1 not met: largest displacement of the isolator (by +25 %). "
+        "Not compared: largest uplift of a support."
+    )
     assert answer_sentence(judged).startswith(f"{said} Isolator displacement")
     assert f"<p>{said}</p>" in page
     assert "limits met" not in answer_sentence(ensemble)
+    two = ensemble_of(MOVED, bounds=("lower bound", "upper bound"))
+    stated = {each.name: DemandLimits(displacement=0.4, uplift=0.0) for each in two.structures}
+    assert limits_sentence(replace(two, limits=list_verdicts(check_limits(two, stated)))).endswith(
+        ": largest displacement of the isolator (lower bound by +25 %, upper bound by +25 %). "
+        "Not compared: largest uplift of a support (lower bound, upper bound)."
+    )
     least = with_travel(0.45, 0.30, None, 0.43)
     (row,) = make_limit_rows(list_verdicts(check_limits(least, {"job[upper bound]": DemandLimits(displacement=0.4)})))
     assert (row[2], row[4], row[7]) == ("≥ 450 mm", "≥ 1.12", "not met (by more than +12 %)")

@@ -34,6 +34,7 @@ from comparison.analyses.ensemble.result import (
     EndedMotion,
     EngineMotions,
     EnsembleResult,
+    GroundComponent,
     GroundMotion,
     Statistic,
     Structure,
@@ -558,16 +559,19 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
     assert hand_checks.HandCheck("weight", "", 28252.8, 28252.8, 28252.8, "kN").by_hand == "28253 kN"
     own = [row for row in table(folder) if (row["bound"], row["model"]) == ("lower bound", "exact")]
-    worst = max(own, key=lambda row: float(row["base_shear [N]"]))
-    drift = checks["lower bound", f"drift below roof under {worst['motion']}"]
-    shear = 1e3 * float(worst["story_shear_3 [N]"])
-    assert (drift.low, drift.high) == pytest.approx((shear / 25e6, shear / 20e6), rel=1e-4), "one motion, x and y"
-    assert drift.found == pytest.approx(1e3 * float(worst["drift_3 [m]"]), rel=1e-4)
+    drift = checks["lower bound", "largest drift below roof"]
+    shear, drifted = (1e3 * max(float(row[name]) for row in own) for name in ("story_shear_3 [N]", "drift_3 [m]"))
+    stories = [rows.make_profile_rows(found, name, 1.0) for name in ("story_shear", "drift")]
+    roofs = (next(row for row in each if (row.bound, row.name) == ("lower bound", "below roof")) for each in stories)
+    shown = [row.cells[-1].partition(" ±")[0] for row in roofs]
+    assert (f"V = {shown[0]} kN", f"{shown[1]} mm") == (drift.formula.split(", ")[1], drift.in_report), "in the tables"
+    assert (drift.low, drift.high) == pytest.approx((shear / 25e6, shear / 20e6), rel=1e-4), "x and y"
+    assert drift.found == pytest.approx(drifted, rel=1e-4)
     damped = replace(found.structures[0].building, modal_damping=[[0.05, 0.2], [0.05, 0.3]])  # type: ignore[type-var]
     (drift,) = (
         each
         for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=damped))
-        if each.what.startswith("drift")
+        if "drift" in each.what
     )
     assert drift.low == pytest.approx(shear / 25e6 / math.hypot(1.0, 0.6), rel=1e-4)
     moved = max(own, key=lambda row: float(row["displacement [m]"]))
@@ -642,6 +646,18 @@ def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> Non
     assert len(items) == len(sentences.NOT_MODELED)
     for item, line in zip(items, sentences.NOT_MODELED):
         assert item.startswith(line), line
+
+
+def test_how_many_motions_have_a_vertical_component_is_said_where_it_is_known() -> None:
+    one, two = (
+        GroundMotion(name, 10.0, 2.0, components=[GroundComponent(axis, 2.0, 0.1) for axis in axes])
+        for name, axes in (("m1", "xy"), ("m2", "xyz"))
+    )
+    for suite, said in (([one, two], ": 1 of 2 motions here."), ([one, one], ": none of 2 motions here."),
+                        ([two, GroundMotion("m3", 10.0, 2.0)], ".")):  # fmt: skip
+        lines = sentences.list_not_modeled(replace(planted(), suite=suite))
+        assert f"Vertical ground motion, except where the record has z{said}" in lines
+        assert len(lines) == len(sentences.NOT_MODELED)
 
 
 def test_one_duration_is_no_range() -> None:
