@@ -179,13 +179,18 @@ def test_shears_drifts_and_moments_along_x_and_y_are_on_the_page_and_in_the_tabl
         stories = {"below roof": 3, "below body 2": 2} | ({} if demand == "drift" else {"isolator": 1})
         assert [row.name for row, _ in shown if row.is_first] == list(stories)
         for row, cells in shown:
-            assert all(f">{cell}<" in text for cell in cells)
+            below = [f"<br><small>{source}" if source else "" for _, source in cells]
+            assert all(f">{cell}{source}<" in text for (cell, _), source in zip(cells, below))
             heads = [f"{demand}{of}_{stories[row.name]} [{unit}]" for of in ("", "_x", "_y")]
             own = [each for each in read if (each["bound"], each["model"]) == (row.bound, "exact")]
             whole, *along = ([float(each[head]) for each in own] for head in heads)
             for place, values in enumerate(along if own else ()):
                 by_hand = [word_value(float(value), None, factor) for value in (np.mean(values), max(values))]
-                assert [cell.partition(" ")[0] for cell in cells[2 * place :][:2]] == by_hand
+                assert [cell.partition(" ")[0] for cell, _ in cells[2 * place :][:2]] == by_hand
+                largest = max(own, key=lambda each: float(each[heads[1 + place]]))
+                assert (cells[2 * place][1], cells[2 * place + 1][1]) == ("", largest["motion"])
+            if not own:
+                assert all(source.split(", ")[-1] in ("lower", "upper") for _, source in cells), "bounds of an envelope"
                 assert all(part <= (1.0 + 1e-6) * length for part, length in zip(values, whole))
 
 
@@ -812,12 +817,15 @@ def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -
     (drawn,) = (make() for make in panels.make_isolator_panels(found))
     series = {each["name"]: each for each in drawn["plot"]["series"] if each.get("legend", True)}
     assert [name for name in series if name.startswith("b")] == [
-        "b: one motion", "b: at the travel", "b: median, 16 to 84 %",
+        "b: one motion", "b: at the travel", "b: median, 16 to 84 %", "b: mean",
     ]  # fmt: skip
     dots = [each for each in drawn["plot"]["series"] if each["name"] == "b: one motion"]
     arrow, median = series["b: at the travel"], series["b: median, 16 to 84 %"]
     assert (arrow["x"], arrow["y"], dots[3]["y"]) == (dots[3]["x"], [500.0], [None])
-    assert len({arrow["marks"], median["marks"], dots[0]["marks"]}) == 3
+    assert len({arrow["marks"], median["marks"], dots[0]["marks"], series["b: mean"]["marks"]}) == 4
+    assert series["c: mean"]["y"] == [250.0]
+    assert "diamond" in panels.plots_note(found)
+    assert "diamond" not in panels.plots_note(two_bounds()), "no limit is on the mean"
     assert (series["travel"]["y"], series["limit (mean)"]["y"]) == ([500.0] * 2, [600.0] * 2)
     assert drawn["plot"]["y"]["range"][1] > 600.0
     scaled = replace(found, scales=(0.5, 1.0), curves=[
@@ -853,6 +861,22 @@ def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) ->
     expected = [found.find_demand("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
     assert median["x"] == pytest.approx([each.fractiles[1].value / GRAVITY for each in expected])  # type: ignore[union-attr, operator]
     assert [each.partition(":")[0] for each in median["titles"]] == ["deck", "body 2", "roof"]
+
+
+@pytest.mark.parametrize(("share", "name"), [(1.5, "limit (mean)"), (2.5, "limit (mean): {:.4g} g, beyond the axis")])
+def test_profiles_have_a_line_at_the_limit(found: EnsembleResult, share: float, name: str) -> None:
+    """A limit that is far off the axis is said in the legend, and the mean is drawn that it is on."""
+    largest = max(stripe.fractiles[2].value or 0.0 for stripe in found.stripes if stripe.quantity == "acceleration")
+    limits = {each.name: DemandLimits(acceleration=share * largest, statistic="mean") for each in found.structures}
+    judged = replace(found, limits=list_verdicts(check_limits(found, limits)))
+    drawn = next(each for each in (make() for make in panels.make_height_panels(judged)) if "accel" in each["title"])
+    *lines, limit = drawn["plot"]["series"]
+    assert limit["name"] == name.format(share * largest / GRAVITY)
+    assert (limit["x"], limit["y"]) == (pytest.approx([share * largest / GRAVITY] * 2), [0.5, 6.5])
+    assert (drawn["plot"]["x"]["range"][1] > limit["x"][0]) == (share < 2.0)
+    means = next(each for each in lines if each["name"] == "upper bound, mean")
+    stripes = [found.find_demand("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
+    assert means["x"] == pytest.approx([each.mean.value / GRAVITY for each in stripes if each and each.mean.value])
 
 
 def fails(*rest: Any) -> None:
