@@ -41,6 +41,7 @@ from comparison.analyses.ensemble.result import (
 )  # fmt: skip
 from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
+from comparison.runner.attempts import LostParts
 from reference.measures import Estimate
 from reference.problem import GRAVITY
 from reference.problem.acceptance import DemandLimits
@@ -478,6 +479,17 @@ def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
         rows = trust.extrapolate_ratios(replace(found, curves=kept))
         return next(shown for row, _, shown in rows if row.name == "smallest support force")
 
+    alone = replace(
+        planted(), curves=[each for each in planted().curves if each.model == "exact" or each.motion == "m4"]
+    )
+    said = trust.extrapolation_sentence(list(trust.extrapolate_ratios(alone)))
+    assert said.startswith("A ratio of fewer than 2 motions has no spread: it makes no estimate of the suite.")
+    shown = page.render_ensemble_page(alone).partition('id="extended"')[2].partition("</section>")[0]
+    assert ("makes no estimate" in shown, "<table" in shown) == (True, False)
+    several = list(trust.extrapolate_ratios(planted()))
+    assert "none" not in trust.extrapolation_sentence(several)
+    assert "none" in trust.extrapolation_sentence([(*several[0][:2], ["mm", "none"])])
+    assert "<table" in page.render_ensemble_page(planted()).partition('id="extended"')[2].partition("</section>")[0]
     one = cells((4e3, 3e3, 2e3, 1e3), (1.0, 1.0, 1.0, 5e2), ("m1", "m2", "m3"))
     assert one[1:] == ["none", "16 %: none", "smallest: none"], "one motion tells no spread"
     below = cells((4e3, 3e3, 2e3, -1e3), (4e3, 3e3, 1e3, 0.0))
@@ -647,6 +659,58 @@ def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> Non
     assert len(items) == len(sentences.NOT_MODELED)
     for item, line in zip(items, sentences.NOT_MODELED):
         assert item.startswith(line), line
+
+
+def test_the_recentering_ratio_is_defined_where_it_stands(folder: Path, found: EnsembleResult) -> None:
+    lower, upper = found.structures
+    assert lower.isolator is not None
+    assert upper.isolator is not None
+    for ratios, said in (
+        ((1.2, 0.9), " It is below 1 (upper bound): the platform may stay there."),
+        ((0.8, 0.9), " It is below 1 (lower bound, upper bound): the platform may stay there."),
+        ((1.2, 1.0), ""),
+    ):
+        stated = [replace(each, isolator=replace(each.isolator, restoring=ratio))
+                  for each, ratio in zip(found.structures, ratios)]  # fmt: skip
+        line = sentences.restoring_sentence(replace(found, structures=stated))
+        head = "The re-centering ratio is the restoring force over the friction force at that displacement."
+        assert line == head + said
+    assert sentences.restoring_sentence(found) in (folder / "out" / "index.html").read_text(encoding="utf-8")
+    assert sentences.restoring_sentence(planted()) == "", "no isolator"
+
+
+def test_the_literal_supremum_is_a_row_only_where_it_differs(folder: Path, found: EnsembleResult) -> None:
+    """A planted supremum that differs at the roof alone; then at no floor, and at every floor."""
+
+    def profile(suprema: dict[int, float]) -> tuple[list[str], str]:
+        stripes = [each for each in found.stripes if each.quantity != "acceleration_supremum"]
+        for each in found.list_demands_of_bodies("mine[lower bound]", "acceleration"):
+            larger = Statistic(suprema.get(each.body or 0, 1.0) * (each.mean.value or 0.0), each.mean.error)
+            stripes.append(replace(each, quantity="acceleration_supremum", mean=larger))
+        alone = replace(found, stripes=[s for s in stripes if s.structure == "mine[lower bound]"])
+        ((_, shown, note),) = [
+            each for each in page._height_context(alone, LostParts())["tables"] if "supremum" in each[0]
+        ]
+        return [row.name for row in shown], note
+
+    assert profile({3: 1.1})[0] == ["roof"]
+    assert profile({3: 1.1})[1].startswith("At the floors that are left out the literal supremum is the acceleration")
+    assert profile({})[0] == []
+    assert profile({})[1].startswith("At every floor the literal supremum is the acceleration as integrated")
+    assert profile({1: 1.1, 2: 1.1, 3: 1.1}) == (["roof", "body 2", "deck"], "")
+
+
+def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: EnsembleResult) -> None:
+    titles = [make()["title"] for make in panels.make_floor_spectra_panels(found)]
+    assert titles == ["floor spectrum: deck", "floor spectrum: roof"]
+    assert str(page.mark_code("a `b` <c>")) == "a <code>b</code> &lt;c&gt;"
+    text = (folder / "out" / "index.html").read_text(encoding="utf-8")
+    assert "state it by <code>offset</code> at" in text
+    assert ">peak velocity x, m/s<" in text
+    (ground,) = [make()["plot"] for make in panels.make_ground_panels(found)]
+    ticks = {text for _, text in ground["x"]["ticks"]}
+    assert {"0.1", "0.2", "0.5", "1", "2"} <= ticks
+    assert len({each["color"] for each in ground["series"]}) == 2, "a motion and the mean"
 
 
 def test_one_duration_is_no_range() -> None:
