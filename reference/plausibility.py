@@ -139,10 +139,12 @@ def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
-    """Iterate over the lines for an implausible rate of friction, positions of supports, and heights of bodies."""
+    """Iterate over the lines for an implausible law of friction, positions of supports, and heights of bodies."""
     law = scene.dry_friction
     if not scene.lubricated and law.varies and law.rate < MIN_FRICTION_RATE:
         yield f"the rate of friction is {law.rate:.4g} s/m, below {MIN_FRICTION_RATE:g} s/m: s/mm?"
+    if not scene.lubricated and law.varies and law.fast < law.slow <= MAX_FRICTION:
+        yield f"friction falls with the speed, from {law.slow:.4g} at rest to {law.fast:.4g}: slow and fast swapped?"
     if building.support_extent is not None:
         extent, size = float(building.support_extent.max()), scene.bodies[0].size
         if extent > MAX_SUPPORT_EXTENT:

@@ -246,7 +246,7 @@ class Superstructure(Table):
     damping: NonNegative | None = key(
         "damping ratio of the first mode above a fixed base, of x and of y: c = 2 zeta k / omega_1 of every link, "
         "in proportion to its stiffness; in place of `damping` of every body",
-        Range(0.0, 1.0),
+        Range(0.0, 1.0, hint="percent? Write 0.05 for 5 %"),
     )
 
 

@@ -23,12 +23,17 @@ MISSING = object()  # stands for an argument that the caller has not given
 
 @dataclass(frozen=True)
 class Range:
-    """Finite numbers from `lowest` to `highest`, both included, in `unit`; with `or_infinite` also inf."""
+    """
+    Finite numbers from `lowest` to `highest`, both included, in `unit`; with `or_infinite` also inf.
+
+    hint: what to write instead of another number.
+    """
 
     lowest: float
     highest: float
     unit: str = ""
     or_infinite: bool = False
+    hint: str = ""
 
     @property
     def text(self) -> str:
@@ -43,7 +48,8 @@ class Range:
             return f"must be positive, from {self.lowest:g} to {self.highest:g}{unit}, or inf"
         if self.lowest > 0.0:
             return f"must be finite and positive, from {self.lowest:g} to {self.highest:g}{unit}"
-        return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}"
+        hint = f": {self.hint}" if self.hint else ""
+        return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}{hint}"
 
     def __contains__(self, value: float) -> bool:
         return bool(self.lowest <= value <= self.highest) or (self.or_infinite and value == math.inf)

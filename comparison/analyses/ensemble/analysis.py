@@ -70,7 +70,7 @@ class EnsemblePoints:
         return [*self.equations, *(point for points in self.compared.values() for point in points)]
 
 
-MotionTaskArguments = tuple[Scene, Model, float]
+MotionTaskArguments = tuple[Scene, Model, float]  # the scene under its motion, the model, and the relative error asked
 # demands of a motion, story forces, spectra, accelerations as integrated where demands have suprema, s of an early end
 MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 

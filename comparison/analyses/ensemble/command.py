@@ -40,6 +40,7 @@ from comparison.analyses.ensemble.limits import (
     word_checks,
 )
 from comparison.analyses.ensemble.members import (
+    RECORD_KEY,
     SCALE_KEY,
     EnsembleMember,
     group_rows_by,
@@ -321,7 +322,14 @@ def make_suite_family(options: argparse.Namespace, source: str) -> Family:
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     if loading is not None:
         data["excitation"] = loading
-    return make_family(with_bounds(data, read_bounds(options)), source)
+    bounded = with_bounds(data, read_bounds(options))
+    try:
+        return make_family(bounded, source)
+    except SceneError as error:
+        if options.suite is None or error.key != f"{RECORD_KEY}.suite":
+            raise
+        rule = error.rule.removesuffix(", relative to the scene file")
+        raise SceneError("command line", "--suite", options.suite, rule) from None
 
 
 def _parser() -> CommandParser:

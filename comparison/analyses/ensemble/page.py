@@ -14,6 +14,7 @@ from comparison.analyses.ensemble.quantities import (
     DIRECTED_DEMANDS,
     DISPLAY_UNITS,
     FRACTILES,
+    SUPREMUM,
     demand_title,
     display_unit,
     word_value,
@@ -31,8 +32,10 @@ from comparison.analyses.ensemble.rows import (
 )
 from comparison.analyses.ensemble.trust import (
     EXTRAPOLATED_STATISTICS,
+    MIN_SPREAD_MOTIONS,
     MODEL_TITLES,
     extrapolate_ratios,
+    extrapolation_sentence,
     make_model_ratio_rows,
     model_ratio_sentence,
 )
@@ -54,13 +57,15 @@ def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
         "labels": label_structures(ensemble),
         "name_floor": name_floor,
         "isolator_sentence": sentences.isolator_sentence,
+        "mark_code": mark_code,
         "below_contact_sentence": sentences.below_contact_sentence,
         "sentences": [
             sentences.displaced_weight_sentence(ensemble.structures[0]),
             sentences.damping_sentence(ensemble.structures[0]),
+            sentences.restoring_sentence(ensemble),
         ],
         "word_plan_sizes": sentences.word_plan_sizes,
-        "not_modeled": sentences.list_not_modeled(ensemble),
+        "not_modeled": [mark_code(line) for line in sentences.list_not_modeled(ensemble)],
     }
 
 
@@ -102,16 +107,20 @@ def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     """Return a table over the height, from the top body down, for every demand of bodies."""
     weight = ensemble.structures[0].weight
+    profiles = {name: make_profile_rows(ensemble, name, ensemble.largest_scale) for name in PROFILE_QUANTITIES}
+    differing = {row.name for row in profiles[SUPREMUM] if row not in profiles["acceleration"]}
     tables = [
         (
             f"{demand_title(name)}, {display_unit(name, weight)[0]}",
-            make_profile_rows(ensemble, name, ensemble.largest_scale),
+            [row for row in rows if name != SUPREMUM or row.name in differing],
+            sentences.supremum_sentence({row.name for row in rows}, differing) if name == SUPREMUM else "",
         )
-        for name in PROFILE_QUANTITIES
+        for name, rows in profiles.items()
+        if rows
     ]
     return {
         **fractile_heads_context(),
-        "tables": [(title, rows) for title, rows in tables if rows],
+        "tables": tables,
         "panels": draw_panels(
             [*panels.make_height_panels(ensemble), *panels.make_floor_spectra_panels(ensemble)], lost
         ),
@@ -161,8 +170,14 @@ def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the statistics of all motions, extrapolated by model ratios that hold for the engine's motions."""
-    return {"rows": list(extrapolate_ratios(ensemble)), "statistics": [name for name, _ in EXTRAPOLATED_STATISTICS]}
+    """Return statistics of all motions by the equations, times the ratio engine to equations of the engine's motions."""
+    rows = list(extrapolate_ratios(ensemble))
+    some = any(ratio.motions >= MIN_SPREAD_MOTIONS for _, ratio, _ in rows)
+    return {
+        "sentence": mark_code(extrapolation_sentence(rows)),
+        "rows": rows if some else [],
+        "statistics": [name for name, _ in EXTRAPOLATED_STATISTICS],
+    }
 
 
 def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
@@ -223,6 +238,13 @@ PARTS = (
 def fractile_heads_context() -> Context:
     """Return the heads of the fractile columns, as templates read them."""
     return {"shares": [f"{100.0 * share:.0f} %" for share in FRACTILES]}
+
+
+def mark_code(text: str) -> Markup:
+    """Return a text with its words between backticks as code."""
+    return Markup("").join(
+        Markup("<code>{}</code>").format(part) if place % 2 else part for place, part in enumerate(text.split("`"))
+    )
 
 
 def draw_panels(makers: Sequence[Callable[[], Panel]], lost: LostParts) -> list[Panel]:

@@ -6,20 +6,27 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analyses.ensemble.limits import LIMIT_KEY_PREFIX
+from comparison.analyses.ensemble.limits import LIMIT_KEY_PREFIX, MEAN_STATISTIC
 from comparison.analyses.ensemble.quantities import SUPREMUM, demand_title, display_unit, word_value
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
-from comparison.analyses.ensemble.rows import PROFILE_QUANTITIES, label_structures, locate_demand
+from comparison.analyses.ensemble.rows import (
+    PLATFORM_BODY,
+    PROFILE_QUANTITIES,
+    label_structures,
+    locate_demand,
+    name_floor,
+)
 from comparison.analyses.ensemble.sentences import TRAVEL_REACHED, word_motion_count
 from comparison.report.panels import Panel, make_panel
 from reference.problem import GRAVITY
 
 PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
-PERIOD_AXIS = {"title": "period, s", "log": True}  # axis of a spectrum's periods
+PERIOD_TICKS = 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0  # s
 STRIP_WIDTH = 0.3  # width of the strip of one structure, as a share of the distance between structures
 # Name of a fractile, its index in FRACTILES, and the dash pattern of its line
 FRACTILE_LINES = (("16 %", 0, "2 2"), ("50 %", 1, ""), ("84 %", 2, "7 3"))
-MEDIAN_MARK, ARROW_MARK = 7, 2  # a flat bar and an arrow upwards: marks of plot.js
+MEDIAN_MARK, MEAN_MARK, ARROW_MARK = 7, 3, 2  # a flat bar, a diamond and an arrow upwards: marks of plot.js
+MAX_STRETCH = 2.0  # A limit within so many times the largest value of a profile stretches its axis.
 HEIGHT_AXIS = "height above the sliding contact, m"
 
 
@@ -47,8 +54,9 @@ def make_height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
 
 def make_floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Return the makers of plots of the floor spectra of platform and uppermost body: median and band."""
-    titles = ("platform", "top") if max(each.bodies for each in ensemble.structures) > 1 else ("platform",)
-    return [partial(_floor_spectrum, ensemble, title) for title in titles if ensemble.spectra]
+    tallest = max(ensemble.structures, key=lambda each: each.bodies)
+    names = {name_floor(tallest, body): body == PLATFORM_BODY for body in (PLATFORM_BODY, tallest.bodies)}
+    return [partial(_floor_spectrum, ensemble, *each) for each in names.items() if ensemble.spectra]
 
 
 def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
@@ -79,6 +87,11 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
             series.append(_median_line(ensemble, place, x, fractiles, factor, band=not one, line=not one,
                                        marks=MEDIAN_MARK))  # fmt: skip
+            if is_mean_limited(ensemble, quantity):
+                means = [_scale_value(stripe.mean.value, factor) for stripe in stripes]
+                aside = [each + 0.1 for each in x] if one else x
+                look = {"name": f"{label_structures(ensemble)[name]}: mean", "color": place}
+                series.append({**look, "x": aside, "y": means, "marks": MEAN_MARK, "line": False})
         look = {"name": f"{ensemble.engine.model} engine", "color": "ink", "marks": True, "line": False}
         look |= {"legend": False} if by_engine else {}
         by_engine += _motion_series(engine, factor, place - STRIP_WIDTH if one else None, **look)
@@ -140,13 +153,21 @@ def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]
     return [{"name": name, "x": [*span], "y": [factor * value] * 2, **look} for (name, value), look in stated.items()]
 
 
+def is_mean_limited(ensemble: EnsembleResult, quantity: str) -> bool:
+    """Return whether a limit is on the mean of a demand."""
+    key = f"{LIMIT_KEY_PREFIX}{quantity}"
+    return any(each.key == key and each.on.startswith(MEAN_STATISTIC) for each in ensemble.limits)
+
+
 def plots_note(ensemble: EnsembleResult) -> str:
     """Return what dots, lines and marks of the plots of demands are."""
+    means = any(is_mean_limited(ensemble, quantity) for quantity in PLOTTED_QUANTITIES)
+    diamond = " A diamond is the mean, where a limit is on it." * means
     if len(ensemble.scales) > 1:
-        return "Every thin line is one motion; a band is from 16 % to 84 % about the median."
+        return f"Every thin line is one motion; a band is from 16 % to 84 % about the median.{diamond}"
     return (
         "Every dot is one motion that has a value. The flat mark at the right of a group is the median of all motions, "
-        "with a line from 16 % to 84 % where all three have a value."
+        f"with a line from 16 % to 84 % where all three have a value.{diamond}"
     )
 
 
@@ -211,7 +232,18 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
             }  # fmt: skip
             if any(value is not None for value in values):
                 series.append(line | ({"dash": dash} if dash else {}))
+        if is_mean_limited(ensemble, quantity) and rows:
+            means = {"x": [_scale_value(row.mean.value, factor) for row in rows]}
+            means["y"] = [places[(row.body or 1) - 1] for row in rows]
+            name = f"{label_structures(ensemble)[structure.name]}, mean"
+            series.append({"name": name, "color": place, **means, "marks": MEAN_MARK, "line": False})
     largest = max((value for each in series for value in each["x"] if value is not None), default=0.0)
+    across = [value for each in series for value in each["y"]] or [0.0]
+    for limit in _stated_lines(ensemble, quantity, [min(across), max(across)]):
+        (value, _), inside = limit["y"], limit["y"][0] <= MAX_STRETCH * largest
+        beyond = "" if inside else f": {value:.4g} {unit}, beyond the axis"
+        series.append({**limit, "x": limit["y"], "y": limit["x"], "name": f"{limit['name']}{beyond}"})
+        largest = max(largest, value) if inside else largest
     x = {"title": f"{demand_title(quantity)}, {unit}", "range": [0.0, 1.06 * largest or 1.0]}
     y: dict[str, Any] = {"title": HEIGHT_AXIS} if heights else {"title": "body, from the platform up"}
     if not heights:
@@ -239,17 +271,24 @@ def _demand_heights(structure: Structure, quantity: str) -> tuple[list[float], b
     return (below if quantity == "overturning_moment" else [0.5 * (a + b) for a, b in zip(below, heights)]), stated
 
 
-def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:
-    """Return the plot of the median floor spectra, in g, of the platform or of the top body."""
+def _make_period_axis(periods: Sequence[float]) -> dict[str, Any]:
+    """Return the logarithmic axis of the periods of a spectrum, with round numbers."""
+    ticks = [[tick, f"{tick:g}"] for tick in PERIOD_TICKS if min(periods) <= tick <= max(periods)]
+    return {"title": "period, s", "log": True, "ticks": ticks}
+
+
+def _floor_spectrum(ensemble: EnsembleResult, title: str, is_platform: bool) -> Panel:
+    """Return the plot of the median floor spectra, in g, of the platform or of the top body, with that title."""
     series = [
         _median_line(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
         for place, structure in enumerate(ensemble.structures)
         for spectrum in ensemble.spectra
-        if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
+        if (spectrum.structure, spectrum.body) == (structure.name, PLATFORM_BODY if is_platform else structure.bodies)
     ]
     quantity = f"pseudo-acceleration, {100.0 * ensemble.spectra[0].damping:g} % damping, g"
+    axis = _make_period_axis(ensemble.spectra[0].period)
     label = f"floor spectrum of the {title}, {word_motion_count(ensemble.motions)}"
-    return make_panel(f"floor spectrum: {title}", label, PERIOD_AXIS, _from_zero(quantity, series), series)
+    return make_panel(f"floor spectrum: {title}", label, axis, _from_zero(quantity, series), series)
 
 
 def _ground_spectra(ensemble: EnsembleResult) -> Panel:
@@ -263,7 +302,7 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
     )
     series: list[dict[str, Any]] = [
         {
-            "x": x, "y": [value / GRAVITY for value in values], "name": "one motion", "color": 0, "width": 0.7,
+            "x": x, "y": [value / GRAVITY for value in values], "name": "one motion", "color": "gray", "width": 0.7,
             "legend": number == 0, "titles": [motion] * len(x),
         }
         for number, (motion, values) in enumerate(spectra)
@@ -276,7 +315,7 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
     y = _from_zero("pseudo-acceleration, 5 % damping, g", series)
     of = " and their target" if target else ""
     label = f"response spectra of the ground{of}, {word_motion_count(ensemble.motions)} at scale 1"
-    return make_panel("response spectra of the ground", label, PERIOD_AXIS, y, series)
+    return make_panel("response spectra of the ground", label, _make_period_axis(x), y, series)
 
 
 def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:

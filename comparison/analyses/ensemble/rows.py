@@ -35,7 +35,7 @@ WORST_COLUMN = 4  # index of the column of the worst value, after mean and fract
 
 @dataclass(frozen=True)
 class DemandColumn:
-    """A demand in the table. bodies: of which the largest value of every motion counts; "" for the isolator."""
+    """A column of the demand table: in every motion the largest value over `bodies`, or that of the isolator."""
 
     name: str
     quantity: str
@@ -204,12 +204,23 @@ def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> 
     return rows
 
 
-def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[DemandRow, list[str]]]:
-    """Return mean and largest value along x, then y, by story and bound, with the row along x."""
+def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[DemandRow, list[tuple[str, str]]]]:
+    """
+    Return mean and largest value along x, then y, by story and bound, with the row along x.
+
+    Each value with the motion of a largest one, and in an envelope its bound.
+    """
     along_x, along_y = (make_profile_rows(ensemble, f"{demand}_{axis}", ensemble.largest_scale) for axis in ("x", "y"))
     return [
-        (x, [each.cells[place] for each in (x, y) for place in (0, WORST_COLUMN)]) for x, y in zip(along_x, along_y)
+        (x, [(each.cells[place], _word_source(each, place)) for each in (x, y) for place in (0, WORST_COLUMN)])
+        for x, y in zip(along_x, along_y)
     ]
+
+
+def _word_source(row: DemandRow, column: int) -> str:
+    """Return motion and bound of a cell of a row, as far as it is of one."""
+    motion = row.motion if column == WORST_COLUMN else ""
+    return ", ".join(filter(None, [motion, row.bounds[column] if row.bounds else ""]))
 
 
 def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:

@@ -1,6 +1,6 @@
 """Sentences for the page and the terminal of an ensemble, each worded by one function from the result."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
 from comparison.analyses.ensemble.quantities import display_unit, word_value
@@ -243,6 +243,24 @@ def isolator_sentence(structure: Structure) -> str:
         f"friction {at.friction:.3g}: period {at.period:.3g} s, damping {percent(at.damping)}, re-centering ratio "
         f"{at.restoring:.3g}."
     )
+
+
+def restoring_sentence(ensemble: EnsembleResult) -> str:
+    """Return what the re-centering ratio is, and at which bounds it is below 1; "" without an isolator."""
+    ratios = {each.name: each.isolator.restoring for each in ensemble.structures if each.isolator}
+    named = label_structures(ensemble)
+    below = [named[name] for name, ratio in ratios.items() if ratio < 1.0]
+    stays = "" if len(ensemble.structures) == 1 else f" ({', '.join(below)})"
+    said = "The re-centering ratio is the restoring force over the friction force at that displacement."
+    return (said + (f" It is below 1{stays}: the platform may stay there." if below else "")) * bool(ratios)
+
+
+def supremum_sentence(places: Collection[str], differing: Collection[str]) -> str:
+    """Return at which of the places the literal supremum is the acceleration as integrated; "" where at none."""
+    if len(differing) == len(places):
+        return ""
+    where = "At the floors that are left out" if differing else "At every floor"
+    return f"{where} the literal supremum is the acceleration as integrated, to all digits of the table above."
 
 
 def below_contact_sentence(structure: Structure) -> str:

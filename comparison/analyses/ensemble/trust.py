@@ -36,6 +36,7 @@ HIDDEN_BY_ROUNDING = 1e-4  # A relative difference below this does not show in t
 EXTRAPOLATED_STATISTICS = ("mean", 0), ("84 %", 3), ("largest", 4)
 # Statistics of a smallest support force, whose low values are the unfavorable ones
 SMALLEST_FORCE_STATISTICS = (("mean", 0), ("16 %", 1), ("smallest", 4))
+MIN_SPREAD_MOTIONS = 2  # Of fewer motions a ratio has no spread.
 # Beginning of a sentence by the number of things that it lists
 THING_COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
@@ -237,12 +238,29 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
             value = told.numbers[place].value
             of = f"{name}: " if name != head else ""
             # The ratio of a single motion has no spread
-            extended = value is not None and value > 0.0 and ratio.motions > 1
+            extended = value is not None and value > 0.0 and ratio.motions >= MIN_SPREAD_MOTIONS
             # The travel is a limit, not a computed displacement
             extended = extended and told.numbers[place].error is not None
             text = _word_extrapolated(ratio, value, factor) if extended and value is not None else "none"
             cells.append(of + add_mark(text, told.marks[place]))
         yield row, ratio, [unit, *cells]
+
+
+def extrapolation_sentence(rows: Sequence[tuple[ModelRatioRow, ModelRatio, list[str]]]) -> str:
+    """Return what the extended ratios are, or that ratios of one motion, which have no spread, make no estimate."""
+    if all(ratio.motions < MIN_SPREAD_MOTIONS for _, ratio, _ in rows):
+        return (
+            f"A ratio of fewer than {MIN_SPREAD_MOTIONS} motions has no spread: it makes no estimate of the suite. "
+            f"`--engine {MIN_SPREAD_MOTIONS}` or more computes them."
+        )
+    said = (
+        "The engine computed some of the motions. Its ratio over the exact equations there, times the statistics of "
+        "the equations over all motions: an estimate, with the range that the spread of the ratio makes; of a smallest "
+        "force 16 % and the smallest, its harmful end."
+    )
+    if not any("none" in cell for *_, cells in rows for cell in cells):
+        return said
+    return f"{said} “none”: the ratio is of one motion, or the statistic is not known or not above zero."
 
 
 def _word_extrapolated(ratio: ModelRatio, value: float, factor: float) -> str:

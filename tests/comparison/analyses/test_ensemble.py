@@ -347,7 +347,7 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
     ("words", "target", "line"),
     [
         ((), "", "excitation.record = None: an ensemble needs recorded motions: give --suite"),
-        (("--suite", "none"), "", "No such file or directory"),
+        (("--suite", "none"), "", "command line: --suite = 'none': No such file or directory"),
         ((*SUITE, "--normalized"), "", "remove this key"),
         ((*SUITE, "--scales", "2", "1", "2"), "", "the smaller first"),
         ((*SUITE, "--scales", "1", "x", "2"), "", "--scales"),

@@ -42,6 +42,7 @@ from comparison.analyses.ensemble.result import (
 )  # fmt: skip
 from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
+from comparison.runner.attempts import LostParts
 from reference.measures import Estimate
 from reference.problem import GRAVITY
 from reference.problem.acceptance import DemandLimits
@@ -180,13 +181,18 @@ def test_shears_drifts_and_moments_along_x_and_y_are_on_the_page_and_in_the_tabl
         stories = {"below roof": 3, "below body 2": 2} | ({} if demand == "drift" else {"isolator": 1})
         assert [row.name for row, _ in shown if row.is_first] == list(stories)
         for row, cells in shown:
-            assert all(f">{cell}<" in text for cell in cells)
+            below = [f"<br><small>{source}" if source else "" for _, source in cells]
+            assert all(f">{cell}{source}<" in text for (cell, _), source in zip(cells, below))
             heads = [f"{demand}{of}_{stories[row.name]} [{unit}]" for of in ("", "_x", "_y")]
             own = [each for each in read if (each["bound"], each["model"]) == (row.bound, "exact")]
             whole, *along = ([float(each[head]) for each in own] for head in heads)
             for place, values in enumerate(along if own else ()):
                 by_hand = [word_value(float(value), None, factor) for value in (np.mean(values), max(values))]
-                assert [cell.partition(" ")[0] for cell in cells[2 * place :][:2]] == by_hand
+                assert [cell.partition(" ")[0] for cell, _ in cells[2 * place :][:2]] == by_hand
+                largest = max(own, key=lambda each: float(each[heads[1 + place]]))
+                assert (cells[2 * place][1], cells[2 * place + 1][1]) == ("", largest["motion"])
+            if not own:
+                assert all(source.split(", ")[-1] in ("lower", "upper") for _, source in cells), "bounds of an envelope"
                 assert all(part <= (1.0 + 1e-6) * length for part, length in zip(values, whole))
 
 
@@ -474,6 +480,17 @@ def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
         rows = trust.extrapolate_ratios(replace(found, curves=kept))
         return next(shown for row, _, shown in rows if row.name == "smallest support force")
 
+    alone = replace(
+        planted(), curves=[each for each in planted().curves if each.model == "exact" or each.motion == "m4"]
+    )
+    said = trust.extrapolation_sentence(list(trust.extrapolate_ratios(alone)))
+    assert said.startswith("A ratio of fewer than 2 motions has no spread: it makes no estimate of the suite.")
+    shown = page.render_ensemble_page(alone).partition('id="extended"')[2].partition("</section>")[0]
+    assert ("makes no estimate" in shown, "<table" in shown) == (True, False)
+    several = list(trust.extrapolate_ratios(planted()))
+    assert "none" not in trust.extrapolation_sentence(several)
+    assert "none" in trust.extrapolation_sentence([(*several[0][:2], ["mm", "none"])])
+    assert "<table" in page.render_ensemble_page(planted()).partition('id="extended"')[2].partition("</section>")[0]
     one = cells((4e3, 3e3, 2e3, 1e3), (1.0, 1.0, 1.0, 5e2), ("m1", "m2", "m3"))
     assert one[1:] == ["none", "16 %: none", "smallest: none"], "one motion tells no spread"
     below = cells((4e3, 3e3, 2e3, -1e3), (4e3, 3e3, 1e3, 0.0))
@@ -660,6 +677,58 @@ def test_how_many_motions_have_a_vertical_component_is_said_where_it_is_known() 
         assert len(lines) == len(sentences.NOT_MODELED)
 
 
+def test_the_recentering_ratio_is_defined_where_it_stands(folder: Path, found: EnsembleResult) -> None:
+    lower, upper = found.structures
+    assert lower.isolator is not None
+    assert upper.isolator is not None
+    for ratios, said in (
+        ((1.2, 0.9), " It is below 1 (upper bound): the platform may stay there."),
+        ((0.8, 0.9), " It is below 1 (lower bound, upper bound): the platform may stay there."),
+        ((1.2, 1.0), ""),
+    ):
+        stated = [replace(each, isolator=replace(each.isolator, restoring=ratio))
+                  for each, ratio in zip(found.structures, ratios)]  # fmt: skip
+        line = sentences.restoring_sentence(replace(found, structures=stated))
+        head = "The re-centering ratio is the restoring force over the friction force at that displacement."
+        assert line == head + said
+    assert sentences.restoring_sentence(found) in (folder / "out" / "index.html").read_text(encoding="utf-8")
+    assert sentences.restoring_sentence(planted()) == "", "no isolator"
+
+
+def test_the_literal_supremum_is_a_row_only_where_it_differs(folder: Path, found: EnsembleResult) -> None:
+    """A planted supremum that differs at the roof alone; then at no floor, and at every floor."""
+
+    def profile(suprema: dict[int, float]) -> tuple[list[str], str]:
+        stripes = [each for each in found.stripes if each.quantity != "acceleration_supremum"]
+        for each in found.list_demands_of_bodies("mine[lower bound]", "acceleration"):
+            larger = Statistic(suprema.get(each.body or 0, 1.0) * (each.mean.value or 0.0), each.mean.error)
+            stripes.append(replace(each, quantity="acceleration_supremum", mean=larger))
+        alone = replace(found, stripes=[s for s in stripes if s.structure == "mine[lower bound]"])
+        ((_, shown, note),) = [
+            each for each in page._height_context(alone, LostParts())["tables"] if "supremum" in each[0]
+        ]
+        return [row.name for row in shown], note
+
+    assert profile({3: 1.1})[0] == ["roof"]
+    assert profile({3: 1.1})[1].startswith("At the floors that are left out the literal supremum is the acceleration")
+    assert profile({})[0] == []
+    assert profile({})[1].startswith("At every floor the literal supremum is the acceleration as integrated")
+    assert profile({1: 1.1, 2: 1.1, 3: 1.1}) == (["roof", "body 2", "deck"], "")
+
+
+def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: EnsembleResult) -> None:
+    titles = [make()["title"] for make in panels.make_floor_spectra_panels(found)]
+    assert titles == ["floor spectrum: deck", "floor spectrum: roof"]
+    assert str(page.mark_code("a `b` <c>")) == "a <code>b</code> &lt;c&gt;"
+    text = (folder / "out" / "index.html").read_text(encoding="utf-8")
+    assert "state it by <code>offset</code> at" in text
+    assert ">peak velocity x, m/s<" in text
+    (ground,) = [make()["plot"] for make in panels.make_ground_panels(found)]
+    ticks = {text for _, text in ground["x"]["ticks"]}
+    assert {"0.1", "0.2", "0.5", "1", "2"} <= ticks
+    assert len({each["color"] for each in ground["series"]}) == 2, "a motion and the mean"
+
+
 def test_one_duration_is_no_range() -> None:
     assert sentences.ground_sentence(planted()).endswith("; duration 10 s.")
     unlike = [GroundMotion("m1", 30.0, 3.5), GroundMotion("m2", 10.0, 2.0), GroundMotion("m3", 20.0, 3.0)]
@@ -828,12 +897,15 @@ def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -
     (drawn,) = (make() for make in panels.make_isolator_panels(found))
     series = {each["name"]: each for each in drawn["plot"]["series"] if each.get("legend", True)}
     assert [name for name in series if name.startswith("b")] == [
-        "b: one motion", "b: at the travel", "b: median, 16 to 84 %",
+        "b: one motion", "b: at the travel", "b: median, 16 to 84 %", "b: mean",
     ]  # fmt: skip
     dots = [each for each in drawn["plot"]["series"] if each["name"] == "b: one motion"]
     arrow, median = series["b: at the travel"], series["b: median, 16 to 84 %"]
     assert (arrow["x"], arrow["y"], dots[3]["y"]) == (dots[3]["x"], [500.0], [None])
-    assert len({arrow["marks"], median["marks"], dots[0]["marks"]}) == 3
+    assert len({arrow["marks"], median["marks"], dots[0]["marks"], series["b: mean"]["marks"]}) == 4
+    assert series["c: mean"]["y"] == [250.0]
+    assert "diamond" in panels.plots_note(found)
+    assert "diamond" not in panels.plots_note(two_bounds()), "no limit is on the mean"
     assert (series["travel"]["y"], series["limit (mean)"]["y"]) == ([500.0] * 2, [600.0] * 2)
     assert drawn["plot"]["y"]["range"][1] > 600.0
     scaled = replace(found, scales=(0.5, 1.0), curves=[
@@ -869,6 +941,22 @@ def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) ->
     expected = [found.find_demand("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
     assert median["x"] == pytest.approx([each.fractiles[1].value / GRAVITY for each in expected])  # type: ignore[union-attr, operator]
     assert [each.partition(":")[0] for each in median["titles"]] == ["deck", "body 2", "roof"]
+
+
+@pytest.mark.parametrize(("share", "name"), [(1.5, "limit (mean)"), (2.5, "limit (mean): {:.4g} g, beyond the axis")])
+def test_profiles_have_a_line_at_the_limit(found: EnsembleResult, share: float, name: str) -> None:
+    """A limit that is far off the axis is said in the legend, and the mean is drawn that it is on."""
+    largest = max(stripe.fractiles[2].value or 0.0 for stripe in found.stripes if stripe.quantity == "acceleration")
+    limits = {each.name: DemandLimits(acceleration=share * largest, statistic="mean") for each in found.structures}
+    judged = replace(found, limits=list_verdicts(check_limits(found, limits)))
+    drawn = next(each for each in (make() for make in panels.make_height_panels(judged)) if "accel" in each["title"])
+    *lines, limit = drawn["plot"]["series"]
+    assert limit["name"] == name.format(share * largest / GRAVITY)
+    assert (limit["x"], limit["y"]) == (pytest.approx([share * largest / GRAVITY] * 2), [0.5, 6.5])
+    assert (drawn["plot"]["x"]["range"][1] > limit["x"][0]) == (share < 2.0)
+    means = next(each for each in lines if each["name"] == "upper bound, mean")
+    stripes = [found.find_demand("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
+    assert means["x"] == pytest.approx([each.mean.value / GRAVITY for each in stripes if each and each.mean.value])
 
 
 def fails(*rest: Any) -> None:

@@ -67,6 +67,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"duration": None}, "duration", "this key is required"),
     ({"acceptance.median": -1.0}, "acceptance.median", "must be greater than 0"),
     ({"superstructure": 0.05}, "superstructure", "must be a table of keys"),
+    ({"superstructure.damping": 3.0}, "superstructure.damping", "from 0 to 1: percent? Write 0.05 for 5 %"),
     # isolator
     ({"isolator": 3.0}, "isolator", "must be a table of keys"),
     ({"isolator.friction": None}, "isolator", "exactly one of friction and lubrication"),
@@ -188,6 +189,7 @@ PERIOD = "the period above a fixed base is {}: stiffness in N/m, mass in kg?"
 MASS = "the mass of {} is {} kg, {} times the mean of the others, {}: kg in one place and t in another?"
 ROOF = {"mass": 9.0, "stiffness": [4e4, 4e4], "floor": "roof"}
 DIFFERENT = {"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 50.0}}
+SWAPPED = "friction falls with the speed, from 0.06 at rest to 0.03: slow and fast swapped?"
 WIDE = places([-14e3, -8e3], [14e3, -8e3], [14e3, 8e3], [-14e3, 8e3])
 SIZED = {"isolator.ring": 2.0, "isolator.sphere_radius": 0.1, "bodies.0.size": [5.0, 4.0, 0.5]}
 APART = "the supports stand {} m apart, more than twice the platform of 5 m: are places and size both in m?"
@@ -215,6 +217,7 @@ LOAD = "the weight on each support is {}: is mass in kg?"
         ({"bodies": [*BODIES, ROOF]}, [MASS.format('"roof"', "9", "0.009", "below 0.01")]),
         (DIFFERENT | {"isolator.friction.rate": 0.05}, ["the rate of friction is 0.05 s/m, below 1 s/m: s/mm?"]),
         (DIFFERENT, []),
+        ({"isolator.friction": {"slow": 0.06, "fast": 0.03, "rate": 50.0}}, [SWAPPED]),
         (WIDE, ["the supports stand 2.8e+04 m apart, above 300 m: mm?"]),
         (SIZED | {"isolator.ring": 3.5}, []),
         (SIZED | {"isolator.ring": 8.0}, [APART.format("11.31")]),
