@@ -370,7 +370,7 @@ MISTAKES = (
     Mistake(ANALYSES + "ensemble/panels.py", "_motion_series(engine, factor,", "_motion_series(engine, 1.0,",
             "The engine is drawn in another unit.",
             (ENSEMBLE_REPORT + "test_every_motion_is_a_dot_with_its_error_by_both_sides",)),
-    Mistake(ANALYSES + "ensemble/panels.py", '"y": [places[(row.body or 1) - 1] for row in rows]', '"y": [float(row.body or 1) for row in rows]',
+    Mistake(ANALYSES + "ensemble/panels.py", 'y = [heights[(row.body or 1) - 1] for row in rows]', 'y = [float(row.body or 1) for row in rows]',
             "Numbers of bodies are drawn as heights.", (ENSEMBLE_REPORT + "test_profiles_have_the_height_on_the_vertical_axis",)),
     Mistake(ANALYSES + "families/analysis.py", "float(np.median(row))", "float(np.mean(row))",
             "A mean is called a median.", (RECORDED,)),

@@ -207,8 +207,7 @@ def _check_body(
     if statistic == MEAN_STATISTIC and ended and not governing:
         reason += f"; with the travel there at least {_word_number(least, unit)}" if least > -math.inf else ""
         needed = (limit * len(values) - math.fsum(value for value, *_ in known) / per) / ended
-        theirs = "a value there" if ended == 1 else "a mean of theirs"
-        reason += f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
+        reason += _word_breaking_value(needed, ended, unit)
     if not known:
         reason = reason if values else _explain_lacking_demand(ensemble, key)
         return DemandCheck(*about, None, limit, unit=unit, reason=reason)
@@ -220,6 +219,12 @@ def _check_body(
     elif excess > error and governing and not reason:  # The motions that are missing could make the mean smaller.
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
     return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
+
+
+def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
+    """Return above which value the motions without one would break a limit on the mean; "" if any value would."""
+    theirs = "a value there" if ended == 1 else "a mean of theirs"
+    return f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
 
 
 def _explain_lacking_demand(ensemble: EnsembleResult, key: str) -> str:

@@ -212,31 +212,12 @@ def _median_line(
 
 def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     """Return a plot of the fractiles of a demand along x over the height along y."""
-    series, unit, heights = [], "", True
-    for place, structure in enumerate(ensemble.structures):
-        unit, factor = display_unit(quantity, structure.weight)
-        rows = ensemble.list_demands_of_bodies(structure.name, quantity)
-        places, stated = _demand_heights(structure, quantity)
-        heights = heights and stated
-        for share, number, dash in FRACTILE_LINES:
-            values = [row.fractiles[number].value for row in rows]
-            line: dict[str, Any] = {
-                "name": f"{label_structures(ensemble)[structure.name]}, {share}", "color": place,
-                "width": 2.4 if share == "50 %" else 1.2,
-                "x": [None if value is None else factor * value for value in values],
-                "y": [places[(row.body or 1) - 1] for row in rows], "marks": share == "50 %",
-                "titles": [
-                    f"{locate_demand(structure, quantity, row.body)}: {word_value(value, None, factor)}"
-                    for row, value in zip(rows, values)
-                ],
-            }  # fmt: skip
-            if any(value is not None for value in values):
-                series.append(line | ({"dash": dash} if dash else {}))
-        if is_mean_limited(ensemble, quantity) and rows:
-            means = {"x": [_scale_value(row.mean.value, factor) for row in rows]}
-            means["y"] = [places[(row.body or 1) - 1] for row in rows]
-            name = f"{label_structures(ensemble)[structure.name]}, mean"
-            series.append({"name": name, "color": place, **means, "marks": MEAN_MARK, "line": False})
+    unit = display_unit(quantity, ensemble.structures[0].weight)[0]
+    series = [
+        line
+        for place, structure in enumerate(ensemble.structures)
+        for line in _profiles_of_structure(ensemble, structure, place, quantity)
+    ]
     largest = max((value for each in series for value in each["x"] if value is not None), default=0.0)
     across = [value for each in series for value in each["y"]] or [0.0]
     for limit in _stated_lines(ensemble, quantity, [min(across), max(across)]):
@@ -245,11 +226,39 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         series.append({**limit, "x": limit["y"], "y": limit["x"], "name": f"{limit['name']}{beyond}"})
         largest = max(largest, value) if inside else largest
     x = {"title": f"{demand_title(quantity)}, {unit}", "range": [0.0, 1.06 * largest or 1.0]}
-    y: dict[str, Any] = {"title": HEIGHT_AXIS} if heights else {"title": "body, from the platform up"}
-    if not heights:
+    y: dict[str, Any] = {"title": HEIGHT_AXIS}
+    if not all(_demand_heights(structure, quantity)[1] for structure in ensemble.structures):
+        y = {"title": "body, from the platform up"}
         y["ticks"] = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
     label = f"{demand_title(quantity)} over the height: 16, 50 and 84 %, {word_motion_count(ensemble.motions)}"
     return make_panel(f"{demand_title(quantity)} over the height", label, x, y, series)
+
+
+def _profiles_of_structure(
+    ensemble: EnsembleResult, structure: Structure, place: int, quantity: str
+) -> list[dict[str, Any]]:
+    """Return the lines of one structure over its height: fractiles that have a value, and the mean if it is limited."""
+    series, name = [], label_structures(ensemble)[structure.name]
+    factor = display_unit(quantity, structure.weight)[1]
+    rows = ensemble.list_demands_of_bodies(structure.name, quantity)
+    heights = _demand_heights(structure, quantity)[0]
+    y = [heights[(row.body or 1) - 1] for row in rows]
+    for share, number, dash in FRACTILE_LINES:
+        values = [row.fractiles[number].value for row in rows]
+        line: dict[str, Any] = {
+            "name": f"{name}, {share}", "color": place, "width": 2.4 if share == "50 %" else 1.2,
+            "x": [_scale_value(value, factor) for value in values], "y": y, "marks": share == "50 %",
+            "titles": [
+                f"{locate_demand(structure, quantity, row.body)}: {word_value(value, None, factor)}"
+                for row, value in zip(rows, values)
+            ],
+        }  # fmt: skip
+        if any(value is not None for value in values):
+            series.append(line | ({"dash": dash} if dash else {}))
+    if is_mean_limited(ensemble, quantity) and rows:
+        means = {"x": [_scale_value(row.mean.value, factor) for row in rows], "y": y}
+        series.append({"name": f"{name}, mean", "color": place, **means, "marks": MEAN_MARK, "line": False})
+    return series
 
 
 def _body_heights(structure: Structure) -> tuple[list[float], bool]:
