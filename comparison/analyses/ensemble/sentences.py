@@ -38,7 +38,7 @@ DEFINITIONS = (
     "supremum” adds the limits at the instants in which the isolator stops; no integration reaches them, and they are "
     "too short to move equipment. All models are compared as integrated.",
     "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
-    "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
+    "value have it, where it exceeds 0.005 % of the number; summary.json has those of the fractiles.",
     "16 %, 50 % and 84 % are fractiles over all motions (Hazen). A motion without a value, as one that reaches the rim "
     "or the travel, counts as worse than all others: a fractile is then no better than the true one, and none where it "
     "falls on such a motion. “(of 21)” behind a mean: of the 21 motions that have a value. “≥” before a number: at "
@@ -367,13 +367,13 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
         if not known:
             continue
         row = max(known, key=lambda row: sign * getattr(row, name).value)
-        value = getattr(row, name).value
+        value, error = getattr(row, name).value, getattr(row, name).error
         if name == "uplift":
             yield f"largest uplift {word_value(value, None, 1e3)} mm" + (f" at support {row.support}" if value else "")
             continue
         bound = f", {named[row.structure]}" if len(ensemble.structures) > 1 else ""
         place = f"support {row.support} at [{row.x:.3g}, {row.y:.3g}] m"
-        yield f"{name} force {word_value(value, None, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
+        yield f"{name} force {word_value(value, error, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
 
 
 def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:

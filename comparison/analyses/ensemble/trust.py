@@ -255,8 +255,8 @@ def extrapolation_sentence(rows: Sequence[tuple[ModelRatioRow, ModelRatio, list[
         )
     said = (
         "The engine computed some of the motions. Its ratio over the exact equations there, times the statistics of "
-        "the equations over all motions: an estimate, with the range that the spread of the ratio makes; of a smallest "
-        "force 16 % and the smallest, its harmful end."
+        "the equations over all motions: an estimate, with the range that the spread of the ratio makes, without "
+        "the engine’s own error; of a smallest force 16 % and the smallest, its harmful end."
     )
     if not any("none" in cell for *_, cells in rows for cell in cells):
         return said

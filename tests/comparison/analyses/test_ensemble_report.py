@@ -754,12 +754,12 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
         ("c", 3, 0.5, -2.5): ((2e3, "m2"), (8e3, "m2"), 0.001),
     }  # fmt: skip
     supports = [
-        SupportExtremes(*at, "spatial", 2, Statistic(low, 1.0), one, Statistic(high, 1.0), two, Statistic(gap, 0.0))
+        SupportExtremes(*at, "spatial", 2, Statistic(low, 20.0), one, Statistic(high, 30.0), two, Statistic(gap, 0.0))
         for at, ((low, one), (high, two), gap) in numbers.items()
     ]
     assert sentences.support_sentences(replace(found, supports=supports)) == [
-        "By the spatial engine, 2 of 4 motions of each bound: largest force 9 kN, support 2 at [-3.5, 2.5] m (m1, c); "
-        "smallest force -2 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1."
+        "By the spatial engine, 2 of 4 motions of each bound: largest force 9 ± 0.03 kN, support 2 at [-3.5, 2.5] m "
+        "(m1, c); smallest force -2 ± 0.02 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1."
     ]
 
 
