@@ -379,7 +379,7 @@ MISTAKES = (
     Mistake(COMMAND, "and limits.uplift is not None", "and limits.uplift is None",
             "A limit on uplift without a model that has it is no warning.",
             (SEEN + "a_limit_on_uplift_without_the_spatial_model_is_a_warning",)),
-    Mistake("comparison/analyses/ensemble/governing.py", "return -1.0 if quantity == SMALLEST_FORCE else 1.0", "return 1.0",
+    Mistake("comparison/analyses/ensemble/governing.py", "return -1.0 if quantity in SMALLEST_IS_WORST else 1.0", "return 1.0",
             "The motion of the smallest support force is that of the largest.",
             (SEEN + "the_engine_says_nothing_of_motions_that_govern_and_that_it_has_not_computed",
              "tests/comparison/analyses/test_ensemble.py::test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median")),

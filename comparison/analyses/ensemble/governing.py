@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from comparison.analyses.ensemble.members import EnsembleMember, group_rows_by
+from comparison.analyses.ensemble.quantities import SMALLEST_IS_WORST
 from comparison.cli.arguments import read_whole_number
 from comparison.study.models import EXACT
 from reference.problem import Scene, SceneError
@@ -19,16 +20,15 @@ if TYPE_CHECKING:
     from comparison.analyses.ensemble.result import EnsembleResult
 
 ALL_MOTIONS = "all"  # word of an option that selects every motion for the engine
-SMALLEST_FORCE = "support_force_min"  # the demand whose smallest value is the worst
 GOVERNING = {  # demands whose worst value chooses a motion (over bodies, if they have it), and the reason in words
     "displacement": "largest displacement",
     "base_shear": "largest base shear",
     "drift": "largest drift",
     "support_force_max": "largest support force",
-    SMALLEST_FORCE: "smallest support force",
+    "support_force_min": "smallest support force",
 }
 GOVERNING_OF_LIMITS = {  # demands of GOVERNING that govern a demand that the engine alone has, where they are known
-    "uplift": ("support_force_max", SMALLEST_FORCE),
+    "uplift": ("support_force_max", "support_force_min"),
     "support_displacement": ("displacement",),
 }
 MEDIAN_REASON = "nearest the median displacement"
@@ -132,7 +132,8 @@ def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: st
 
 
 def _sign_of_worst(quantity: str) -> float:
-    return -1.0 if quantity == SMALLEST_FORCE else 1.0
+    """Return -1 for a demand whose smallest value is the unfavorable one, else 1."""
+    return -1.0 if quantity in SMALLEST_IS_WORST else 1.0
 
 
 def _largest_demand(point: MotionDemandsAtScale, quantity: str) -> float:
