@@ -41,8 +41,18 @@ def word_error(error: float, stated: float | None, unit: str = "") -> str:
     return f"{sign}{size} {unit}".rstrip()
 
 
+def word_excess(error: float, stated: float | None, unit: str = "", is_least: bool = False) -> str:
+    """Return by how much a value is not met, as "by +7.7 %"; is_least: the error is larger by an unknown amount."""
+    return f"by {'more than ' * is_least}{word_error(error, stated, unit)}"
+
+
 def word_verdict(
-    verdict: Verdict, error: float | None, stated: float | None, unit: str = "", explanation: str = ""
+    verdict: Verdict,
+    error: float | None,
+    stated: float | None,
+    unit: str = "",
+    explanation: str = "",
+    is_least: bool = False,
 ) -> str:
     """
     Return the verdict on one value in words: "met", "not met (by +7.7 %): the friction law", "not compared".
@@ -51,7 +61,7 @@ def word_verdict(
     """
     if verdict != NOT_MET or error is None:
         return verdict
-    words = f"{verdict} (by {word_error(error, stated, unit)})"
+    words = f"{verdict} ({word_excess(error, stated, unit, is_least)})"
     return f"{words}: {explanation}" if explanation else words
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from comparison.analyses.ensemble.governing import list_governing_motions
-from comparison.analyses.ensemble.quantities import DISPLAY_UNITS, demand_title, unit_of_demand, word_value
+from comparison.analyses.ensemble.quantities import demand_title, unit_of_check, unit_of_demand, word_value
 from comparison.analyses.ensemble.result import DemandAtScale, EnsembleResult, LimitVerdict, Statistic, Structure
 from comparison.analyses.ensemble.rows import label_structures, locate_demand
 from comparison.analyses.ensemble.sentences import word_motion_count
@@ -83,11 +83,6 @@ class DemandCheck:
         return f"{self.what}, {self.on}"
 
 
-def unit_of_check(unit: str) -> tuple[str, float]:
-    """Return the unit in which a checked demand of an SI unit is read, and its factor; a pure number is in percent."""
-    return DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit else ("%", 100.0)
-
-
 def word_check(check: DemandCheck) -> str:
     """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
     found, stated = (_word_number(value, check.unit) for value in (check.found, check.stated))
@@ -107,8 +102,7 @@ def _word_check_verdict(check: DemandCheck) -> str:
     """Return the verdict with the excess over the limit; "more than" where the value is a lower bound."""
     unit, factor = unit_of_check(check.unit)
     excess, stated = (None if value is None else factor * value for value in (check.excess, check.stated))
-    verdict = word_verdict(check.verdict, excess, stated, unit)
-    verdict = verdict.replace("(by ", "(by more than ") if check.is_least else verdict
+    verdict = word_verdict(check.verdict, excess, stated, unit, is_least=check.is_least)
     return verdict + (f" ({check.reason})" if check.reason else "")
 
 

@@ -77,6 +77,11 @@ def display_unit(quantity: str, weight: float) -> tuple[str, float]:
     return DISPLAY_UNITS.get(unit, (unit, 1.0))
 
 
+def unit_of_check(unit: str) -> tuple[str, float]:
+    """Return the unit in which a checked demand of an SI unit is read, and its factor; a pure number is in percent."""
+    return DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit else ("%", 100.0)
+
+
 def word_value(value: float | None, error: float | None, factor: float) -> str:
     """Return a value with four digits and no power of ten, with its error where these digits show it."""
     if value is None:

@@ -3,8 +3,8 @@
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
-from comparison.analyses.ensemble.quantities import display_unit, word_value
-from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, TargetSpectrum
+from comparison.analyses.ensemble.quantities import display_unit, unit_of_check, word_value
+from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Structure, SupportExtremes, TargetSpectrum
 from comparison.analyses.ensemble.rows import (
     MAIN_TABLE_COLUMNS,
     label_structures,
@@ -14,7 +14,7 @@ from comparison.analyses.ensemble.rows import (
     statistics_of_column,
 )
 from comparison.study.models import EXACT
-from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, count_verdicts
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, count_verdicts, word_excess
 from comparison.wording import percent
 from reference.plausibility import implausible_drift
 from reference.problem import Outcome
@@ -157,11 +157,18 @@ def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
     for each in ensemble.limits:
         if each.verdict == verdict:
             bound = each.bound if len(ensemble.structures) > 1 else ""
-            amount = each.words.partition("(")[2].removesuffix(")") if verdict == NOT_MET else ""
-            found.setdefault(each.what, []).append(" ".join(filter(None, [bound, amount])))
+            found.setdefault(each.what, []).append(" ".join(filter(None, [bound, _word_excess(each)])))
     named = [f"{what} ({', '.join(dict.fromkeys(own))})" if any(own) else what for what, own in found.items()]
     more = f" and {len(named) - MAX_LISTED_MOTIONS} more" if len(named) > MAX_LISTED_MOTIONS else ""
     return "; ".join(named[:MAX_LISTED_MOTIONS]) + more
+
+
+def _word_excess(limit: LimitVerdict) -> str:
+    """Return by how much a limit is not met; "" for any other verdict."""
+    if limit.verdict != NOT_MET or limit.found is None or limit.stated is None:
+        return ""
+    unit, factor = unit_of_check(limit.unit)
+    return word_excess(factor * (limit.found - limit.stated), factor * limit.stated, unit, limit.is_least)
 
 
 def pending_sentence(ensemble: EnsembleResult) -> str:
