@@ -147,11 +147,11 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     results = compute_tasks("ensemble", options, argv, tasks, WORKER_FUNCTIONS, console, executor, add_engine_tasks)
     ((chosen, said),) = shown
     if not said:
-        written = write(results, ensemble.collect_points(results, chosen), print_equations)
+        checks = write(results, ensemble.collect_points(results, chosen), print_equations)
     if chosen:
-        written = write(results, ensemble.collect_points(results, chosen), print_engine)
+        checks = write(results, ensemble.collect_points(results, chosen), print_engine)
     console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
-    return print_checks(check(written), asked=options.check or options.against is not None)
+    return print_checks(checks, asked=options.check or options.against is not None)
 
 
 def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: EngineRequest, jobs: int) -> None:
@@ -221,8 +221,8 @@ def write_ensemble(
     points: EnsemblePoints,
     show: Callable[[Console, EnsembleResult], None],
     pending: int = 0,
-) -> EnsembleResult:
-    """Write the files of the ensemble, print its tables, write its page; return the result."""
+) -> list[DemandCheck]:
+    """Write the files of the ensemble, print its tables, write its page; return the checks of its demands."""
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     scenes = {source: hashlib.sha256(scene_text(source)).hexdigest() for source in options.scenes}
     run = {**collect_run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1), "scenes": scenes}
@@ -238,7 +238,7 @@ def write_ensemble(
     with report_write_errors(options.out):
         written += publish_attempted(out, PAGE_FILE, lambda: render_ensemble_page(result).encode(), COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
-    return result
+    return checks
 
 
 def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
