@@ -313,7 +313,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/analysis.py", "SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: RESOLVED", "SMALL.key: SMALL, EXACT.key: EXACT",
             "Accelerations as integrated are the literal suprema.",
             ("tests/comparison/analyses/test_ensemble.py::test_accelerations_as_integrated_are_below_the_supremum_where_a_stop_adds_to_it",)),
-    Mistake("comparison/analyses/ensemble/rows.py", "* stripe.answered + limit * lost) / count", "* stripe.answered) / count",
+    Mistake("comparison/analyses/ensemble/rows.py", "* stripe.answered + limit * lost) / stripe.motions", "* stripe.answered) / stripe.motions",
             "A motion that reached the travel counts as at rest in the mean.",
             ("tests/comparison/analyses/test_ensemble_report.py::test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_none",)),
     Mistake("comparison/analyses/ensemble/rows.py", "if limit and {*stripe.reasons} == {Outcome.TRAVEL_REACHED.value}:", "if limit:",

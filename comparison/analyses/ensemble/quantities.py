@@ -116,7 +116,7 @@ def collect_demand_values(
                 values["drift_ratio", body] = Estimate(drift.value / story, drift.error / story)
     values |= {("story_shear", body): number for body, number in enumerate(forces.shear, start=1)}
     values |= {("overturning_moment", body): number for body, number in enumerate(forces.moment or (), start=1)}
-    for axis, place in zip("xy", (0, 1)):
+    for place, axis in enumerate("xy"):
         moment = forces.moment_along[place] if forces.moment_along else ()
         values |= {(f"story_shear_{axis}", body): number for body, number in enumerate(forces.shear_along[place], 1)}
         values |= {(f"drift_{axis}", body): number for body, number in enumerate(forces.drift_along[place], 2)}

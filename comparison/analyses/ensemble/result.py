@@ -147,6 +147,11 @@ class DemandAtScale(DemandOfStructure):
         require_size("fractiles", self.fractiles, FRACTILE_COUNT)
 
     @property
+    def motions(self) -> int:
+        """Return the number of motions, with and without the demand."""
+        return self.answered + sum(self.reasons.values())
+
+    @property
     def statistics(self) -> tuple[Statistic, ...]:
         """Return the mean, the fractiles, the largest and the smallest value."""
         return self.mean, *self.fractiles, self.largest, self.smallest

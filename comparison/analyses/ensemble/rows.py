@@ -116,6 +116,11 @@ def label_structures(ensemble: EnsembleResult) -> dict[str, str]:
     return dict(zip(names, (", ".join(row) for row in zip(*columns)) if alike else names))
 
 
+def word_bound(ensemble: EnsembleResult, structure: str, form: str = "{}") -> str:
+    """Return the label of a structure in a form such as ", {}"; "" where the ensemble has a single structure."""
+    return form.format(label_structures(ensemble)[structure]) if len(ensemble.structures) > 1 else ""
+
+
 def name_floor(structure: Structure, body: int) -> str:
     """Return the name of a body as the scene gives it, or its number."""
     names = structure.building.floors if structure.building else ()
@@ -336,8 +341,8 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
     mean, worst = stripe.known
     limit = {"displacement": structure.building and structure.building.travel, "travel_share": 1.0}.get(stripe.quantity)
     if limit and {*stripe.reasons} == {Outcome.TRAVEL_REACHED.value}:
-        lost, count = sum(stripe.reasons.values()), stripe.answered + sum(stripe.reasons.values())
-        least = ((mean.value or 0.0) * stripe.answered + limit * lost) / count
+        lost = sum(stripe.reasons.values())
+        least = ((mean.value or 0.0) * stripe.answered + limit * lost) / stripe.motions
         reached = Statistic(limit, None)
         numbers = [Statistic(least, mean.error), *(reached if n.value is None else n for n in numbers[1:-1]), reached]
         return DemandSummary(structure, stripe, tuple(numbers), _bound_marks("≥ ", stripe), "")
@@ -364,12 +369,11 @@ def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: 
     """Return the row of a demand of one bound; is_first: whether no row above names the demand."""
     structure, stripe = told.structure, told.stripe
     unit, factor = unit_of_column(shown, structure)
-    count = stripe.answered + sum(stripe.reasons.values())
-    motions = str(count) if stripe.answered == count else f"{stripe.answered} of {count}"
+    motions = f"{stripe.answered} of " * (stripe.answered < stripe.motions) + str(stripe.motions)
     motions += "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
     where = locate_demand(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
     cells = tuple(
-        add_mark(word_cell(each, factor, column, count, stripe.quantity), mark)
+        add_mark(word_cell(each, factor, column, stripe.motions, stripe.quantity), mark)
         for column, (each, mark) in enumerate(zip(told.numbers, told.marks))
     )
     return DemandRow(shown.name, unit, bound, where, cells, told.motion, motions, is_first)
@@ -411,8 +415,7 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
         at = max(known, key=size)
         sure = len(known) == len(found) and not any(each.marks[column] for each in found)
         number, factor = at.numbers[column], unit_of_column(shown, at.structure)[1]
-        count = at.stripe.answered + sum(at.stripe.reasons.values())
-        cell = word_cell(number, factor, column, count, shown.quantity)
+        cell = word_cell(number, factor, column, at.stripe.motions, shown.quantity)
         cells.append(add_mark(cell, "" if sure else at.marks[column] or bound))
         bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_OF_ALL_MOTIONS else "")
     motion = at.motion if cells[-1] != "none" else ""

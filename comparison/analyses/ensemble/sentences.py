@@ -12,6 +12,7 @@ from comparison.analyses.ensemble.rows import (
     name_floor,
     peak_in_g,
     statistics_of_column,
+    word_bound,
 )
 from comparison.study.models import EXACT
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, count_verdicts, word_excess
@@ -116,10 +117,9 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
         most, structure, stripe = max(found, key=lambda each: each[0])
         unit, factor = display_unit(quantity, structure.weight)
         mean, largest = (word_value(each.value, None, factor) for each in (stripe.mean, stripe.largest))
-        bound = f"{label_structures(ensemble)[structure.name]}, " if len(ensemble.structures) > 1 else ""
+        bound = word_bound(ensemble, structure.name, "{} alone, " if unknown else "{}, ")
         travel = structure.building.travel if structure.building else None
         share = f" = {percent(most / travel)} of the travel" if quantity == "displacement" and travel else ""
-        bound = bound.replace(", ", " alone, ") if unknown else bound
         where = f"{bound}{stripe.largest_motion}"
         reached = f"{reached}; " if reached else ""
         said.append(f"{words}: {reached}mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
@@ -215,8 +215,7 @@ def travel_sentence(ensemble: EnsembleResult) -> str:
             if (each.structure, each.scale, each.status) == (structure.name, ensemble.largest_scale, TRAVEL_REACHED)
         ]
         if ended:
-            bound = f" ({label_structures(ensemble)[structure.name]})" if len(ensemble.structures) > 1 else ""
-            bounds.append(f"{name_some(ended, MAX_LISTED_MOTIONS)}{bound}")
+            bounds.append(f"{name_some(ended, MAX_LISTED_MOTIONS)}{word_bound(ensemble, structure.name, ' ({})')}")
     if not bounds:
         return ""
     rule = "No demand has a value there. A run without `travel` gives the displacement that is needed."
@@ -283,7 +282,7 @@ def below_contact_sentence(structure: Structure) -> str:
 
 def engine_sentences(ensemble: EnsembleResult) -> list[str]:
     """Return which motions the engine computed, and why."""
-    engine, named, said = ensemble.engine, label_structures(ensemble), []
+    engine, said = ensemble.engine, []
     for structure in ensemble.structures:
         own = [each for each in engine.motions if each.structure == structure.name]
         if not own:
@@ -293,7 +292,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
             for each in own[:MAX_LISTED_MOTIONS]
         ]
         more = f" and {len(own) - MAX_LISTED_MOTIONS} more" if len(own) > MAX_LISTED_MOTIONS else ""
-        bound = f", {named[structure.name]}" if len(ensemble.structures) > 1 else ""
+        bound = word_bound(ensemble, structure.name, ", {}")
         said.append(f"The {engine.model} engine computed{bound}: {'; '.join(each_motion)}{more}.")
     if said:
         said.append(f"The engine was asked for largest accelerations to {percent(engine.tolerance)}.")
@@ -368,7 +367,6 @@ def damping_sentence(structure: Structure) -> str:
 
 def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
     """Yield the largest and smallest support force and the largest uplift, with support and motion."""
-    named = label_structures(ensemble)
     for name, sign in (("largest", 1.0), ("smallest", -1.0), ("uplift", 1.0)):
         known = [row for row in rows if getattr(row, name).value is not None]
         if not known:
@@ -378,7 +376,7 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
         if name == "uplift":
             yield f"largest uplift {word_value(value, None, 1e3)} mm" + (f" at support {row.support}" if value else "")
             continue
-        bound = f", {named[row.structure]}" if len(ensemble.structures) > 1 else ""
+        bound = word_bound(ensemble, row.structure, ", {}")
         place = f"support {row.support} at [{row.x:.3g}, {row.y:.3g}] m"
         yield f"{name} force {word_value(value, error, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
 
@@ -398,17 +396,16 @@ def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
     """Return which motions lack which demands at the largest scale, and why; without those that reach the travel."""
-    stripes = [
-        found
+    stripes = {
+        shown.name: found
         for shown in MAIN_TABLE_COLUMNS
         if (found := statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)) is not None
-    ]
+    }
     ended = list_motions_without_displacement(ensemble, structure)
     lacking: dict[tuple[str, int], list[str]] = {}
-    for shown in MAIN_TABLE_COLUMNS:
-        found = statistics_of_column(ensemble, shown, ensemble.largest_scale, structure)
-        for reason in found.reasons.items() if found else ():
-            lacking.setdefault(reason, []).append(shown.name)
+    for name, stripe in stripes.items():
+        for reason in stripe.reasons.items():
+            lacking.setdefault(reason, []).append(name)
     lines = []
     for (why, count), names in lacking.items():
         every = len(names) == len(stripes)
@@ -426,9 +423,11 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
 
 def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
     """Return which motions of every bound lack which demands, each sentence after the name of its bound."""
-    named = label_structures(ensemble) if len(ensemble.structures) > 1 else {}
-    lines = ((named.get(each.name, ""), missing_sentences(ensemble, each)) for each in ensemble.structures)
-    return [f"{bound}: {line}" if bound else line for bound, of_bound in lines for line in of_bound]
+    return [
+        f"{word_bound(ensemble, each.name, '{}: ')}{line}"
+        for each in ensemble.structures
+        for line in missing_sentences(ensemble, each)
+    ]
 
 
 def digest_sentence(ensemble: EnsembleResult) -> str:

@@ -8,7 +8,7 @@ from rich.console import Console
 from comparison.analyses.ensemble.members import group_rows_by
 from comparison.analyses.ensemble.quantities import FRACTILES
 from comparison.analyses.ensemble.result import EnsembleResult
-from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, label_structures, make_demand_rows
+from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, make_demand_rows, word_bound
 from comparison.analyses.ensemble.sentences import (
     answer_sentence,
     below_contact_sentence,
@@ -90,7 +90,6 @@ def _cells_of_row(row: DemandRow) -> list[str]:
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
     """Print for every structure the isolator, missing demands and warnings."""
-    named = label_structures(ensemble)
     for structure in ensemble.structures:
         lines = [
             *missing_sentences(ensemble, structure),
@@ -98,7 +97,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
             below_contact_sentence(structure),
             drift_warning(ensemble, structure),
         ]
-        bound = f"{named[structure.name]}: " if len(ensemble.structures) > 1 else ""
+        bound = word_bound(ensemble, structure.name, "{}: ")
         print_lines(console, [f"{bound}{line}" for line in lines if line])
     print_lines(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
 

@@ -15,6 +15,7 @@ from comparison.analyses.ensemble.rows import (
     statistics_of_column,
     summarize_demand,
     unit_of_column,
+    word_bound,
 )
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
@@ -178,8 +179,7 @@ def _find_largest_deviation(
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
         if ratio is not None:
             size, motion = ratio.worst
-            bound = f"{row.bound}, " if len(ensemble.structures) > 1 else ""
-            found.append((abs(size), row.name, f"{bound}{motion}"))
+            found.append((abs(size), row.name, f"{word_bound(ensemble, row.structure.name, '{}, ')}{motion}"))
     return max(found, default=None)
 
 
