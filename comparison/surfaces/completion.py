@@ -269,7 +269,8 @@ def _complete_body(
         return refuse(f"{held_out} held-out phase pairs with a value are too few")
     error, model_error = float(missed[checked].max()), float((truth_error / truth)[checked].max())
     first = study.compared(scene)[0]
-    distance = np.abs(surface - mu(first, first)) / mu(first, first)
+    base = mu(first, first)
+    distance = np.abs(surface - base) / base
     known_distance = distance[np.isfinite(distance)]
     difference = fractile(known_distance, 0.95) if known_distance.size else nan
     if not error <= asked:
