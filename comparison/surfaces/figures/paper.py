@@ -47,7 +47,7 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 label = mathtext(label_of(model, scene))
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {label}", y=1.0, fontsize=9.0)
         # Without a creation date the same figure gives the same file.
-        figure.savefig(path.with_name(f"{path.name.removesuffix('.png')}.pdf"), metadata={"CreationDate": None})
+        figure.savefig(path.with_suffix(".pdf"), metadata={"CreationDate": None})
         figure.savefig(path, dpi=PRINT_RESOLUTION, pil_kwargs=PNG_SETTINGS)
 
 
