@@ -71,7 +71,7 @@ class MeasuredQuantity:
     ]
 
     def __post_init__(self) -> None:
-        for side in (EQUATIONS, ENGINE):
+        for side in JUDGED_SIDES:
             require(side in self.sides, f"sides must have {side}")
 
     @property
@@ -86,7 +86,7 @@ class MeasuredQuantity:
 
     def word_both(self) -> str:
         """Return the verdicts on equations and engine in words, once where they are alike."""
-        one, two = (self.word(side) for side in (EQUATIONS, ENGINE))
+        one, two = (self.word(side) for side in JUDGED_SIDES)
         if one == two:
             return one
         if self.sides[EQUATIONS].verdict == self.sides[ENGINE].verdict:
@@ -140,7 +140,7 @@ class Validation:
 
     def counts(self) -> dict[Verdict, int]:
         """Return how many quantities of the equations and of the engine have each verdict."""
-        return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
+        return count_verdicts(each.sides[side].verdict for each in self.quantities for side in JUDGED_SIDES)
 
 
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
