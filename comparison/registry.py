@@ -4,7 +4,7 @@ Registry of the features of a study in the order of the pages: they are run, pla
 A feature is one folder, whose module `feature` has a `FEATURE`, and one line of `FEATURES`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from typing import Any
@@ -94,10 +94,10 @@ def estimate_stage_seconds(study: Study) -> dict[str, float]:
     return {each.stage: each.estimate_seconds(study.restrict_to(each.key)) for each in select_analyses(study)}
 
 
-def estimate_study_seconds(study: Study) -> float:
-    """Return the rough processor time of all models and analyses of a study, s."""
+def estimate_study_seconds(study: Study, stages: Mapping[str, float]) -> float:
+    """Return the rough processor time of all models and analyses of a study, s; stages: `estimate_stage_seconds`."""
     models = sum(estimate_model_seconds(study, model) for model in study.hierarchy)
-    return models + sum(estimate_stage_seconds(study).values())
+    return models + sum(stages.values())
 
 
 def list_first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:

@@ -140,13 +140,14 @@ class StudyRun:
             remove_abandoned_reports(options.out)
             surfaces = make_surface_tasks(self._study)
             results = self._open_results(surfaces)
-            total = WRITING_SECONDS + estimate_study_seconds(self._study)
+            stages = estimate_stage_seconds(self._study)
+            total = WRITING_SECONDS + estimate_study_seconds(self._study, stages)
             reports = ReportWriter(options, jobs, self._words, self._began)
             with (
                 show_progress(self._console, total, jobs) as display,
                 Deadline(self._began.wall, options.budget) as deadline,
             ):
-                runner = Runner(results, jobs, pool, display, estimate_stage_seconds(self._study))
+                runner = Runner(results, jobs, pool, display, stages)
                 stop = self._compute_levels(runner, surfaces, reports, deadline)
             return self._close(reports, jobs, stop)
 

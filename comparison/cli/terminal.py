@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import estimate_study_seconds, make_study_levels, select_analyses
+from comparison.registry import estimate_stage_seconds, estimate_study_seconds, make_study_levels, select_analyses
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -42,7 +42,8 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print("A recorded motion has no phases: one point per model.")
     results = TaskResults(Cache(locate_store(options.out)), options.fresh)
     print_stored(console, results, make_surface_tasks(study), first)
-    wall = STARTING_SECONDS + estimate_study_seconds(study) / options.jobs + WRITING_SECONDS
+    seconds = estimate_study_seconds(study, estimate_stage_seconds(study))
+    wall = STARTING_SECONDS + seconds / options.jobs + WRITING_SECONDS
     compiling = f" and {COMPILING_SECONDS:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{compiling}; nothing was computed.")
     console.print(f"The report would go to {options.out}.", soft_wrap=True)
