@@ -57,7 +57,7 @@ def word_difference(size: float, error: float) -> str:
 
 
 def more_or_less(size: float, error: float) -> str:
-    """Return a share in the digits of `difference_with_error`, with "more" or "less" for its sign."""
+    """Return a share in the digits of `word_difference`, with "more" or "less" for its sign."""
     return f"{word_difference(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
 
 

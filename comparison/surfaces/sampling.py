@@ -7,7 +7,7 @@ surface is smooth, and about as much where ridges decide. A surface that is flat
 them from every shifted grid, so that the estimate is at least what as many phases chosen at random would leave.
 
 On the differences of the equations of the paper's scenes, whose means on 48 x 48 phases stand for the truth, the
-estimate holds for all of 240 means on 3 x 3 to 16 x 16 phases; without SAFETY for 94 % of them.
+estimate holds for all of 240 means on 3 x 3 to 16 x 16 phases; without SCATTER_FACTOR for 94 % of them.
 """
 
 import numpy as np

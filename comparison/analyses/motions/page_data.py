@@ -31,7 +31,8 @@ support k, at (X, Y) from the center of mass of body 1, begins at the sphere's t
 -lever (x - yaw Y, y + yaw X), with `lever` and `supports` from `contact_geometry`; without yaw it is
 -lever (x, y) at every support.
 
-A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
+A column is rounded to at most MAX_COLUMN_ROUNDING of half its range, less than decimation leaves, so that it
+compresses well.
 """
 
 from collections.abc import Iterator, Sequence

@@ -140,7 +140,7 @@ CONVERGENCE_CASES = (
     ConvergenceCase("elastic contact against rigid", PENETRATIONS, 1.0, _compare_stiff_contacts, lambda scene: True),
 )
 
-CaseArguments = tuple[Scene, int]  # scene, and index of the limit in LIMITS
+CaseArguments = tuple[Scene, int]  # scene, and index of the limit in CONVERGENCE_CASES
 
 
 def fit_limit_trends(task: CaseArguments) -> list[Trend]:

@@ -146,8 +146,8 @@ class FittedRun(NamedTuple):
     """
     A run with the friction ratio fitted to its motion.
 
-    spread: of the ratio, by the scatter over the cycles. changed: fitted again with each input of REFITTED changed by
-    its uncertainty. shifted: fitted with the base motion that the run of the constant ratio fits best.
+    spread: of the ratio, by the scatter over the cycles. changed: fitted again with each input of REFITTED_INPUTS
+    changed by its uncertainty. shifted: fitted with the base motion that the run of the constant ratio fits best.
     """
 
     cycles: Cycles
