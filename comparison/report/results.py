@@ -146,7 +146,7 @@ class Results(Part):
         return [scene for scene in self.scenes if not scene.recorded]
 
     def scenes_with(self, analysis: str) -> list[SceneResult]:
-        """Return the scenes whose results the analysis has."""
+        """Return the scenes whose results include the analysis."""
         return [scene for scene in self.scenes if analysis in scene.analyses]
 
     @property

@@ -39,7 +39,8 @@ except ImportError:  # Windows cannot limit a process's processor time; its wall
 SPAWN_CONTEXT = multiprocessing.get_context("spawn")
 # Wall time over the time limit after which a silent process is stuck, waiting for something that never comes
 STALLED_WALL_RATIO = 20.0
-# A time limit of more than a few seconds allows this multiple of it as wall time, for a shared processor, plus s.
+# With a time limit of more than a few seconds the wall time may be this multiple of it, for a shared processor, plus
+# the spare s.
 WALL_TIME_RATIO, SPARE_WALL_SECONDS = 5.0, 60.0
 MAX_TIMEOUT = 1e6  # s, longest timeout that the system takes
 EXIT_SECONDS = 5.0  # s that a process has to end after its pipe has ended

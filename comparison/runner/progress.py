@@ -114,7 +114,7 @@ class Deadline:
             signal.signal(signal.SIGALRM, self._before)
 
     def keep_free(self, seconds: float) -> None:
-        """Move the deadline forward by `seconds`, for work that has to follow."""
+        """Stop the block `seconds` before the end from now on, for work that has to follow."""
         if self._end is not None:
             signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), MIN_TIMER))
 

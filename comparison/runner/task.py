@@ -37,7 +37,7 @@ class Task:
     about: Any = None  # question whose results share a directory in the cache
     # Whether, on a new installation, it waits until a worker has compiled the reference
     needs_compiled_reference: bool = True
-    # S, largest processor time, rounded up; a task that takes longer ends with Outcome.TIME_LIMIT
+    # Largest processor time, s, rounded up; a task that takes longer ends with Outcome.TIME_LIMIT
     timeout: float | None = None
     group: str = ""  # group of workers that it may use: a user's engine may spoil the process it runs in
     model: str = ""  # "package:name" of the only model it calls: other sources do not change its value

@@ -19,7 +19,7 @@ from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
-MAX_DECIMATION_ERROR = 0.003  # Largest interpolation error of a decimated motion, as a share of a component's range.
+MAX_DECIMATION_ERROR = 0.003  # Largest interpolation error of a decimated motion, as a share of half a component's range.
 MIN_RANGE_SHARE = 0.01  # A component whose range is below this share of its largest value counts as constant.
 EVENLY_SPREAD_PAIRS = (
     5  # Number of phase pairs (k, 2k) 2 pi/5: they cover the square evenly, and no two are mirror images.
@@ -36,8 +36,10 @@ def half_range(values: Array) -> Array:
 
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
-    Return the indices to keep of `values` (T, C) at `time` (T,): ends, `peaks`, and all that straight lines need.
-    lines between them to miss no value by more than SHARE of `half_range` of its component.
+    Return the indices to keep of `values` (T, C) at `time` (T,).
+
+    They are both ends, `peaks`, and as many more as it takes for straight lines between them to miss no value by more
+    than MAX_DECIMATION_ERROR of `half_range` of its component.
     """
     if len(time) < 3:
         return np.arange(len(time))

@@ -220,8 +220,9 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
     )
     exactly = make_baseline_scene(amplitudes=add_vertical_harmonic(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # rad, phases at which the contact force is zero for an instant
+    # For that instant either outcome, contact or its loss, is right.
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR_MODELS, phases=weightless, right=("contact lost",))
-    # The contact force vanishes for an instant, where either outcome, contact or its loss, is right.
+    # The spatial model goes on when a contact opens: no outcome is prescribed.
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
     yield from _cases_of_group(
         group, {upward: make_baseline_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (15.0, 1e3)}

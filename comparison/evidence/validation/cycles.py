@@ -82,9 +82,9 @@ def fold_run(run: FrameRun) -> Cycles:
 
 def measure_cycle(motion: Array, frequency: float) -> Array:
     """
-    Return the quantities of one cycle, mm, in the order of NAMES.
+    Return the quantities of the motion of one cycle (samples,), mm, in the order and units of `frame.NAMES`.
 
-    The plate starts and stops where its speed passes SPEED, before and behind each of its two largest speeds; the
+    The plate starts and stops where its speed passes REST_SPEED, before and behind each of its two largest speeds; the
     phases are from the turn of the base on, means of both directions.
     """
     speed = (
