@@ -32,9 +32,8 @@ from reference.measures.local_search import ComputedPhases, LocalSearch, Surface
 from reference.problem import Scene
 
 SEARCH_TOLERANCE = 1e-5  # relative error of mu at which the equations are solved in a search
-ENGINE_HALF_WIDTH = (
-    0.02  # rad, half width of the square around the equations' worst phases in which the engine is searched
-)
+# Half width, rad, of the square around the equations' worst phases in which the engine is searched
+ENGINE_HALF_WIDTH = 0.02
 NO_PHASES = (math.nan, math.nan)  # phases or a direction that are not known
 
 

@@ -181,9 +181,8 @@ def solve_cell(cell: MatrixCell) -> MatrixEntry:
             known = {key: value for key, value in row.settings.items() if other == function or key in settings}
             strict = max(usual * min(1.0, tolerance / column.tolerance), MIN_TOLERANCE)
             finer.append(_ask_model(row, other, {**settings, **known, "tolerance": strict}))
-            if finer[-1].status and NUMERICAL_OUTCOMES.isdisjoint(
-                finer[-1].status
-            ):  # every point has an answer or a refusal
+            statuses = finer[-1].status
+            if statuses and NUMERICAL_OUTCOMES.isdisjoint(statuses):  # every point has an answer or a refusal
                 break
     entry = judge_answer(reply, finer, tolerance, row.invalid, row.right)
     cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == CellVerdict.LIMIT else None

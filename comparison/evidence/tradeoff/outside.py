@@ -18,9 +18,8 @@ from reference.solver.system import pack_scene
 
 ABSOLUTE_TOLERANCE_RATIO = 1e-2  # absolute tolerance of a step, m and m/s, over its relative tolerance
 MOTION_SAMPLES = 2001  # number of samples, in addition to the solver's own steps, that locate the peaks
-PEAK_NEIGHBORHOOD = (
-    1e-3  # Around samples within this share of the peak, the motion is sampled PEAK_REFINEMENT times as densely.
-)
+# Around samples within this share of the peak, the motion is sampled PEAK_REFINEMENT times as densely.
+PEAK_NEIGHBORHOOD = 1e-3
 PEAK_REFINEMENT = 50  # factor on the sampling rate near a peak
 LUBRICATED_V_REG = 1e6  # m/s, v_reg above any speed: it makes the lubricated law mu = f_c |v| linear throughout
 
