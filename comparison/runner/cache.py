@@ -2,11 +2,11 @@
 Cache of every finished result of a study on disk, from which an interrupted run continues.
 
 One directory per group of results, named by a hash of all that they depend on in common; in it one file per result. A
-file begins with FILE_SIGNATURE and a checksum of its name and of all that follows: what the result depends on in words and the
-result as JSON, then its arrays. One that is torn, damaged or of another form is computed again, which also covers a
-power cut without waiting for the disk at every result. A value is written by what it is, and read as the type that the
-function declares which computes it: nothing is unpickled or imported. Only files that begin with it are ever
-removed, and directories that are empty then.
+file begins with FILE_SIGNATURE and a checksum of its name and of all that follows: what the result depends on in words
+and the result as JSON, then its arrays. One that is torn, damaged or of another form is computed again, which also
+covers a power cut without waiting for the disk at every result. A value is written by what it is, and read as the type
+that the function declares which computes it: nothing is unpickled or imported. Only files that begin with
+FILE_SIGNATURE are ever removed, and directories that are empty then.
 """
 
 import hashlib

@@ -19,7 +19,8 @@ from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
-MAX_DECIMATION_ERROR = 0.003  # Largest interpolation error of a decimated motion, as a share of half a component's range.
+# Largest interpolation error of a decimated motion, as a share of half a component's range
+MAX_DECIMATION_ERROR = 0.003
 MIN_RANGE_SHARE = 0.01  # A component whose range is below this share of its largest value counts as constant.
 # Number of phase pairs (k, 2k) 2 pi/5: they cover the square evenly, and no two are mirror images.
 EVENLY_SPREAD_PAIRS = 5
