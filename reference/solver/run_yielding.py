@@ -10,7 +10,7 @@ from math import inf
 
 from reference.solver.compiled import cached_entry_point, compiled
 from reference.solver.events import NOT_IN_STEP
-from reference.solver.phases.follow import MAX_VIBRATION_ANGLE, MIN_DRIFT_ANGLE, add_drift, vibration_angle
+from reference.solver.phases.follow import MAX_VIBRATION_ANGLE, commit_within_travel, vibration_angle
 from reference.solver.phases.yielding import (
     begin_yielding,
     commit_force,
@@ -33,7 +33,6 @@ from reference.solver.step_control import (
     MAX_SHORTENING,
     NEWTON_FRACTION,
     adapt_length,
-    commit_step,
     count_step,
     guess_from_last_step,
     is_too_short,
@@ -54,7 +53,6 @@ from reference.solver.system import (
     StepRecord,
     System,
 )
-from reference.solver.travel import instant_of_travel
 from reference.solver.work import (
     Workspace,
     allocate_workspace,
@@ -102,13 +100,9 @@ def accept_step(
 ) -> bool:
     """Make the end of the step the new state; return True if the platform reaches its travel in the step."""
     work.edges[0], work.edges[1] = 0.0, 1.0
-    reached = instant_of_travel(system, work, contact, h)
-    if angle > MIN_DRIFT_ANGLE:
-        add_drift(system, work, h, angle)
-    commit_step(system, work, record, h, contact, 1)
+    outcome = commit_within_travel(system, work, record, h, contact, 1, angle)
     commit_force(work)
-    if reached < inf:
-        work.time = reached
+    if outcome == TRAVEL:
         return True
     adapt_length(work, h, factor)
     return False
