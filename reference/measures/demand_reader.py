@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -107,6 +107,7 @@ class DemandSamples(NamedTuple):
 
 
 ReadNumber = Callable[[DemandSamples], float]
+ReadNumbers = Callable[[DemandSamples], Sequence[float]]
 
 
 class DemandReader:
@@ -122,11 +123,20 @@ class DemandReader:
 
     def extreme(self, read: ReadNumber) -> Estimate:
         """Return a number that `read` computes from samples, with its error."""
+        [estimate] = self.extremes(lambda samples: [read(samples)], 1)
+        return estimate
+
+    def extremes(self, read: ReadNumbers, count: int) -> tuple[Estimate, ...]:
+        """Return `count` numbers that `read` computes from samples together, with their errors."""
         if not self.answered:
-            return UNKNOWN_ESTIMATE
-        value = read(self.samples)
-        sampling = max(abs(read(samples) - value) for samples in self.decimated)
-        return Estimate(value, sampling + self._solution_error(value, [read(samples) for samples in self.coarser]))
+            return (UNKNOWN_ESTIMATE,) * count
+        values = read(self.samples)
+        decimated, coarser = ([read(samples) for samples in each] for each in (self.decimated, self.coarser))
+        estimates = []
+        for n, value in enumerate(values):
+            sampling = max(abs(part[n] - value) for part in decimated)
+            estimates.append(Estimate(value, sampling + self._solution_error(value, [other[n] for other in coarser])))
+        return tuple(estimates)
 
     def residual(self) -> Estimate:
         """Return the displacement in the last rest, with the creep in all rests as a part of its error."""

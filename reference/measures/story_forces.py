@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -85,34 +84,25 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     """
     read, scene = DemandReader(trajectory), trajectory.scene
     bodies, heights, places = range(len(scene.bodies)), heights_above_contact(scene), scene.support_places
-    has_supports = read.samples.support.shape[1] > 0
-    support: Callable[[DemandSamples], Array] | None = None
-    if has_supports:
-        support = _support_forces_of_model
+    support_min = support_max = uplift = None
+    if single := read.samples.support.shape[1]:
+        support_min, support_max = _read_supports(read, lambda samples: samples.support, single)
+        _, uplift = _read_supports(read, lambda samples: samples.uplift, single)
     elif places is not None and heights is not None:
-        support = _cache_by_samples(_support_forces_by_statics(scene, heights, places))
-    shears = [_force_below(scene.masses[body:], body) for body in bodies]
+        support_min, support_max = _read_supports(read, _support_forces_by_statics(scene, heights, places), len(places))
     arms = [] if heights is None else [_arms_below(scene, heights, body) for body in bodies]
-    moments = [_force_below(own, body) for body, own in enumerate(arms)]
-    drifts = [_drift_above(link) for link in bodies[:-1]]
-
-    def lengths(vectors: Sequence[ReadVectors]) -> tuple[Estimate, ...]:
-        """Return the largest magnitude of each vector over time, with its error."""
-        return tuple(read.extreme(partial(_largest_length, vector)) for vector in vectors)
-
-    def along(vectors: Sequence[ReadVectors]) -> tuple[tuple[Estimate, ...], ...]:
-        """Return the largest components along x, then along y, of each vector over time, with their errors."""
-        return tuple(tuple(read.extreme(partial(_largest_along, v, axis)) for v in vectors) for axis in (0, 1))
-
+    shear, *shear_along = _read_vectors(read, [_force_below(scene.masses[body:], body) for body in bodies])
+    moment, *moment_along = _read_vectors(read, [_force_below(own, body) for body, own in enumerate(arms)])
+    _, *drift_along = _read_vectors(read, [_drift_above(link) for link in bodies[:-1]])
     return StoryForces(
-        shear=lengths(shears),
-        moment=None if heights is None else lengths(moments),
-        support_min=_read_supports(read, support, np.min),
-        support_max=_read_supports(read, support, np.max),
-        uplift=_read_supports(read, _uplift_of_model, np.max) if has_supports else None,
-        shear_along=along(shears),
-        moment_along=None if heights is None else along(moments),
-        drift_along=along(drifts),
+        shear=shear,
+        moment=None if heights is None else moment,
+        support_min=support_min,
+        support_max=support_max,
+        uplift=uplift,
+        shear_along=tuple(shear_along),
+        moment_along=None if heights is None else tuple(moment_along),
+        drift_along=tuple(drift_along),
     )
 
 
@@ -134,41 +124,27 @@ def _depression_radius(scene: Scene) -> float:
     return scene.radius + (scene.isolator.sphere_radius or 0.0)
 
 
-def _support_forces_of_model(samples: DemandSamples) -> Array:
-    """Return the support forces that the model itself computed, (T, K), N."""
-    return samples.support
-
-
-def _uplift_of_model(samples: DemandSamples) -> Array:
-    """Return the uplift of each support that the model itself computed, (T, K), m."""
-    return samples.uplift
-
-
-def _cache_by_samples(force: Callable[[DemandSamples], Array]) -> Callable[[DemandSamples], Array]:
-    """Return a function that computes the forces of all supports only once for the same samples."""
-    known: dict[int, Array] = {}
-
-    def forces(samples: DemandSamples) -> Array:
-        if id(samples) not in known:
-            known[id(samples)] = force(samples)
-        return known[id(samples)]
-
-    return forces
-
-
 def _read_supports(
-    read: DemandReader, force: Callable[[DemandSamples], Array] | None, extreme: Callable[..., float]
-) -> tuple[Estimate, ...] | None:
-    """Return the smallest or largest value of every support, with its error; None without single supports."""
-    if force is None:
-        return None
+    read: DemandReader, values: Callable[[DemandSamples], Array], count: int
+) -> tuple[tuple[Estimate, ...], tuple[Estimate, ...]]:
+    """Return the smallest, then the largest over time of values (T, K) of `count` supports, with their errors."""
 
-    def read_support(number: int) -> Callable[[DemandSamples], float]:
-        return lambda samples: float(extreme(force(samples)[:, number]))
+    def ends(samples: DemandSamples) -> list[float]:
+        found = values(samples)
+        return [*found.min(axis=0).tolist(), *found.max(axis=0).tolist()]
 
-    places = read.motion.scene.support_places
-    count = read.samples.support.shape[1] or (0 if places is None else len(places))
-    return tuple(read.extreme(read_support(number)) for number in range(count))
+    both = read.extremes(ends, 2 * count)
+    return both[:count], both[count:]
+
+
+def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterator[tuple[Estimate, ...]]:
+    """Iterate over the largest magnitudes of vectors over time, then their components along x and y, with errors."""
+
+    def sizes(vector: ReadVectors) -> tuple[Estimate, ...]:
+        return read.extremes(lambda samples: _largest_sizes(vector(samples)), 3)
+
+    found = [sizes(vector) for vector in vectors]
+    return (tuple(one[size] for one in found) for size in range(3))
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
@@ -187,14 +163,9 @@ def _drift_above(link: int) -> ReadVectors:
     return lambda samples: samples.place[:, link + 1] - samples.place[:, link]
 
 
-def _largest_length(vectors: ReadVectors, samples: DemandSamples) -> float:
-    """Return the largest magnitude of vectors (T, 2) over time."""
-    return float(np.linalg.norm(vectors(samples), axis=1).max())
-
-
-def _largest_along(vectors: ReadVectors, axis: int, samples: DemandSamples) -> float:
-    """Return the largest absolute component along one axis of vectors (T, 2) over time."""
-    return float(np.abs(vectors(samples)[:, axis]).max())
+def _largest_sizes(vectors: Array) -> list[float]:
+    """Return the largest magnitude of vectors (T, 2) over time, and their largest components along x and y."""
+    return [float(np.linalg.norm(vectors, axis=1).max()), *np.abs(vectors).max(axis=0).tolist()]
 
 
 def support_loads_at_rest(scene: Scene) -> Array | None:

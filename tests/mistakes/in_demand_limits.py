@@ -368,7 +368,7 @@ MISTAKES = (
     Mistake("reference/records/suites.py", "motion = find_motion(file, files)", 'motion = Motion(file.stem, {"x": file})',
             "The line that is proposed has one of two components.",
             (FOLDERS + "plain_texts_of_one_motion_are_proposed_in_one_line",)),
-    Mistake("reference/measures/story_forces.py", "vectors(samples)[:, axis]", "vectors(samples)[:, 1 - axis]",
+    Mistake("reference/measures/story_forces.py", "*np.abs(vectors).max(axis=0).tolist()", "*np.abs(vectors).max(axis=0)[::-1].tolist()",
             "Forces along x and y change places.",
             ("tests/reference/test_story_forces.py::test_forces_and_drifts_along_x_and_y_are_those_of_one_axis_each",)),
     Mistake("comparison/analyses/ensemble/rows.py", "for each in (x, y) for place in (0, WORST_COLUMN)", "for each in (x, x) for place in (0, WORST_COLUMN)",
