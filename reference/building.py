@@ -152,11 +152,7 @@ def describe_building(scene: Scene) -> Building:
 
 
 def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array, Array]:
-    """
-    Return frequencies, damping ratios and shares of the mass, (L,), of the modes above a fixed platform.
-
-    They are those along one axis.
-    """
+    """Return frequencies, damping ratios and mass shares, (L,), of the modes along one axis above a fixed platform."""
     if len(scene.bodies) == 1:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     frequency, shape = solve_chain_modes(scene.masses[1:], scene.stiffness[:, axis], MAX_DESCRIBED_MODES)

@@ -370,11 +370,9 @@ def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _
     """Return the neighbors of the point with the largest change of slope; None where errors explain the change."""
     x, f, e = np.array(points).T
     slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
-    slope_change = (
-        np.abs(np.diff(slope)) - error[1:] - error[:-1]
-    )  # change of slope at the points between two intervals
-    node = 1 + int(slope_change.argmax())
-    if not slope_change[node - 1] > 0.0:
+    excess = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # changes of slope between intervals beyond their errors
+    node = 1 + int(excess.argmax())
+    if not excess[node - 1] > 0.0:
         return None
     low, high = points[node - 1], points[node + 1]
     if node == 1:  # no slope is known on the far side: a small part of the outer interval gives it

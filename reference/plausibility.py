@@ -103,7 +103,7 @@ def _implausible_limits(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _implausible_modes(building: Building) -> list[str]:
-    """Return the lines for implausible first modes above a fixed base."""
+    """Return the lines for implausible periods and damping of the modes above a fixed base."""
     if building.bodies == 1:
         return []
     lines: list[str] = []

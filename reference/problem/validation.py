@@ -26,7 +26,7 @@ ALONG_AXES = {  # form of keys of a body
     "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
 }  # fmt: skip
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list means several sliding surfaces
-# Pydantic's name of the limit
+# For each of pydantic's errors of length, its name of the limit, and the words that precede the limit
 LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
 MISSING_TABLE_RULES = {
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '

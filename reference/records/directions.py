@@ -23,7 +23,7 @@ MAX_WORD_LETTERS = max(map(len, AXIS_OF))
 WORD_INSIDE_NAME = re.compile(
     rf"(?P<base>.+[._-])(?P<word>(?:{'|'.join(CHANNEL_BANDS)})[ENZ123])(?P<rest>[._-].+)", re.IGNORECASE
 )
-WORD_AT_END_OF_NAME = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)
+WORD_AS_SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)
 # Degrees: azimuths of two horizontal components differ by so much, as few instruments stand askew
 RIGHT_ANGLE_RANGE = 75.0, 105.0
 KNOWN_SPELLINGS = (
@@ -70,7 +70,7 @@ def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
             found.append((base, direction))
     if (inside := WORD_INSIDE_NAME.fullmatch(stem)) and (direction := parse_direction(inside["word"])):
         found.append((inside["base"].rstrip("-_. ") + inside["rest"], direction))
-    if (ending := WORD_AT_END_OF_NAME.fullmatch(suffix.lstrip("."))) and (direction := parse_direction(ending["word"])):
+    if (ending := WORD_AS_SUFFIX.fullmatch(suffix.lstrip("."))) and (direction := parse_direction(ending["word"])):
         found.insert(0, (f"{stem}{'-' if ending['rest'] else ''}{ending['rest']}", direction))
     return found
 

@@ -45,7 +45,7 @@ def pair_files(files: Sequence[Path]) -> list[Motion]:
 
 
 def find_motion(file: Path, files: Sequence[Path]) -> Motion:
-    """The motion that a file is a component of, with the others of its name among some files; or the file alone."""
+    """Return the motion of which a file is a component, with the other files of its name; or the file alone."""
     for members in _group_files(files).values():
         if file in members and (axes := assign_axes([one for _, one in members.values()])) is not None:
             return Motion(members[file][0], {axis: [*members][number] for axis, number in axes.items()})

@@ -122,7 +122,7 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
 
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
-    """Return what is said of a motion that cannot be read: in its line of the list, or in its folder."""
+    """Return the error of a motion that cannot be read, which names its line of the list or its folder."""
     folder = next(iter(motion.files.values())).parent
     place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
@@ -232,7 +232,7 @@ def propose_motion(files: Sequence[Path]) -> str:
 
 
 def _read_directory(place: Path) -> MotionList | list[Path]:
-    """Return the list of motions that a directory holds, or else its files as motions. Raises SuiteError."""
+    """Return the list of motions that a directory holds, or else its files. Raises SuiteError."""
     try:
         if (listed := read_motion_list(place)) is not None:
             return listed

@@ -26,7 +26,7 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-# Prefix of temporary files and staging directories; a user's file may have it as well, so that MARK decides
+# Prefix of temporary files and staging directories; a user's file may have it as well, so that MARK_FILE decides
 TEMPORARY_PREFIX = ".phase-resonance-"
 MARK_FILE = "staging.json"  # file in a staging directory that names the program and the path for which it was made
 CHUNK_BYTES = 2**20  # bytes read at once
@@ -108,7 +108,7 @@ def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
 
 @contextmanager
 def staging_directory(place: Path) -> Iterator[Path]:
-    """Make a locked directory next to `place` for the block, with an empty directory NEW in it; yield its path."""
+    """Make a locked directory next to `place` for the block, with an empty NEW_FILES_FOLDER in it; yield its path."""
     folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY_PREFIX))
     with hold_lock(folder, wait=False):
         try:

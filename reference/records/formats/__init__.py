@@ -39,7 +39,7 @@ READERS = (
     Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv, ".csv"),
 )
 READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
-NETWORK_FILE_NAME = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
+NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # as of raw files
 OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a table that gives one file
 
 
@@ -64,7 +64,7 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
         return plain_text.read_plain_text(text, name, **given)
     suffix = name[name.rfind(".") :] if "." in name else ""
     reader = recognize_format(text, suffix)
-    if NETWORK_FILE_NAME.fullmatch(suffix) and (reader is None or reader.name == csv_table.FORMAT):
+    if NETWORK_SUFFIX.fullmatch(suffix) and (reader is None or reader.name == csv_table.FORMAT):
         raise RecordError("a file of a network that is not read as it is: docs/guide/networks.md converts it to CSV")
     if reader is None:
         return plain_text.read_plain_text(text, name, **given)

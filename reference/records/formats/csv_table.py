@@ -45,7 +45,7 @@ DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE
 
 @dataclass(frozen=True)
 class HeaderCell:
-    """A cell of the header: its place, kind ("time", "acceleration" or "other"), direction and unit."""
+    """A cell of the header: its place, kind ("time", "acceleration", "wrong" or "other"), direction and unit."""
 
     place: int
     text: str
