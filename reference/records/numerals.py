@@ -25,6 +25,7 @@ NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1
 NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 WORD = re.compile(r"[^\W\d_]{2,}")  # two letters in a row: a line with them is no line of numbers
 NUMBER_LETTERS = {*"0123456789+-.eE \t"}
+WRITE_RECORD = "write record = "  # begins the proposal of every format for a scene
 
 
 def decode_text(content: bytes) -> str:

@@ -21,9 +21,9 @@ import numpy as np
 
 from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
-from reference.records.formats.plain_text import WRITE, Proposal, propose_options, word_guesses
+from reference.records.formats.plain_text import Proposal, propose_options, word_guesses
 from reference.records.motion_lists import FILE_NAME, Motion, MotionList, motion_list_text, read_motion_list
-from reference.records.numerals import decode_text
+from reference.records.numerals import WRITE_RECORD, decode_text
 from reference.records.pairing import SuiteError, find_motion, find_vertical_components, pair_files
 from reference.records.samples import (
     AXES,
@@ -130,7 +130,7 @@ def _refuse_motion(motion: Motion, rule: str) -> SceneError:
 
 def _with_listed_line(reason: str, motion: Motion, file: Path) -> str:
     """Return a reason with the line of motions.csv in place of that of a scene, where it proposes one."""
-    said, mark, _ = reason.partition(f"{WRITE}{{")
+    said, mark, _ = reason.partition(f"{WRITE_RECORD}{{")
     proposal = _propose_file_options(file) if mark else None
     if proposal is None:
         return reason

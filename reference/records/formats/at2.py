@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from reference.records.numerals import MAX_LINE, holds_numbers, parse_number, quote_name, read_values
+from reference.records.numerals import MAX_LINE, WRITE_RECORD, holds_numbers, parse_number, quote_name, read_values
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
@@ -60,7 +60,7 @@ def _shorten_lines(lines: Sequence[str]) -> list[str]:
 def _check_unit(header: list[str], proposal: str) -> None:
     """Raise RecordError unless the header names g as the unit, and no other unit."""
     found = [(number, line) for number, line in enumerate(header, 1) if UNIT_LINE.search(line)]
-    rule = f"must say 'IN UNITS OF G'; in another unit write record = {proposal}"
+    rule = f"must say 'IN UNITS OF G'; in another unit {WRITE_RECORD}{proposal}"
     for number, line in found:
         at = UNIT_LINE.search(line)
         if NO_ACCELERATION.search(line):

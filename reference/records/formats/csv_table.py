@@ -16,7 +16,15 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.directions import Direction, assign_axes, parse_direction
-from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, quote_name, unit_factor
+from reference.records.numerals import (
+    MAX_CELL,
+    MAX_LINE,
+    UNIT_NAMES,
+    WRITE_RECORD,
+    parse_number,
+    quote_name,
+    unit_factor,
+)
 from reference.records.samples import AXES, RecordError, RecordSamples
 from reference.support.arguments import quote
 
@@ -156,7 +164,7 @@ def _header_columns(line: int, cells: list[str], unit: str | None, name: str) ->
     if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
         raise RecordError(
             f"line {line}: {quote(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
-            'column of the time write record = {file = "...", step = 0.01, unit = "g", skip = 1, column = 1}'
+            f'column of the time {WRITE_RECORD}{{file = "...", step = 0.01, unit = "g", skip = 1, column = 1}}'
         )
     if not times or not usable:
         raise RecordError(f"line {line}: must be {HEADER_EXAMPLE}")

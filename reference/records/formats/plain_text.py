@@ -20,6 +20,7 @@ from reference.records.numerals import (
     NUMBER,
     NUMBER_IN_RUN,
     UNIT_NAMES,
+    WRITE_RECORD,
     holds_numbers,
     parse_fields,
     parse_plain_lines,
@@ -47,7 +48,6 @@ NAMED_STEP = re.compile(
     r"|(?P<rate>[0-9]+(?:\.[0-9]*)?) ?(?:hz|sps)\b",
     re.IGNORECASE,
 )
-WRITE = "write record = "  # begins the proposal for a scene
 # Words of a header whose numbers are a spectrum, not accelerations over time
 NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
 # A line of two numbers: the number of samples and the sampling interval, s
@@ -141,7 +141,7 @@ def propose_line(text: str, name: str) -> str:
     parts = [f"file = {quote_name(name)}", f"step = {proposal.step:g}", f'unit = "{proposal.unit}"']
     parts += [f"skip = {proposal.skip}"] if proposal.skip else []
     parts += [f"column = {proposal.columns[0]}"] if proposal.columns else []
-    return f"{WRITE}{{{', '.join(parts)}}}{word_guesses(proposal.missing)}"
+    return f"{WRITE_RECORD}{{{', '.join(parts)}}}{word_guesses(proposal.missing)}"
 
 
 def word_guesses(missing: Sequence[str]) -> str:
