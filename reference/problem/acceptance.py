@@ -40,11 +40,6 @@ class Limits(LimitTable):
 class DemandLimits(LimitTable):
     """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
 
-    limited = (
-        "displacement", "support_displacement", "drift_ratio", "uplift", "base_shear", "support_force_max",
-        "acceleration", "residual",
-    )  # fmt: skip
-
     displacement: NonNegative | None = key(
         "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
     )
@@ -78,6 +73,9 @@ class DemandLimits(LimitTable):
     statistic: Literal["mean", "largest"] = key(
         '"mean" or "largest" over the motions: what the limits are on', models=ENSEMBLE, default="largest"
     )
+
+
+DemandLimits.limited = tuple(name for name in DemandLimits.model_fields if name != "statistic")
 
 
 def _check_table(value: Any) -> Any:
