@@ -113,7 +113,7 @@ def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
-    infinite or above LARGEST_MU: its status becomes "value out of range".
+    infinite or above MAX_MU: its status becomes "value out of range".
     """
     with np.errstate(invalid="ignore"):
         absurd = np.any((mu < 0.0) | (mu > MAX_MU) | (error > MAX_MU), axis=1).tolist()

@@ -90,7 +90,7 @@ def find_validity_ranges(
     scene: Scene, cells: Sequence[AssumptionCell], directions: Sequence[DirectionTrial] = ()
 ) -> list[ValidityRange]:
     """
-    Return where every mu_i stays within each share of WITHIN, over rings, heights, ovals, offsets and angles.
+    Return where every mu_i stays within each of CHANGE_LIMITS, over rings, heights, ovals, offsets and angles.
 
     All else is as stated, and directions are the worst. cells, directions: those of other scenes are left out. A trial
     that symmetry makes blind counts for nothing. Ovals, offsets and angles are there only where one was tried.
