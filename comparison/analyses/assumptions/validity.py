@@ -17,7 +17,7 @@ from comparison.analyses.assumptions.trials import (
     TaskTrials,
     Trial,
     answer_trials,
-    name_change,
+    compute_relative_change,
     without_answer,
 )
 from comparison.analyses.assumptions.variations import (
@@ -269,7 +269,7 @@ class Assumptions(MappedAnalysis[Validity]):
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
     """Return the change of mu by a variation, against `plain` without it; note a symmetry that hides it."""
     assert trial.variation is not None, "only the translational model has none"
-    change, uncertainty = name_change(trial, plain)
+    change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""
     rows = tuple(map(tuple, change.tolist())), tuple(map(tuple, uncertainty.tolist()))
     message = trial.error_message or plain.error_message
