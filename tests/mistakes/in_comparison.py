@@ -462,7 +462,7 @@ MISTAKES = (
             "The verdict is the opposite.", (OF + "conditioning.py::test_the_sentence_names_reading_base_grid_sign_and_error",)),
     Mistake(ANALYSES + "conditioning/statement.py", '(mean of {pairs})"', '(largest of {pairs})"',
             "A mean is called the largest.", (OF + "conditioning.py::test_the_sentence_names_reading_base_grid_sign_and_error",)),
-    Mistake(ANALYSES + "conditioning/statement.py", "{speed_text(DEFAULT_V_C)} m/s count", "{speed_text(DEEP)} m/s count",
+    Mistake(ANALYSES + "conditioning/statement.py", "{speed_text(DEFAULT_V_C)} m/s count", "{speed_text(LOW_V_C)} m/s count",
             "As integrated has another speed.", (OF + "conditioning.py::test_the_sentence_names_reading_base_grid_sign_and_error",)),
     Mistake(ANALYSES + "conditioning/feature.py", "curve.reading if curve.reading == LITERAL_SUPREMUM else f", "curve.reading if curve.reading != LITERAL_SUPREMUM else f",
             "A plot lacks the speed of a curve.", (OF + "conditioning.py::test_a_plot_names_the_reading_of_every_curve",)),
