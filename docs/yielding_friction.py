@@ -297,17 +297,15 @@ def compute_displacements() -> dict[str, Any]:
     rows: dict[str, Any] = {}
     for name in ("fig3-I", "fig3-II"):
         scene = _yielding_scene(name, YIELDS[0])
-        for number in (
-            number for number, question in enumerate(QUESTIONS) if question.argument == "yield_displacement"
-        ):
+        for number, question in enumerate(QUESTIONS):
+            if question.argument != "yield_displacement":
+                continue
             curves = [curve for curve in conditioning_curves((scene, number, GRID)) if curve.body == 1]
             yields, supremum = curves
-            damping = yields.damping or 0.0
-            links = {f"bodies.{body}.damping": damping for body in range(1, len(scene.bodies))}
             pairs, taken = distinct_pairs(scene, GRID)
-            rigid = reference.amplification(load_scene(name).with_values(links), pairs, cutoff=DEFAULT_V_C).mu
+            rigid = reference.amplification(question.with_damping(load_scene(name)), pairs, cutoff=DEFAULT_V_C).mu
             integrated = rigid[taken.ravel(), 0]
-            rows[f"{name}, {100.0 * damping:g} %"] = {
+            rows[f"{name}, {100.0 * (yields.damping or 0.0):g} %"] = {
                 "as integrated": [float(integrated.mean()), float(integrated.max())],
                 "literal supremum": [supremum.mean[0], supremum.largest[0]],
                 "phases per axis": GRID,

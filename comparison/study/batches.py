@@ -12,7 +12,7 @@ import numpy as np
 from comparison.result_types import Array
 from comparison.study.models import Model
 from comparison.wording import word_exception
-from reference.problem import Outcome, Scene
+from reference.problem import Amplification, Outcome, Scene, Trajectory
 
 MAX_MU = 1e12  # far above mu of any building, and small enough that no sum of squares of mu or of a ratio overflows
 # Outcome of our own models with which mu counts, with the larger error that is stated
@@ -107,13 +107,27 @@ def import_function(path: str) -> Any:
     return getattr(import_module(module), name)
 
 
+def compute_amplification(scene: Scene, model: Model, phases: Any, **settings: object) -> Amplification:
+    """Return mu of a scene by a model; settings: more than the model's own. Runs inside a worker process."""
+    asked = {**model.settings, **settings}
+    answer: Amplification = import_function(model.amplification)(model.scene_of(scene), phases, **asked)
+    return answer
+
+
+def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) -> Trajectory:
+    """Return one motion of a scene by a model; settings: more than the model's own. Runs inside a worker process."""
+    asked = {**model.motion_settings, **settings}
+    motion: Trajectory = import_function(model.trajectory)(model.scene_of(scene), phases, **asked)
+    return motion
+
+
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
     Replace every answer that is none by NaN, in place: mu and error (M, N), status (M).
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
-    infinite or above LARGEST_MU: its status becomes "value out of range".
+    infinite or above MAX_MU: its status becomes "value out of range".
     """
     with np.errstate(invalid="ignore"):
         absurd = np.any((mu < 0.0) | (mu > MAX_MU) | (error > MAX_MU), axis=1).tolist()

@@ -23,7 +23,7 @@ from comparison.result_types import Array, Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import import_function
+from comparison.study.batches import compute_amplification
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import RESOLVED_RATIO, drop_unusable_values, usable_mu
@@ -144,7 +144,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
                 lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
                 if lacks and _find_finer_model(study, scene, model):
                     phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
-                    about = model.scene_of(scene), model, model.arguments(study.tolerance, study.full)
+                    about = scene, model, model.arguments(study.tolerance, study.full)
                     parts = [
                         phases[first : first + POINTS_PER_TASK] for first in range(0, len(phases), POINTS_PER_TASK)
                     ]
@@ -155,7 +155,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
 def compute_held_out(task: Arguments) -> HeldOut:
     """Return mu of one model at the phase pairs of one task. Runs inside a worker process."""
     scene, model, settings, phases = task
-    answer = import_function(model.amplification)(scene, phases, **settings)
+    answer = compute_amplification(scene, model, phases, **settings)
     return HeldOut(np.asarray(answer.mu, float), np.asarray(answer.error, float))
 
 

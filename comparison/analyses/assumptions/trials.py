@@ -127,7 +127,7 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
             if not reason:
                 stated = stated or ask(variation=None)
                 change, uncertainty = (
-                    tuple(rows[0].tolist()) for rows in name_change(ask(variation=variation), stated)
+                    tuple(rows[0].tolist()) for rows in compute_relative_change(ask(variation=variation), stated)
                 )
             of_key.append(DirectionTrial(scene.name, key, variation, change, uncertainty, reason, False))
         telling = [trial for trial in of_key if not trial.no_effect]
@@ -150,7 +150,7 @@ def follow_direction(
             if not tried:
                 raise
             return  # At a larger size a support would carry nothing.
-        change, uncertainty = name_change(trial, plain)
+        change, uncertainty = compute_relative_change(trial, plain)
         tried.append((size, (np.abs(change) + uncertainty).max(axis=0)))
         yield trial
         size = next_size(tried, SMALLEST_SIZE[key], LARGEST_SIZE[key])
@@ -179,7 +179,7 @@ def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: fl
     return next((size for size in sorted(larger) if size > max(tried)[0]), None) if larger else None
 
 
-def name_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
+def compute_relative_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
     """Return the relative change (M, N) of mu against the first of the phase pairs of another trial, and its error."""
     base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base

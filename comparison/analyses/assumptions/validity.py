@@ -17,7 +17,7 @@ from comparison.analyses.assumptions.trials import (
     TaskTrials,
     Trial,
     answer_trials,
-    name_change,
+    compute_relative_change,
     without_answer,
 )
 from comparison.analyses.assumptions.variations import (
@@ -90,7 +90,7 @@ def find_validity_ranges(
     scene: Scene, cells: Sequence[AssumptionCell], directions: Sequence[DirectionTrial] = ()
 ) -> list[ValidityRange]:
     """
-    Return where every mu_i stays within each share of WITHIN, over rings, heights, ovals, offsets and angles.
+    Return where every mu_i stays within each of CHANGE_LIMITS, over rings, heights, ovals, offsets and angles.
 
     All else is as stated, and directions are the worst. cells, directions: those of other scenes are left out. A trial
     that symmetry makes blind counts for nothing. Ovals, offsets and angles are there only where one was tried.
@@ -269,7 +269,7 @@ class Assumptions(MappedAnalysis[Validity]):
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
     """Return the change of mu by a variation, against `plain` without it; note a symmetry that hides it."""
     assert trial.variation is not None, "only the translational model has none"
-    change, uncertainty = name_change(trial, plain)
+    change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""
     rows = tuple(map(tuple, change.tolist())), tuple(map(tuple, uncertainty.tolist()))
     message = trial.error_message or plain.error_message

@@ -93,9 +93,10 @@ def has_yielding_friction_below_links(scene: Scene) -> bool:
 
 class Question(NamedTuple):
     """
-    What is asked for several speeds: which model, the argument that the speed is, and on a grid or at FEW.
+    What is asked for several speeds: which model, and the argument that the speed is.
 
-    otherwise: whether the links are damped by another ratio than the scene's.
+    max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a grid. otherwise: whether the links
+    are damped by another ratio than the scene's.
     """
 
     model: str
@@ -104,7 +105,7 @@ class Question(NamedTuple):
     settings: Mapping[str, Any]
     argument: Literal["cutoff", "regularization", "yield_displacement"]
     speeds: tuple[float, ...]
-    on_grid: bool
+    max_grid: int
     applies: Callable[[Scene], bool] = has_dry_friction
     otherwise: bool = False
 
@@ -121,6 +122,19 @@ class Question(NamedTuple):
         """Return the damping of the links in place of the scene's; None for that."""
         return (0.0 if scene.damping.any() else OTHER_DAMPING) if self.otherwise else None
 
+    def with_damping(self, scene: Scene) -> Scene:
+        """Return the scene, of the same name, with the damping of the links that is asked for."""
+        damping = self.damping_of(scene)
+        if damping is None:
+            return scene
+        links = {f"bodies.{number}.damping": damping for number in range(1, len(scene.bodies))}
+        return scene.with_values(links | {"name": scene.name})
+
+    def choose_grid(self, study: Study) -> int:
+        """Return the phases per axis: those of the largest nested grid of a study that it can afford, or 0."""
+        affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
+        return max(affordable, default=self.max_grid)
+
     def answer(self, scene: Scene, phases: Array, speed: float) -> Any:
         """Ask the model at one speed."""
         if self.argument == "yield_displacement":
@@ -134,17 +148,18 @@ EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
 YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # ten times more accurate in fact
 IN_TRANSLATION = {"model": "translational", "tolerance": STUDY_TOLERANCE}
 IN_SPACE = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
+OVER_YIELDS = Question(
+    "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
+)
 # Models whose mu is computed at several v_c, v_reg or u_y, with the literal supremum that it is compared with
 QUESTIONS = (
-    Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, True),
-    Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, True),
-    Question("exact", EXACT, reference, EXACT, "cutoff", SPEEDS, False),
-    Question("translational", EXACT, multibody, IN_TRANSLATION, "regularization", REGULARIZATIONS, False),
-    Question("spatial", EXACT, multibody, IN_SPACE, "regularization", REGULARIZATIONS, False, moves_in_space),
-    Question("exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, True, has_yielding_friction),
-    Question(
-        "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, True, has_yielding_friction_below_links, True
-    ),
+    Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, MAX_GRID),
+    Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, MAX_GRID),
+    Question("exact", EXACT, reference, EXACT, "cutoff", SPEEDS, 0),
+    Question("translational", EXACT, multibody, IN_TRANSLATION, "regularization", REGULARIZATIONS, 0),
+    Question("spatial", EXACT, multibody, IN_SPACE, "regularization", REGULARIZATIONS, 0, moves_in_space),
+    OVER_YIELDS,
+    OVER_YIELDS._replace(applies=has_yielding_friction_below_links, otherwise=True),
 )
 # Symbol of the speed, m/s, or displacement, m, that a keyword argument sets
 SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
@@ -189,11 +204,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
-    damping = question.damping_of(scene)
-    if damping is not None:
-        links = {f"bodies.{number}.damping": damping for number in range(1, len(scene.bodies))}
-        moving = moving.with_values(links | {"name": scene.name})
-    answers = _ask_at_speeds(moving, question, speeds, grid)
+    answers = _ask_at_speeds(question.with_damping(moving), question, speeds, grid)
     curves = [_make_curve(task, body, speeds, answers) for body in range(1, len(scene.bodies) + 1)]
     if question.argument != "regularization":
         limit = answers._replace(mu=answers.supremum[None], error=answers.supremum_error[None])
@@ -286,12 +297,6 @@ def _fill_curve(
     )
 
 
-def _grid_of(study: Study, question: Question) -> int:
-    """Return the largest nested grid of a study, phases per axis, that a question can afford."""
-    most = MAX_YIELDING_GRID if question.settings is YIELDING else MAX_GRID
-    return max((each for each in nested_grids(study.grid) if each <= most), default=most)
-
-
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     """Analysis of every conditioning question in every scene with phases and dry friction."""
 
@@ -302,7 +307,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
         """Return the scenes with the numbers of their questions and the phases per axis."""
         return [
-            (scene, number, _grid_of(study, question) if question.on_grid else 0)
+            (scene, number, question.choose_grid(study))
             for scene in study.phased
             for number, question in enumerate(QUESTIONS)
             if question.applies(scene)

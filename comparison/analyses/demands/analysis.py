@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import import_function
+from comparison.study.batches import compute_motion
 from comparison.study.costs import estimate_motion_seconds
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
@@ -67,8 +67,7 @@ class DemandStatistics:
 def compute_demands(task: DemandTaskArguments) -> TaskDemands:
     """Return the demands and statuses of the motions of one task. Runs inside a worker process."""
     scene, model, tolerance, phases = task
-    trajectory, settings = import_function(model.trajectory), dict(model.settings)
-    demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
+    demands = demands_of_motions(scene, phases, lambda phase: compute_motion(scene, model, phase, tolerance=tolerance))
     return dict(demands), [str(status) for status in demands.status]
 
 

@@ -15,7 +15,7 @@ from pydantic import computed_field
 from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import import_function
+from comparison.study.batches import compute_amplification, compute_motion
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.verdicts import (
@@ -112,17 +112,15 @@ def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> 
 
 def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
     """Return the peaks of one model at one phase pair. Runs inside a worker process."""
-    stated, model, tolerance, phases, asked = task
-    scene = model.scene_of(stated)
-    settings: dict[str, Any] = dict(model.settings)
+    scene, model, tolerance, phases, asked = task
     status = Outcome.OK.value
     known: dict[str, Any] = {}  # estimates by quantity; a value may be for the isolator, for every body, or None
     if any(quantity == "mu" for quantity, _ in asked):
-        answer = import_function(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
+        answer = compute_amplification(scene, model, [phases], tolerance=tolerance)
         known["mu"] = tuple(map(Estimate, answer.mu[0].tolist(), answer.error[0].tolist()))
         status = str(answer.status[0])
     if any(quantity != "mu" for quantity, _ in asked):
-        motion = import_function(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
+        motion = compute_motion(scene, model, phases, tolerance=tolerance)
         known, status = vars(demands(motion)) | known, str(motion.status)
     listed = ((known[name], body - BODY_QUANTITIES.get(name, 0)) for name, body in asked)
     numbers = [(each[place] if isinstance(each, tuple) else each) or NO_SUCH_VALUE for each, place in listed]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.batches import import_function
+from comparison.study.batches import compute_motion
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import compute_difference
@@ -167,9 +167,7 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
     """Return the decimated motion of one task; `error_message` holds what goes wrong."""
     scene, model, tolerance, place, phase = task
     try:
-        motion: Trajectory = import_function(model.trajectory)(
-            model.scene_of(scene), phase, tolerance=tolerance, **model.motion_settings
-        )
+        motion = compute_motion(scene, model, phase, tolerance=tolerance)
         if len(motion.time) == 0:  # The model refused the scene before its first step.
             return replace(
                 _motion_without_values(place, model.key, Outcome(motion.status), ""), demands=demands(motion)

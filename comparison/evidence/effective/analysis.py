@@ -11,7 +11,7 @@ import xarray as xr
 from comparison.result_types import Number, Radius, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import import_function
+from comparison.study.batches import compute_motion
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
 from comparison.wording import percent, word_exception
@@ -79,7 +79,7 @@ def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
     short = scene.with_values({"duration": lasting})
     try:
-        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **model.motion_settings)
+        motion = compute_motion(short, model, PHASES)
         ended = {"error_message": f"the motion ended: {motion.status}"}
         return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:

@@ -73,7 +73,7 @@ def yielding_motion(
             system, load, squared_speed, friction * qx / size, friction * qy / size
         )
         limit = scale_by_load(system, load.k_t, reaction, friction * reaction)
-        # N x q, the direction in which the friction force q turns
+        # n x q, the direction in which the friction force q turns
         cx, cy, cz = ny * qz - nz * qy, nz * qx - nx * qz, nx * qy - ny * qx
         turn = system.stiffness * (vx * cx + vy * cy + vz * cz) / (size * limit)
         turned_x, turned_y = turn * cx, turn * cy

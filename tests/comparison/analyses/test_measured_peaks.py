@@ -9,6 +9,7 @@ from known_analyses import collected
 import reference
 from comparison.analyses.measured import analysis
 from comparison.analyses.measured.analysis import MeasuredPeaks, _compare_peak, verdict_line, word_measured
+from comparison.study import batches
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.study.user_models import make_user_model
@@ -72,7 +73,7 @@ def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
 
 def test_both_functions_of_a_model_have_its_tolerance_and_law(monkeypatch):
     asked = []
-    monkeypatch.setattr(analysis, "import_function", lambda path: lambda *given, **settings: asked.append(settings))
+    monkeypatch.setattr(batches, "import_function", lambda path: lambda *given, **settings: asked.append(settings))
     for quantity in ("mu", "drift"):
         with pytest.raises((AttributeError, TypeError)):  # None is no answer
             analysis.compute_peaks_at_phases((PLAIN, REGULARIZED, 1e-4, (0.0, 0.0), ((quantity, 2),)))

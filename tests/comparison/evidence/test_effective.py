@@ -9,7 +9,7 @@ import pytest
 from fake_models import fake_hierarchy, sliding
 
 from comparison.evidence.effective.analysis import PHASES, read_scene_values, read_values_back
-from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
+from comparison.study.models import EXACT, MODEL_HIERARCHY, RIGID, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
@@ -60,6 +60,12 @@ def test_of_friction_that_varies_the_fast_one_under_the_weight_is_read(law: dict
         assert np.isnan(read_values_back((slowly, EXACT)).friction), (
             "a motion that sees no fast friction does not tell it"
         )
+
+
+def test_rigid_friction_is_read_from_a_motion_with_it() -> None:
+    rigid = load_scene("fig3-I").with_values({"duration": 2.0})
+    expected, found = (read_values_back((scene, RIGID)) for scene in (rigid, rigid.with_yield_displacement(1e-3)))
+    assert found.acceleration == expected.acceleration > 1.0, "friction that yields has no force at the start"
 
 
 def test_the_scene_states_what_the_motion_is_held_against() -> None:

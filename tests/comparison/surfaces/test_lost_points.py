@@ -14,6 +14,7 @@ from studies import body_comparisons, solved
 
 from comparison.analyses.motions import analysis as motions
 from comparison.analyses.motions.analysis import compute_stored_motion
+from comparison.study import batches
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import compute_closure_error
@@ -114,7 +115,7 @@ def test_a_wrong_limit_is_one_line_with_the_nearest_key(
 
 def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[dict[str, object]] = []
-    monkeypatch.setattr(motions, "import_function", lambda path: lambda *motion, **settings: asked.append(settings))
+    monkeypatch.setattr(batches, "import_function", lambda path: lambda *motion, **settings: asked.append(settings))
     place = motions.MotionPlace("fig3-I", 0, 0, "")
     for model in MODEL_HIERARCHY[:6]:
         compute_stored_motion((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
