@@ -59,7 +59,7 @@ def mistakes(session: nox.Session) -> None:
 
 @nox.session
 def mutants(session: nox.Session) -> None:
-    """Small changes of the functions of `-- "comparison.surfaces.steps*"`: mutmut lists those that no test sees."""
+    """Small changes of functions `-- "comparison.surfaces.model_difference*"`: mutmut lists what no test sees."""
     session.install(".[test]", "mutmut>=3.8")
     session.run("mutmut", "run", *session.posargs)
     session.run("mutmut", "results")

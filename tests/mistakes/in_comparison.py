@@ -641,8 +641,6 @@ MISTAKES = (
     Mistake(REPORT + "templates/report.html.j2", "level {{ results.run.level }} of {{ results.run.levels }}",
             "level {{ results.run.levels }} of {{ results.run.level }}",
             "An early report is called the last one.", (LEVELS + "each_level_has_a_whole_report_that_names_it",)),
-    Mistake(ANALYSES + "families/analysis.py", "(float(np.median(row)), min(row)", "(float(np.mean(row)), min(row)",
-            "The mean of stored motions is called their median.", (RECORDED,)),
     Mistake(ANALYSES + "ensemble/statistics.py", "p.spectra.error.max(axis=1)", "p.spectra.error.min(axis=1)",
             "A band has the smaller error of two directions.", (OF + "ensemble.py::test_a_band_of_floor_spectra_has_the_larger_direction",)),
     Mistake(EVIDENCE + "tradeoff/analysis.py", "find_error_quantile(error_estimate.ravel(), 1.0)", "find_error_quantile(error_estimate.ravel(), 0.0)",
@@ -715,7 +713,7 @@ MISTAKES = (
             "scene.duration if scene.recorded else min(scene.duration, DURATION)", "min(scene.duration, DURATION)",
             "Values of a record are read from its first seconds.", (EVIDENT + "effective.py::test_a_record_is_read_to_its_end",)),
     # faults
-    Mistake(EVIDENCE + "validation/files.py", "kinds[name] not in NUMERIC", "kinds[name] in ('cell', 'struct')",
+    Mistake(EVIDENCE + "validation/files.py", "kinds[name] not in NUMERIC_TYPES", "kinds[name] in ('cell', 'struct')",
             "Booleans are measured motions.", (HOSTILE + "test_a_file_of_another_motion_ends_in_one_line",)),
     Mistake(EVIDENCE + "validation/files.py", "if not DURATION_RANGE[0] <= span <= DURATION_RANGE[1]:", "if span > DURATION_RANGE[1]:",
             "A motion of nanoseconds is compared.", (HOSTILE + "test_a_file_of_another_motion_ends_in_one_line",)),

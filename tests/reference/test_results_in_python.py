@@ -42,9 +42,9 @@ def test_results_have_the_shape_of_the_phases(surface):
     assert engine.status.shape == engine.cap_share.shape == engine.instant.shape == (2, 2)
 
 
-def assert_units(data, list_argument_names):
+def assert_units(data, names_of):
     found = {name: data[name].attrs["units"] for name in data.variables if "units" in data[name].attrs}
-    assert found == {name: unit for unit, names in list_argument_names.items() for name in names.split()}
+    assert found == {name: unit for unit, names in names_of.items() for name in names.split()}
 
 
 def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):

@@ -4,7 +4,7 @@ let numbers = null;  // unpacked when first asked for
 const motionNumbers = () => numbers ??= unpacked("motions").then(buffer => new Int32Array(buffer));
 const MM = 1000;
 
-// one motion out of the packed numbers: see motion_data.py
+// one motion out of the packed numbers: see analyses/motions/page_data.py
 function motionOf(all, place, key) {
   const about = place.motions.find(motion => motion.model === key);
   if (!about || !about.count) return { about, time: [] };

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from places import write_pulses
 from terminal_tables import rows_under
 
 import reference
@@ -42,12 +43,7 @@ Numbers = tuple[float, ...]
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Three motions and a scene."""
-    (tmp_path / "suite").mkdir()
-    time = np.arange(0.0, 2.0, 0.05)
-    for number in (1, 2, 3):
-        along_x = number * np.sin((5.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
-        rows = "\n".join(f"{t:.2f},{a:.6f},{(1.5 if number == 2 else 0.5) * a:.6f}" for t, a in zip(time, along_x))
-        (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
+    write_pulses(tmp_path / "suite", {"m1": (1.0, 6.0, 0.5), "m2": (2.0, 7.0, 1.5), "m3": (3.0, 8.0, 0.5)})
     (tmp_path / "mine.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
     return tmp_path

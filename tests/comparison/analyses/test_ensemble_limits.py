@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from markupsafe import escape
+from places import write_pulses
 
 from comparison.analyses.ensemble.command import main
 from comparison.analyses.ensemble.limits import (
@@ -400,12 +401,7 @@ record = "none.csv"
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Two motions and a block with bounds; no page is drawn."""
-    (tmp_path / "suite").mkdir()
-    time = np.arange(0.0, 2.0, 0.05)
-    for name, peak in (("weak", 1.0), ("strong", 3.0)):
-        values = peak * np.sin(6.0 * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
-        rows = "\n".join(f"{t:.2f},{a:.6f},{0.5 * a:.6f}" for t, a in zip(time, values))
-        (tmp_path / "suite" / f"{name}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
+    write_pulses(tmp_path / "suite", {"weak": (1.0, 6.0, 0.5), "strong": (3.0, 6.0, 0.5)})
     (tmp_path / "block.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("comparison.analyses.ensemble.command.render_ensemble_page", lambda result: "")

@@ -15,8 +15,9 @@ import pytest
 from browsers import CHROMIUM, LAPTOP, OVERLAPS, PHONE, opened, unfolded
 from fake_models import fake_hierarchy
 from known_analyses import analyses_are
+from places import write_pulses
 from playwright.sync_api import Browser
-from printed_pages import BEYOND, CUT, as_printed, letters, printed_page
+from printed_pages import A4, BEYOND, CUT, DOT, MARGIN, as_printed, letters, printed_page
 from runs import SMALL, quick_figures
 
 import reference
@@ -85,13 +86,10 @@ def run(*words: str) -> int:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Four motions, both bounds, the engine's default choice: the report of a small building."""
     place = tmp_path_factory.mktemp("ensemble")
-    (place / "suite").mkdir()
-    time = np.arange(0.0, 2.0, 0.05)
+    pulses = {"m1": (1.0, 4.0, 0.5), "m2": (1.5, 5.0, 1.5), "m3": (2.0, 6.0, 0.5), "m4": (2.5, 7.0, 0.5)}
+    write_pulses(place / "suite", pulses)
     lines = ["name,x,y,z,factor,magnitude"]
     for number in (1, 2, 3, 4):
-        along_x = 0.5 * (1.0 + number) * np.sin((3.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
-        table = "\n".join(f"{t:.2f},{a:.6f},{(1.5 if number == 2 else 0.5) * a:.6f}" for t, a in zip(time, along_x))
-        (place / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{table}\n")
         name = f"pulse {number}" if number < 4 else "RSN1021_SUPERSTITION_HILLS_B-ICC"  # longer than a column
         lines.append(f"{name},m{number}.csv,,,1.{number},{'6.9' if number == 1 else ''}")
     (place / "suite" / "motions.csv").write_text("\n".join(lines) + "\n")
@@ -149,7 +147,7 @@ def test_every_number_of_the_printed_report_is_read_back(folder: Path, found: En
         assert letters(f"page {number} of {len(printed.texts)}") in sheet
         assert sheet.count(letters(sentences.word_heading(found))) == 1 + (number == 1), "at the top of every page"
     for size in printed.sizes:
-        assert size == pytest.approx((210.0, 297.0), abs=0.5)
+        assert size == pytest.approx(A4, abs=0.5)
     assert min(printed.filled[:-1]) > 1.0 / 3.0, printed.filled
     lines = [sentences.answer_sentence(found), trust.model_ratio_sentence(found), *sentences.engine_sentences(found)]
     for line in [*lines, *sentences.support_sentences(found), *sentences.DEFINITIONS]:
@@ -159,7 +157,7 @@ def test_every_number_of_the_printed_report_is_read_back(folder: Path, found: En
 @NO_CHROMIUM
 def test_nothing_of_the_report_is_cut_or_overlaps_on_paper_and_phone(folder: Path, browser: Browser) -> None:
     sheet = as_printed(opened(browser, folder / "out" / "index.html", LAPTOP).page)
-    assert sheet.evaluate(BEYOND, 186.0 / 25.4 * 96.0) == []
+    assert sheet.evaluate(BEYOND, (A4[0] - 2.0 * MARGIN) / DOT) == []
     assert sheet.evaluate(CUT) == []
     assert sheet.evaluate(OVERLAPS)["faults"] == []
     sheet.close()
@@ -334,6 +332,12 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
     )  # fmt: skip
 
 
+def demand_row(found: EnsembleResult, name: str, bound: str = "b") -> rows.DemandRow:
+    """The one row of a demand in the table at scale 1."""
+    (row,) = (row for row in rows.make_demand_rows(found, 1.0) if (row.name, row.bound) == (name, bound))
+    return row
+
+
 def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
     said = trust.model_ratio_sentence(planted())
     assert said == (
@@ -385,7 +389,7 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
     found = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
     found = with_demand(found, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009), spatial=(0.001,) * 4)
     found = with_demand(found, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005), spatial=(0.004,) * 4)
-    row = next(row for row in rows.make_demand_rows(found, 1.0) if row.name == "largest drift ratio")
+    row = demand_row(found, "largest drift ratio")
     assert (row.cells[0], row.cells[2], row.cells[4]) == ("0.525", "0.4", "0.9"), "mean, median and largest of maxima"
     assert (row.motion, row.where) == ("m4", "below body 2")
     table = {row.name: row.cells[4] for row in rows.make_profile_rows(found, "drift_ratio", 1.0)}
@@ -397,9 +401,7 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
         replace(each, values=(None,)) if (each.quantity, each.body, each.motion) == ("drift_ratio", 3, "m1") else each
         for each in found.curves
     ]
-    row = next(
-        row for row in rows.make_demand_rows(replace(found, curves=unknown), 1.0) if row.name == "largest drift ratio"
-    )
+    row = demand_row(replace(found, curves=unknown), "largest drift ratio")
     assert (row.cells[0], row.cells[4], row.where, row.motions) == ("0.5667 (of 3)", "≥ 0.9", "below body 2", "3 of 4")
 
 
@@ -415,21 +417,14 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     stripes = [*one.stripes, *(replace(each, structure="c") for each in other.stripes)]
     names = [*one.structures, replace(one.structures[0], name="c")]
     both = replace(one, structures=names, curves=curves, stripes=stripes)
-
-    def envelope(found: EnsembleResult) -> rows.DemandRow:
-        shown = rows.make_demand_rows(found, 1.0)
-        return next(row for row in shown if (row.name, row.bound) == ("largest drift ratio", "envelope"))
-
-    row = envelope(both)
+    row = demand_row(both, "largest drift ratio", "envelope")
     assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4", "below body 2")
     assert row.bounds == ("c", "c", "c", "b", "b")
     lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
-    row = envelope(replace(both, curves=lost))
+    row = demand_row(replace(both, curves=lost), "largest drift ratio", "envelope")
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
     lost = [replace(each, values=(None,)) if each.motion == "m4" and each.body else each for each in curves]
-    row = next(
-        row for row in rows.make_demand_rows(replace(both, curves=lost), 1.0) if row.name == "largest drift ratio"
-    )
+    row = demand_row(replace(both, curves=lost), "largest drift ratio")
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.4", "m1", "below body 3"), "of the motions that have values"
 
 
@@ -805,15 +800,13 @@ def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(fo
         DemandCurve("b", "uplift", None, "spatial", name, (1.0,), (value,), (None,))
         for name, value in (("m2", None), ("m3", 2e-3), ("m4", 5e-3), ("m1", 1e-3))
     ]
-    (row,) = (row for row in rows.make_demand_rows(replace(planted(), curves=lifts), 1.0) if row.name == of_engine[0])
+    row = demand_row(replace(planted(), curves=lifts), of_engine[0])
     assert (row.cells[4], row.motion, row.motions) == ("5", "m4", "3 of 4 (spatial engine)")
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
     for motions, expected in ((2, ["–", "150", "–"]), (3, ["–", "200", "–"]), (4, ["114", "250", "386"])):
-        row = next(
-            row for row in rows.make_demand_rows(planted(motions=motions), 1.0) if row.name == "isolator displacement"
-        )
+        row = demand_row(planted(motions=motions), "isolator displacement")
         assert list(row.cells[1:4]) == expected
 
 
@@ -824,13 +817,12 @@ def test_the_envelope_is_the_worst_of_the_bounds_in_every_column() -> None:
     both = replace(
         one, structures=[*one.structures, replace(one.structures[0], name="c")], stripes=[*one.stripes, *other]
     )
-    envelope = next(row for row in rows.make_demand_rows(both, 1.0) if row.bound == "envelope")
+    envelope = demand_row(both, "isolator displacement", "envelope")
     assert (envelope.cells[0], envelope.cells[-1], envelope.motion) == ("250 ± 1", "900", "m1")
     assert (envelope.bounds, envelope.every_bound) == (("b", "b", "b", "b", "c"), ""), "each cell has its own bound"
     assert "<small>c</small>" in page.render_ensemble_page(both)
     lost = [replace(each, largest=Statistic(None, None), answered=3, reasons={"travel reached": 1}) for each in other]
-    envelope = next(row for row in rows.make_demand_rows(replace(both, stripes=[*one.stripes, *lost]), 1.0)
-                    if row.bound == "envelope")  # fmt: skip
+    envelope = demand_row(replace(both, stripes=[*one.stripes, *lost]), "isolator displacement", "envelope")
     assert (envelope.cells[-1], envelope.motion, envelope.every_bound) == ("≥ 400 ± 1", "m4", "b")
 
 

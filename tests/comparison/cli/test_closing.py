@@ -29,7 +29,7 @@ from comparison.run import main
 from reference.problem import load_scene
 
 
-def word_next_commands(run: Run) -> list[list[str]]:
+def next_commands(run: Run) -> list[list[str]]:
     """The words of the commands that the last lines name."""
     return [shlex.split(line.rpartition(": ")[2]) for line in run.out.splitlines() if line.startswith("Next: ")]
 
@@ -38,15 +38,13 @@ def test_the_next_command_works_as_it_is_printed(
     command: Callable[..., Run], capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     run = command("fig3-I", "--grid=2", "--amplitude", "0.5", hierarchy=errors_in({"spatial": 0.1}))
-    (words,) = word_next_commands(run)  # no film: it would be of another loading
+    (words,) = next_commands(run)  # no film: it would be of another loading
     assert (words[:3], "--grid=2" in words) == (["python", "-m", "comparison.run"], False)
     assert main([*words[3:], "--out", str(tmp_path / "other")], fake_hierarchy(), ThreadPoolExecutor) == 0
     assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
-    assert word_next_commands(command("synthetic-pair", hierarchy=fake_hierarchy())) == [], (
-        "a record has no grid to refine"
-    )
+    assert next_commands(command("synthetic-pair", hierarchy=fake_hierarchy())) == [], "a record has no grid to refine"
     timed = command("fig3-I", "--grid", "2", "--budget", "1000", hierarchy=errors_in({}))
-    assert not any("comparison.run" in words for words in word_next_commands(timed))
+    assert not any("comparison.run" in words for words in next_commands(timed))
 
 
 def test_printed_options_stand_before_scenes_with_a_dash(
@@ -55,7 +53,7 @@ def test_printed_options_stand_before_scenes_with_a_dash(
     monkeypatch.chdir(tmp_path)
     Path("-my scene.toml").write_text(scene_text(), encoding="utf-8")
     words = ["--grid", "2", "--out", str(tmp_path / "report"), "--", "-my scene.toml"]
-    film, finer = word_next_commands(command(*words, hierarchy=errors_in({"spatial": 0.1})))
+    film, finer = next_commands(command(*words, hierarchy=errors_in({"spatial": 0.1})))
     assert film[film.index("multibody.animate") + 1] == "./-my scene.toml"
     assert finer[-5:] == ["--grid", "4", "--plan", "--", "-my scene.toml"]
     assert main(finer[3:], fake_hierarchy(), ThreadPoolExecutor, models={"mine": "user_engines:plain"}) == 0
@@ -135,7 +133,7 @@ def test_the_processor_time_of_processes_that_run_and_that_ended_is_counted() ->
 
 def test_the_film_is_of_the_largest_difference(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "--grid", "4", "--only", "surfaces", hierarchy=distinct_hierarchy())
-    (words,) = (words for words in word_next_commands(run) if "multibody.animate" in words)
+    (words,) = (words for words in next_commands(run) if "multibody.animate" in words)
     phases = grid_phases(4)
     sizes = {
         (key, body, place): abs(size)

@@ -40,10 +40,10 @@ from comparison.evidence.benchmarks.table import (
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
-STATEMENT_CASES = list_cases()
+CASES = list_cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
-INPUT_CAUSE = Path(os.environ.get("PHASE_RESONANCE_MASTODON", "mastodon-fp-seismic-input.csv"))
-BY_NAME = {case.scene.name: case for case in STATEMENT_CASES}
+INPUT = Path(os.environ.get("PHASE_RESONANCE_MASTODON", "mastodon-fp-seismic-input.csv"))
+BY_NAME = {case.scene.name: case for case in CASES}
 
 
 @pytest.mark.parametrize("name", BY_NAME)
@@ -85,10 +85,10 @@ def test_the_engine_meets_all_published_numbers(within):
             within(abs(found.value - row.published) / max(found.error + row.uncertainty, 1e-300), 1.0)
 
 
-@pytest.mark.skipif(not INPUT_CAUSE.exists(), reason="the input motion of MASTODON's test is not shipped")
+@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
 def test_both_sides_meet_mastodon_within_three_percent():
     """To 3 mm, as it was read, by the small equations; without heating they are 15 to 83 mm smaller."""
-    case = load_mastodon_case(INPUT_CAUSE)
+    case = load_mastodon_case(INPUT)
     for row in computed(BenchmarkTable([case])).benchmarks[0].rows:
         equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
         assert equations.verdict == engine.verdict
@@ -177,7 +177,7 @@ def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys):
 
 def test_the_page_in_docs_has_every_benchmark():
     text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
-    for case in STATEMENT_CASES:
+    for case in CASES:
         section = text.split(f"\n## {case.title}\n", 1)[1].split("\n## ", 1)[0]
         assert f"Source: {case.source}. Evidence for: {case.evidence}." in section
         assert f"v_reg of the engine: {case.regularization:g} m/s" in section

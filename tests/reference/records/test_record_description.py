@@ -59,8 +59,8 @@ def test_the_final_displacement_is_that_of_the_ground(rows):
         assert one.final_displacement == pytest.approx(ground_displacement(scene, (0.0, 0.0), [end])[0, 0], abs=1e-12)
 
 
-MIN_CLIPPED_SAMPLES = np.clip(SHAKING, -0.5, 0.5)
-MAX_STEP_VARIATION = TIME + np.where(np.arange(2000) % 2, 0.002, 0.0)
+CLIPPED = np.clip(SHAKING, -0.5, 0.5)
+UNEVEN = TIME + np.where(np.arange(2000) % 2, 0.002, 0.0)
 WARNED = {
     "as it should be": (samples(SHAKING), ()),
     "noise": (samples(SHAKING + np.random.default_rng(1).normal(0.0, 0.01, 2000)), ()),
@@ -76,8 +76,8 @@ WARNED = {
         ),
     ),
     "nothing at all": (samples(0.0), ("the peak is 0 g, below 0.005 g",)),
-    "unequal steps": (samples(SHAKING, time=MAX_STEP_VARIATION), ("the steps are not equal: 0.008 to 0.012 s",)),
-    "clipped": (samples(MIN_CLIPPED_SAMPLES - MIN_CLIPPED_SAMPLES.mean()), ()),
+    "unequal steps": (samples(SHAKING, time=UNEVEN), ("the steps are not equal: 0.008 to 0.012 s",)),
+    "clipped": (samples(CLIPPED - CLIPPED.mean()), ()),
     "few samples": (samples(SHAKING + 0.1)[:50], ()),
 }
 

@@ -9,7 +9,7 @@ from reference.records.formats import READERS, at2, csv_table, read_record, reco
 from reference.records.samples import RecordError, join_directions
 
 PEER = "PEER NGA STRONG MOTION DATABASE RECORD\nInvented, 1/1/2000, Nowhere, 000\n"
-G_UNIT_QUESTION = PEER + "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 5, DT= .0100 SEC\n"
+IN_G = PEER + "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 5, DT= .0100 SEC\n"
 FIVE = [0.001, -0.003, 0.02, 0.01, 0.0]
 FIELDS = "  .1000000E-02 -.3000000E-02  .2000000E-01\n  .1000000E-01  .0000000E+00\n"
 ROWS = list(zip([0.0, 0.01, 0.02, 0.03], [0.001, 0.02, -0.03, 0.01]))
@@ -28,17 +28,17 @@ def read(content, name="a.txt", **options):
 
 
 AT2 = {  # texts of five values at 0.01 s
-    "trailer behind the last value": G_UNIT_QUESTION + FIELDS + "*** End Data ***\n",
-    "trailer of two lines": G_UNIT_QUESTION + FIELDS + "\n*** End Data ***\nchecked by somebody\n",
-    "a title behind the sizes": G_UNIT_QUESTION + "*** Begin data ***\n" + FIELDS,
+    "trailer behind the last value": IN_G + FIELDS + "*** End Data ***\n",
+    "trailer of two lines": IN_G + FIELDS + "\n*** End Data ***\nchecked by somebody\n",
+    "a title behind the sizes": IN_G + "*** Begin data ***\n" + FIELDS,
     "unit in words": PEER + "  Acceleration in g\n5 0.0100 NPTS, DT\n" + FIELDS,
     "unit in brackets": PEER + "Acceleration (g)\n5 0.0100 NPTS, DT\n" + FIELDS,
-    "carriage returns": (G_UNIT_QUESTION + FIELDS).replace("\n", "\r\n"),
-    "glued by the sign": G_UNIT_QUESTION + "  .1000000E-02-.3000000E-02  .2000000E-01\n  .1000000E-01  .0000000E+00\n",
-    "all glued": G_UNIT_QUESTION + "0.001-0.003+0.020+0.010+0.000\n",
-    "exponents of D": G_UNIT_QUESTION + FIELDS.replace("E", "D"),
+    "carriage returns": (IN_G + FIELDS).replace("\n", "\r\n"),
+    "glued by the sign": IN_G + "  .1000000E-02-.3000000E-02  .2000000E-01\n  .1000000E-01  .0000000E+00\n",
+    "all glued": IN_G + "0.001-0.003+0.020+0.010+0.000\n",
+    "exponents of D": IN_G + FIELDS.replace("E", "D"),
     "colons and no blanks": PEER + "IN UNITS OF G\nNPTS:5,DT:.0100SEC\n" + FIELDS,
-    "one value a line": G_UNIT_QUESTION + "\n".join(map(repr, FIVE)),
+    "one value a line": IN_G + "\n".join(map(repr, FIVE)),
 }
 
 
@@ -121,11 +121,11 @@ def test_a_unit_of_the_scene_is_that_of_a_table_without_one():
 
 
 ONE = "\n".join(f"{value:.3f}" for value in FOUR) + "\n"
-BLOCK_HEADER = "7 0.0100\n 1.0E-02 2.0E-02 3.0E-02\n 4.0E-02 5.0E-02 6.0E-02\n 7.0E-02\n"
+BLOCK = "7 0.0100\n 1.0E-02 2.0E-02 3.0E-02\n 4.0E-02 5.0E-02 6.0E-02\n 7.0E-02\n"
 PLAIN = [  # text, what is proposed, values at 0.01 s in g
     (ONE, '{file = "a.txt", step = 0.01, unit = "g"}, with the step and the unit of your source', FOUR),
     (
-        BLOCK_HEADER,
+        BLOCK,
         '{file = "a.txt", step = 0.01, unit = "g", skip = 1}, with the unit',
         [0.01 * n for n in range(1, 8)],
     ),
@@ -169,15 +169,15 @@ def test_stated_units_are_found_in_headers_of_plain_text():
 REFUSED = [  # name, text, options, and words of the line
     (
         "a.AT2",
-        G_UNIT_QUESTION + "  ************" + FIELDS[14:],
+        IN_G + "  ************" + FIELDS[14:],
         {},
         "line 5: '************': a Fortran field that has overflowed",
     ),
-    ("a.AT2", G_UNIT_QUESTION + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
-    ("a.AT2", G_UNIT_QUESTION + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
-    ("a.AT2", G_UNIT_QUESTION + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
-    ("a.AT2", G_UNIT_QUESTION + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
-    ("a.AT2", G_UNIT_QUESTION + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
+    ("a.AT2", IN_G + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
+    ("a.AT2", IN_G + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
+    ("a.AT2", IN_G + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
+    ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
+    ("a.AT2", IN_G + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
     (
         "a.AT2",
         (PEER + "Acceleration in cm/sec2\n5 0.0100 NPTS, DT\n" + FIELDS),
@@ -225,13 +225,13 @@ REFUSED = [  # name, text, options, and words of the line
     ),
     (
         "a.txt",
-        BLOCK_HEADER,
+        BLOCK,
         {"step": 0.01, "unit": "g"},
         "line 1: 2 values, 3 in other lines: a header, or a broken line: write",
     ),
     (
         "a.txt",
-        BLOCK_HEADER,
+        BLOCK,
         {"step": 0.01, "unit": "g", "skip": 1, "column": 1},
         "3 values: line 1 states 7: leave column out",
     ),
@@ -254,7 +254,7 @@ REFUSED = [  # name, text, options, and words of the line
     ("a.txt", ONE, {"step": 0.01, "unit": "g", "skip": -1}, "skip = -1: must be a whole number from 0 to"),
     ("a.txt", ONE, {"step": 0.01}, "plain text needs step and unit: write record = {file"),
     ("a.txt", "nothing\nof the kind\n", {}, "it has no lines of numbers: it is no record"),
-    ("a.AT2", G_UNIT_QUESTION + FIELDS, {"unit": "g"}, "PEER .AT2 states its own unit: remove unit"),
+    ("a.AT2", IN_G + FIELDS, {"unit": "g"}, "PEER .AT2 states its own unit: remove unit"),
     ("a.csv", b"\x89PNG\r\n\x1a\n\0\0\0", {}, "must be text in UTF-8"),
 ]
 
@@ -367,7 +367,7 @@ def test_what_stands_behind_the_values_of_a_network_is_noticed():
 def test_readers_have_names_of_their_own_and_one_recognizes_each_shape():
     assert len({reader.name for reader in READERS}) == len(READERS)
     for text in (
-        G_UNIT_QUESTION + FIELDS,
+        IN_G + FIELDS,
         KNET.format("1"),
         ESM.format("E"),
         COSMOS,
