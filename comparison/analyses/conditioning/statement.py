@@ -15,7 +15,7 @@ MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that t
 
 def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return the sentence of the first screen, about the scene and body with the largest part of mu below DEEP.
+    Return the sentence of the first screen, about the scene and body with the largest part of mu below LOW_V_C.
 
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
