@@ -16,13 +16,16 @@ def _tests_of(file: str) -> set[str]:
 
 @pytest.mark.parametrize("mistake", ALL.values(), ids=ALL)
 def test_a_planted_mistake_follows_the_source(mistake: Mistake) -> None:
-    assert (ROOT / mistake.file).read_text(encoding="utf-8").count(mistake.right) == 1
+    text = (ROOT / mistake.file).read_text(encoding="utf-8")
+    assert text.count(mistake.right) == 1
     assert mistake.wrong != mistake.right
     assert mistake.breaks.endswith(".")
     assert bool(mistake.seen_by) != bool(mistake.equivalent)
     for test in mistake.seen_by:
         file, *names = test.partition("[")[0].split("::")
         assert set(names) <= _tests_of(file), test
+    if mistake.file.endswith(".py"):  # what does not compile falls by any test that imports it
+        compile(text.replace(mistake.right, mistake.wrong), mistake.file, "exec")
 
 
 def test_no_mistake_is_planted_twice() -> None:
