@@ -151,7 +151,7 @@ def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6
     return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
 
 
-def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
+def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
     question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
@@ -159,6 +159,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     monkeypatch.setattr(analysis, "list_questions", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
+    assert f"{load_scene('fig3-I').title} (fig3-I)" in capsys.readouterr().out.splitlines()
     (first,) = load_trades(tmp_path / "out")
     assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
