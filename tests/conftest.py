@@ -26,11 +26,12 @@ try:
 except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
-# Files to begin with: two compile a variant of the solver each, the third does not need it and takes as long; the rest
-# have few tests that take long.
+# Files to begin with: the first compiles all variants of the solver. Meanwhile the next ones do not need it; then come
+# files with few tests that take long.
 FIRST = (
-    *("test_docstrings.py", "test_like_for_like.py", "test_page_in_a_browser.py", "test_features.py"),
-    *("test_recorded_report.py", "test_print.py", "test_friction_springs.py", "test_heated_friction.py"),
+    *("test_compiled_variants.py", "test_sweep.py", "test_sliding_plate.py", "test_features.py", "test_impact.py"),
+    *("test_scene_values.py", "test_single_run.py", "test_uneven.py", "test_command_ends.py", "test_bars_in_space.py"),
+    *("test_page_in_a_browser.py", "test_recorded_report.py", "test_print.py", "test_ensemble_report.py"),
 )
 
 settings.register_profile("same", derandomize=True, deadline=None)
