@@ -252,7 +252,7 @@ def _direction_cases() -> Iterator[ExtremeCase]:
 def _start_and_support_cases() -> Iterator[ExtremeCase]:
     """Yield starts at the friction limit, and extremes of the arrangement of the supports."""
     limit = 0.1 * GRAVITY_LIMIT
-    for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
+    for name, phase in (("turning there", 0.0), ("rising beyond", -math.pi / 3.0), ("falling", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
         alone = make_baseline_scene(amplitudes=[[amplitude, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), masses=[1.0])
         yield ExtremeCase("start at the friction limit", name, alone, ALL_MODELS, phases=((phase, 0.0),))

@@ -32,6 +32,7 @@ from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import make_surface_tasks
 from reference.problem import load_scene
+from reference.support.command import StoppedError
 
 HANGS = 300.0  # s: nothing here takes that long, however busy the machine
 SCRIPT = """
@@ -106,19 +107,27 @@ COUNT = 40  # cells
 
 
 class Interrupted(ThreadPoolExecutor):
-    """Ctrl-C comes while the eleventh task is handed out."""
+    """A signal comes while the eleventh task is handed out."""
 
     count = 0
+    stop: BaseException = KeyboardInterrupt()
 
     def submit(self, *words: Any, **options: Any) -> Future[Any]:
         self.count += 1
         if self.count > 10:
-            raise KeyboardInterrupt
+            raise self.stop
         return super().submit(*words, **options)
 
 
-def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("stop", "code"), [(KeyboardInterrupt(), 130), (StoppedError(signal.SIGTERM), 143)], ids=["Ctrl-C", "SIGTERM"]
+)
+def test_a_signal_ends_the_extremes_with_the_command_that_goes_on(
+    stop: BaseException,
+    code: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     """COUNT extremes for models of known answer, of which one lies and fails."""
     models = "honest", "lies_about_its_error"
@@ -127,7 +136,8 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     monkeypatch.setattr(extremes, "list_extreme_cases", lambda: iter(rows))
     monkeypatch.chdir(tmp_path)
     words = ["--jobs", "2", "--out", "report"]
-    assert extremes.main(words, Interrupted) == 130
+    monkeypatch.setattr(Interrupted, "stop", stop)
+    assert extremes.main(words, Interrupted) == code
     stopped = re.fullmatch(
         r"interrupted: (\d+) results are kept in 'report.tiles'; "
         r"go on with: phase-resonance extremes --jobs 2 --out report\n",

@@ -20,7 +20,7 @@ from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
 from comparison.runner.task import TaskResult
-from reference.problem import Outcome
+from reference.problem import Outcome, ground_acceleration
 
 
 class Ending(ThreadPoolExecutor):
@@ -47,6 +47,20 @@ def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
     assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
     assert found["raises"] == ("FAILED", "", "raises ZeroDivisionError: an inner fault")
     assert found["honest"][0] == CellVerdict.CONVERGED
+
+
+def test_starts_at_the_friction_limit_stand_there_and_go_on_as_they_say() -> None:
+    starts = {case.title: case for case in list_extreme_cases() if case.group == "start at the friction limit"}
+    instants, rates = np.array([0.0, 1e-6]), {}
+    for title, case in starts.items():
+        scene = analysis.make_extreme_scene(case.scene)
+        begin, later = ground_acceleration(scene, case.phases[0], instants)[:, 0] / (scene.dry_friction.slow * 9.81)
+        assert begin == pytest.approx(1.0, rel=1e-12)
+        rates[title] = (later - begin) / instants[1]
+    # of cos(nu t + phase) / cos(phase) at t = 0: -nu tan(phase)
+    nu = 2.0 * np.pi / scene.excitation.periods[0]
+    known = {"turning there": 0.0, "rising beyond": nu * np.sqrt(3.0), "falling": -nu * np.sqrt(3.0)}
+    assert rates == pytest.approx(known, abs=1e-3)
 
 
 AGAINST_A_RULE = replace(PLAIN, scene=make_baseline_scene(friction=-0.1))

@@ -101,13 +101,15 @@ def test_a_click_shows_the_nearest_motion_and_its_distance(visit: Visit) -> None
     page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.31 * box["height"])
     until(page, "document.querySelector('[data-part=distance]')?.textContent.includes('away')")
     chosen = page.evaluate("""() => {
-        const far = place => Math.hypot(...place.phases.map((p, k) => around(p, state.cursor[k])));
+        const far = place => Math.hypot(...place.phases.map((p, k) => Math.acos(Math.cos(p - state.cursor[k]))));
         const { places } = sceneNow(), picked = Number(document.querySelector('[data-part=place]').value);
         return { away: state.away, least: Math.min(...places.map(far)), here: far(places[state.place]),
           picked: picked === state.place };
     }""")
-    assert chosen["away"] == chosen["least"] == chosen["here"]
+    assert chosen["away"] == pytest.approx(chosen["least"]) == pytest.approx(chosen["here"])
     assert chosen["picked"]
+    across = page.evaluate("[[0.1, turn - 0.2], [turn - 0.2, 0.1], [1, 4], [3.5, 3]].map(pair => around(...pair))")
+    assert across == pytest.approx([0.3, 0.3, 3.0, 0.5]), "the square is periodic"
     assert "small equations" in page.locator("[data-part=plots] .legend").first.inner_text()
 
 
