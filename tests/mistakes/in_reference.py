@@ -490,5 +490,8 @@ MISTAKES = (
     Mistake(PROBLEM + "scene.py", "self._with_friction(stated if len(stated) > 1 else", "self._with_friction(stated if False else",
             "Rigid friction forgets how it depends on the speed.",
             (TESTS + "problem/test_yielding_friction.py::test_another_yield_displacement_leaves_the_rest_of_the_law",)),
+    Mistake("reference/solver/error_estimate.py", "plain = system.rate == 0.0 and system", "plain = system.rate == 0.0 or system",
+            "The least error under friction of the speed is that of constant friction.",
+            (TESTS + "test_error_estimates.py::test_runs_agree_if_every_body_does_and_then_have_the_least_error_of_their_law",)),
 )
 # fmt: on

@@ -9,7 +9,8 @@ from chains import chain
 
 import reference
 from reference.problem import Scene, phase_grid
-from reference.solver.error_estimate import _estimate_error, peaks_at
+from reference.solver import system
+from reference.solver.error_estimate import RunPeaks, _compare_runs, _estimate_error, peaks_at
 from reference.surface import prepare_run
 
 FIG3 = reference.load_scene("fig3-I")
@@ -40,6 +41,36 @@ def test_reading_and_states_add_to_an_error() -> None:
     found: Any = _estimate_error(before, after, 1e-3, 1.0)  # type: ignore[arg-type]
     expected = [0.04 + 0.4 * 0.3 + 5e-4 * 1e-3 * 3.0, 2e-7 + 1e-7 + 5e-4 * 1e-3 * 1e-6]
     np.testing.assert_allclose(found[0], expected, rtol=1e-9)
+
+
+RIM, STEP_LIMIT = system.RIM, system.STEP_LIMIT
+
+
+@pytest.mark.parametrize(
+    ("rate", "law", "fraction"),
+    [
+        (0.0, system.SET_VALUED, 0.007),
+        (20.0, system.SET_VALUED, 0.07),
+        (0.0, system.YIELDING, 0.07),
+        (20.0, system.YIELDING, 0.07),
+    ],
+)
+def test_runs_agree_if_every_body_does_and_then_have_the_least_error_of_their_law(
+    rate: float, law: int, fraction: float
+) -> None:
+    """Equal runs, one body apart, the other body apart, the rim in both runs, in one of them, unfinished runs."""
+    value = np.tile([3.0, 5.0], (7, 1))
+    codes = np.array([[0, 0], [0, 0], [0, 0], [RIM, RIM], [0, RIM], [RIM, 0], [STEP_LIMIT, STEP_LIMIT]])
+    apart = np.array([[0, 0], [1, 0], [0, 1], *[[0, 0]] * 4]) * 0.02
+    rest = [np.zeros(7)] * 4
+    before, after = (
+        RunPeaks(value + shift, np.zeros((7, 2)), codes[:, k], *rest) for k, shift in enumerate((apart, 0.0))
+    )
+    about: Any = SimpleNamespace(rate=rate, law=law), SimpleNamespace(unit=1.0, tolerance=1e-3)
+    found, disagree = _compare_runs(before, after, 1e-4, *about)
+    assert disagree.tolist() == [False, True, True, False, True, True, False]
+    np.testing.assert_allclose(found.error[0], fraction * 1e-3 * value[0], rtol=1e-12)
+    np.testing.assert_allclose(found.error[1], [0.4 * 0.02 + 5e-8 * 3.0, fraction * 5e-3], rtol=1e-9)
 
 
 def asked(isolator: dict, bodies: list, amplitudes: list, periods: list, decay: list, duration: float) -> Scene:

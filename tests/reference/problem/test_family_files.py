@@ -29,6 +29,8 @@ def test_a_range_makes_a_scene_of_every_value(tmp_path: Path) -> None:
     assert [scene.name for scene in family.scenes][:2] == ["mine[friction=0.02]", "mine[friction=0.04]"]
     fifth = family.scenes[4]
     assert fifth.digest() == load_scene("fig3-I").digest(), "the same question as with the number written there"
+    thirds = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.5], steps = 4}"))
+    assert thirds.values == (0.1, 0.233333333333, 0.366666666667, 0.5)
 
 
 FAST = "{slow = 0.05, fast = {values = [0.1, 0.08]}, rate = 50.0}"
