@@ -493,5 +493,9 @@ MISTAKES = (
     Mistake("reference/solver/error_estimate.py", "plain = system.rate == 0.0 and system", "plain = system.rate == 0.0 or system",
             "The least error under friction of the speed is that of constant friction.",
             (TESTS + "test_error_estimates.py::test_runs_agree_if_every_body_does_and_then_have_the_least_error_of_their_law",)),
+    Mistake("reference/records/directions.py", "and int(upper) <= 360:", "and int(upper) < 360:", "A file of azimuth 360 has no direction.",
+            (TESTS + "records/test_unzipped_folders.py::test_azimuths_are_those_of_the_compass",)),
+    Mistake("reference/records/numerals.py", '"feet": "ft"}', '"feet": "in"}', "Feet are read as inches.",
+            (TESTS + "records/test_record_files.py::test_units_become_si",)),
 )
 # fmt: on

@@ -5,6 +5,7 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, SceneError, load_family, load_scene
+from reference.records.directions import parse_direction
 from reference.records.motion_lists import FILE_NAME, motion_list_text
 from reference.records.pairing import SuiteError
 from reference.records.suites import list_motions
@@ -40,6 +41,7 @@ SPELLED = {  # of one station: x, y and z, or x and y
     "azimuths and DWN": ("147", "237", "DWN"),
     "azimuths and UP": ("021", "291", "-UP"),
     "azimuths 15 degrees askew": ("260", "345", "-UP"),
+    "azimuth 360": ("270", "360", "-UP"),
     "quadrants": ("_N18E", "_S72E", "_UP"),
     "channels": (".HNE", ".HNN", ".HNZ"),
     "numbered channels": ("_HN1", "_HN2", "_HNZ"),
@@ -58,6 +60,13 @@ def test_directions_are_told_by_every_spelling(tmp_path, spelling):
     assert list(found.values()) == list(stations.values())
     if "ends like" not in spelling:
         assert list(found) == list(stations)
+
+
+def test_azimuths_are_those_of_the_compass():
+    words = ("000", "090", "360", "361", "N18E", "S72E", "N30W", "S10W", "N90W", "N91E", "E18N", "90")
+    found = {word: direction.azimuth if (direction := parse_direction(word)) else None for word in words}
+    turns = [0.0, 90.0, 360.0, None, 18.0, 108.0, 330.0, 190.0, 270.0, None, None, None]
+    assert found == dict(zip(words, turns))
 
 
 def test_files_of_networks_are_paired_by_suffix_and_by_channel(tmp_path):
