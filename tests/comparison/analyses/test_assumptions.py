@@ -250,7 +250,7 @@ BLIND = DirectionTrial("fig3-I", "offset", Variation(offset=0.1), (), (), ONE_PL
 def test_a_blind_trial_is_no_evidence() -> None:
     """Planted: a blind trial counted as one that holds."""
     rings = [cell(Variation(ring=ring), 0.0, no_effect=ONE_PLANE) for ring in (0.5, 1.0, 2.0)]
-    found = found_of(rings, [BLIND])
+    found = found_of(rings, [replace(BLIND, scene="other", no_effect=""), BLIND])
     assert {each.key for each in found.ranges} == {"ring", "offset", "height"}
     for each in found.ranges:
         assert (each.holds, each.fails, each.no_effect) == (None, None, ONE_PLANE)
@@ -259,6 +259,7 @@ def test_a_blind_trial_is_no_evidence() -> None:
         assert "which is no evidence" in describe_range(each)
     assert describe_direction(FIRST, BLIND).endswith(f": {NO_EFFECT}")
     assert largest_change(found, rings[1], 1).verdict == "not compared"
+    assert describe_change(largest_change(found, rings[1], 1)) == f"mu_1: {NO_EFFECT}"
     assert " met" not in describe_verdict(found)
     assert describe_verdict(found).endswith(f"fig3-I not compared: {NO_EFFECT}.")
     assert assumption_panels(found, FIRST) == []
@@ -271,6 +272,10 @@ def test_a_blind_trial_that_has_an_effect_is_not_called_blind() -> None:
     for size, reason in ((1.0, ONE_PLANE), (1.02, "")):
         control = trials.Trial(Variation(ring=0.5), plain.mu[:1] * size, plain.error[:1], ("ok",), "", 0.0)
         assert validity._make_cell(PLANAR, control, plain).no_effect == reason
+        lost = replace(plain, error_message="lost")
+        assert [validity._make_cell(PLANAR, *each).error_message for each in (
+            (control, plain), (control, lost), (replace(control, error_message="failed"), lost)
+        )] == ["", "lost", "failed"]  # fmt: skip
 
 
 def test_a_change_says_reading_base_sign_error_and_place() -> None:
@@ -318,6 +323,7 @@ def test_the_verdict_is_that_of_the_worst_body_of_every_scene() -> None:
         "Bodies that turn leave mu_i (as integrated) within 1 % of the translational model: fig3-I met: mu_1 +0.4 %; "
         "fig3-II not met (by 2.1 %): mu_2 −3.0 ± 0.1 %."
     )
+    assert describe_verdict(found_of([cell(Variation(), math.nan)])).endswith("fig3-I not compared: no value.")
     assert describe_verdict(found_of([])) == ""
 
 
@@ -392,6 +398,27 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
         assert asked == [None, *expected]
         effects = [variation.of(scene).bodies[1].bars.load_effect for variation in expected]
         assert effects == ["softening", "shortening"][: len(expected)]
+
+
+def test_one_link_of_bars_among_others_is_enough() -> None:
+    bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
+    third = {"mass": 0.7, "height": 2.3, "size": [0.4, 0.4, 0.2], "bars": bars}
+    bodies = [*FIRST.model_dump(exclude_none=True)["bodies"], third]
+    study = Study((FIRST.with_values({"bodies": bodies}),), 1, 1e-3, MODEL_HIERARCHY)
+    asked = [what for _, _, what, *_ in Assumptions((), directed=()).task_arguments(study)]
+    assert asked == [None, *UNDER_LOAD]
+
+
+def test_an_error_of_any_trial_is_that_of_its_task(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = [
+        replace(fake_trial(FIRST, MODEL_HIERARCHY[-1], None, validity.PHASES), error_message=text)
+        for text in ("", "late", "later")
+    ]
+    monkeypatch.setattr(trials, "amplification_of", fake_trial)
+    monkeypatch.setattr(trials, "find_worst_directions", lambda *rest: (replace(BLIND, worst=True),))
+    monkeypatch.setattr(trials, "follow_direction", lambda *rest: made)
+    task = FIRST, (MODEL_HIERARCHY[-2], MODEL_HIERARCHY[-1]), ("offset",), 1e-3, validity.PHASES, 3
+    assert trials.answer_trials(task).error_message == "late"
 
 
 def test_what_shortening_changes_is_said() -> None:

@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -261,6 +262,9 @@ def test_the_sentence_says_what_the_grid_does_not_tell() -> None:
     )
     unknown = conditioning_line([replace(resolved, relative_error=(math.nan,) * len(SPEEDS)), *rest])
     assert unknown.startswith("Whether")
+    for v in (1e-3, 1e-6, 1e-12):
+        gap = tuple(math.nan if each == v else size for each, size in zip(SPEEDS, resolved.relative_mean))
+        assert conditioning_line([replace(resolved, relative_mean=gap), *rest]) == ""
     assert (
         "−11 % (error unknown) where speeds above 1e-3 m/s count (as integrated), −5.2 % (error unknown) above 1e-6 m/s"
         in unknown
@@ -379,6 +383,12 @@ def test_only_scenes_whose_friction_yields_are_asked_for_it() -> None:
     asked = [(scene.name, number, grid) for scene, number, grid in Conditioning().task_arguments(study)]
     rigid = [(0, 16), (1, 16), (2, 0), (3, 0), (4, 0)]
     assert asked == [*(("fig3-I", *each) for each in rigid), ("soft", YIELDING, 8), ("soft", DAMPED, 8)]
+    alone = _yielding(bodies=[{"mass": 1.0}])
+    links = [number for _, number, _ in Conditioning().task_arguments(Study((alone,), 16, 1e-3))]
+    assert links == [YIELDING], "without links"
+    for damping, other in (([[0.0, 0.0]], 0.05), ([[0.0, 0.0], [0.0, 0.7]], 0.0)):
+        scene: Any = SimpleNamespace(damping=np.array(damping))
+        assert [QUESTIONS[number].damping_of(scene) for number in (YIELDING, DAMPED)] == [None, other]
 
 
 def _known_yields(**changes: Any) -> list[ConditioningCurve]:

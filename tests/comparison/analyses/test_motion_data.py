@@ -22,7 +22,12 @@ from comparison.analyses.motions.analysis import (
     compute_stored_motion,
     decimate,
 )
-from comparison.analyses.motions.page_data import contact_geometry, encode_motions, list_pairs_with_motions
+from comparison.analyses.motions.page_data import (
+    contact_geometry,
+    encode_motions,
+    list_pairs_with_motions,
+    spectrum_axis,
+)
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import trace_contact_paths
@@ -173,3 +178,15 @@ def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     assert set(whole.time[peaks]) <= set(motion.time), "peaks of bodies, displacement and force are kept as they are"
     missing = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
     assert (missing.status, missing.error_message.split(":")[0]) == ("solver failed", "AttributeError")
+
+
+def test_periods_of_floor_spectra_are_those_of_the_scene() -> None:
+    def motion(name: str, spectra: Any) -> Any:
+        return SimpleNamespace(place=SimpleNamespace(scene=name), spectra=spectra)
+
+    spectra = [SimpleNamespace(period=np.array([0.123456789, 2.0 * k]), damping=0.01 * k) for k in (1, 2)]
+    motions = [motion("other", spectra[0]), motion("fig3-I", None), motion("fig3-I", spectra[1])]
+    report: Any = SimpleNamespace(found={"motions": motions})
+    axis = spectrum_axis(report, load_scene("fig3-I"))
+    assert axis == {"period": pytest.approx([0.12346, 4.0], rel=1e-3), "damping": 0.02}
+    assert spectrum_axis(report, load_scene("fig3-II")) == {"period": [], "damping": 0.0}

@@ -113,6 +113,12 @@ def test_a_model_that_was_not_searched_has_the_largest_value_of_the_next_one() -
         analysis.LargestOverPhases("fig3-I", model, "amplification", 1, mu)
         for model, mu in (("exact", 1.0), ("regularised", 2.0))
     ]
+    found += [
+        analysis.LargestOverPhases("fig3-I", "small", "amplification", 1, math.nan),
+        analysis.LargestOverPhases("fig3-I", "small", "amplification", 2, 5.0),
+        analysis.LargestOverPhases("fig3-I", "resolved", "displacement", 1, 6.0),
+        analysis.LargestOverPhases("fig3-II", "spatial", "amplification", 1, 7.0),
+    ]
     models = ["small", "exact", "resolved", "regularised", "spatial"]
     largest = [analysis.find_nearest_search(found, models, "fig3-I", model, 1).value for model in models]
     assert largest == [1.0, 1.0, 2.0, 2.0, 2.0]
@@ -139,6 +145,12 @@ def test_searches_begin_at_the_hills_of_what_they_search() -> None:
     for task in tasks:
         shift = 0 if task.argument[4] == "displacement" else 1 + task.argument[5]
         assert task.argument[7].tolist() == [[alpha[5], alpha[9 + shift]]]
+    step = study.stride(SPATIAL)
+    known = [float(mu[::step, ::step].max()) for mu in of_bodies]
+    for _, _, engine, on_grid, _, body, *_ in (task.argument for task in tasks):
+        assert (on_grid is None) == (engine is None)
+        if on_grid is not None:
+            assert (on_grid[0].key, on_grid[1].body, on_grid[1].mu) == ("spatial", body, known[body - 1])
 
 
 def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:

@@ -15,6 +15,7 @@ from studies import solved
 
 from comparison.registry import EVERYTHING, make_report
 from comparison.report.junit import format_limits_as_junit
+from comparison.report.page import make_page_header_style
 from comparison.report.summary_text import render_summary_text
 from comparison.runner.progress import make_wide_console, show_progress
 from comparison.study.study import Study
@@ -112,3 +113,11 @@ def test_names_and_numbers_are_written_as_the_house_writes_them(
     write: Callable[..., str], value: object, written: str
 ) -> None:
     assert write(value) == written
+
+
+def test_every_sign_that_could_end_the_style_is_escaped_in_the_header_of_a_page() -> None:
+    style = make_page_header_style('Öl: a-b, 2.5 "x"; }\\')
+    assert (
+        style == '@page { @top-left { content: "Öl: a-b, 2.5 \\22 x\\22 \\3b  \\7d \\5c "; font: 7pt sans-serif; } }\n'
+    )
+    assert make_page_header_style("") == ""

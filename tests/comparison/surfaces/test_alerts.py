@@ -2,6 +2,7 @@
 """Whatever a reader must know before trusting a number is an alert, and nothing else is."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,10 +13,14 @@ from runs import Run
 from studies import solved
 
 import reference
+from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
+from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.alerts import list_alerts
-from comparison.surfaces.missing_values import MissingValues, OutcomeNote
+from comparison.surfaces.body_comparison import compare_bodies
+from comparison.surfaces.missing_values import MissingValues, OutcomeNote, advise_on_outcome
 from reference.problem import Outcome, load_scene
+from reference.problem.outcome import ADVICE
 
 
 def test_a_sound_run_has_no_alert_and_its_limits_hold(command: Callable[..., Run]) -> None:
@@ -104,6 +109,48 @@ def test_a_gap_is_told_with_its_counts_and_outcomes(
     notes = tuple(OutcomeNote(outcome, count, f"help for {outcome}") for outcome, count in outcomes.items())
     lacking = MissingValues("fig3-I", "spatial", "spatial engine", points, unusable, 4, used, notes)
     study = Study((load_scene("fig3-I"),), 2, 1e-3, errors_in({}))
-    (found,) = list_alerts(study, solved(study), [lacking], [], [])
+    other = replace(lacking, title="another", points=0, unusable=2, used=True, outcomes=())
+    found, second = (
+        next(
+            each for each in list_alerts(study, solved(study), [other, lacking], [], []) if each.text.startswith(title)
+        )
+        for title in ("spatial", "another")
+    )
+    assert second.text == "another: only values with errors above half of them at 2 of 4 phase pairs"
     assert f"{found.level} {found.kind}: {found.text}" == said.replace(": ", ": spatial engine: ", 1)
     assert found.help == "; ".join(f"help for {outcome}" for outcome in outcomes)
+
+
+def test_points_of_every_model_and_unusable_ones_count_as_failed() -> None:
+    scene = load_scene("fig3-I").with_values({"acceptance.failed": 3})
+    study = Study((scene,), 2, 1e-3, errors_in({}))
+    gaps = [
+        MissingValues("fig3-I", key, key, points, unusable, 4, True, ())
+        for key, points, unusable in (("small", 1, 0), ("translational", 0, 1), ("spatial", 1, 1))
+    ]
+    limits = {limit.key: limit for limit in check_limits(compare_bodies(study, solved(study), scene), gaps)}
+    assert limits["failed"].breach_texts == [
+        "acceptance.failed: 4 points without an answer (small 1 of 4, translational 1 of 4, spatial 2 of 4), 3 allowed",
+    ]
+
+
+def test_the_advice_is_that_of_the_outcome_and_for_an_engine_of_the_user_what_it_reported() -> None:
+    scene, model = load_scene("fig3-I"), MODEL_HIERARCHY[-1]
+    study = Study((scene,), 2, 1e-3, MODEL_HIERARCHY)
+    reported = {Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED}
+    for outcome in Outcome:
+        assert advise_on_outcome(study, scene, model, outcome) == ADVICE[outcome]
+        own = advise_on_outcome(study, scene, replace(model, side="user"), outcome)
+        assert own == ("see what the solvers reported" if outcome in reported else ADVICE[outcome])
+
+
+def test_a_pair_counts_the_phases_at_which_either_model_is_not_ok() -> None:
+    scene = load_scene("fig3-I")
+    study = Study((scene,), 2, 1e-3, errors_in({}))
+    surfaces = solved(study)
+    for model, places in (("small-resolved", [(0, 0), (0, 1)]), ("spatial", [(0, 1), (1, 0), (1, 1)])):
+        for a, b in places:
+            status = surfaces["status"].sel(scene="fig3-I", model=model)
+            status[{"alpha1": a, "alpha2": b}] = Outcome.TOLERANCE_NOT_MET.value
+    total = compare_bodies(study, surfaces, scene)[0].total
+    assert (total.first, total.second, total.not_ok) == ("small-resolved", "spatial", 4)
