@@ -386,7 +386,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/governing.py", "GOVERNING_OF_LIMITS.get(limited, ())", "()",
             "A drift decides whether a limit on uplift is compared.",
             (SEEN + "the_engine_says_nothing_of_motions_that_govern_and_that_it_has_not_computed",)),
-    Mistake("comparison/analyses/ensemble/terminal.py", '        "limits": lambda: print_lines(console, [line for line in [limits_sentence(ensemble)] if line]),\n', "",
+    Mistake("comparison/analyses/ensemble/terminal.py", '        "limits": lambda: print_lines(console, [limits_sentence(ensemble)]),\n', "",
             "The terminal ends with the verdict from before the engine.",
             (SEEN + "the_terminal_ends_with_the_verdict_of_the_engine_and_calls_the_first_provisional",)),
     Mistake(SENTENCES, '[bound, _word_excess(each)]', '[bound]', "The first sentence does not say by how much a limit is not met.",

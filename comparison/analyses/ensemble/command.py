@@ -169,7 +169,7 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
             limits = scene.acceptance.demands
             asked_of_it = limits is not None and limits.uplift is not None
             line = f"{name}: {why_not_spatial(scene)}{': no model has the uplift that a limit is on' * asked_of_it}."
-            console.print(f"{'Warning: ' * asked_of_it}{line}", soft_wrap=True, markup=False)
+            console.print(f"{'Warning: ' * asked_of_it}{line}", soft_wrap=True)
 
 
 def make_demand_check(
@@ -301,11 +301,11 @@ def read_listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
 def print_suite(console: Console, options: argparse.Namespace) -> None:
     """Print what the folder of the suite contains; with --write-motions write the list into it as motions.csv."""
     listed = list_motions(options.suite, Path(), options.components)
-    console.print(listed.sentence, soft_wrap=True, markup=False)
+    console.print(listed.sentence, soft_wrap=True)
     if options.write_motions:
         with report_write_errors(Path(options.suite)):
             place = write_new(Path(options.suite) / MOTIONS, motion_list_text(listed.motions).encode())
-        console.print(f"Motions: {place}", soft_wrap=True, markup=False)
+        console.print(f"Motions: {place}", soft_wrap=True)
 
 
 def make_suite_family(options: argparse.Namespace, source: str) -> Family:

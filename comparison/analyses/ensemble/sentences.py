@@ -1,6 +1,6 @@
 """Sentences for the page and the terminal of an ensemble, each worded by one function from the result."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 
 from comparison.analyses.ensemble.quantities import display_unit, unit_of_check, word_value
@@ -84,6 +84,14 @@ def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
     count = sum(any(one.axis == "z" for one in each.components) for each in ensemble.suite)
     known = f"{VERTICAL_MOTION[:-1]}: {count or 'none'} of {word_motion_count(len(ensemble.suite))} here."
     return [known if line == VERTICAL_MOTION else line for line in NOT_MODELED]
+
+
+def say_of_all(ensemble: EnsembleResult, word: Callable[[Structure], str]) -> list[str]:
+    """Return what is said of every structure: once where it is the same of all, else each after its label."""
+    said = {each.name: word(each) for each in ensemble.structures}
+    if len({*said.values()}) == 1:
+        return list(filter(None, said.values()))[:1]
+    return [f"{word_bound(ensemble, name, '{}: ')}{line}" for name, line in said.items() if line]
 
 
 def word_heading(ensemble: EnsembleResult) -> str:

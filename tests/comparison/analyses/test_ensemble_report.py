@@ -21,7 +21,7 @@ from printed_pages import A4, BEYOND, CUT, DOT, MARGIN, as_printed, letters, pri
 from runs import SMALL, quick_figures
 
 import reference
-from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, trust
+from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, terminal, trust
 from comparison.analyses.ensemble.command import main
 from comparison.analyses.ensemble.limits import check_limits, list_verdicts
 from comparison.analyses.ensemble.quantities import word_value
@@ -44,6 +44,7 @@ from comparison.analyses.ensemble.result import (
 from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
 from comparison.runner.attempts import LostParts
+from comparison.runner.progress import make_wide_console
 from reference.measures import Estimate
 from reference.problem import GRAVITY
 from reference.problem.acceptance import DemandLimits
@@ -482,6 +483,9 @@ def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
     assert said.startswith("A ratio of fewer than 2 motions has no spread: it makes no estimate of the suite.")
     shown = page.render_ensemble_page(alone).partition('id="extended"')[2].partition("</section>")[0]
     assert ("makes no estimate" in shown, "<table" in shown) == (True, False)
+    mixed = with_demand(alone, "support_force_min", None, exact=(4e3, 3e3, 2e3, 1e3), spatial=(4e3, 3e3, 2e3, 1e3))
+    shown = page.render_ensemble_page(mixed).partition('id="extended"')[2].partition("</section>")[0]
+    assert "<table" in shown, "the second demand has several"
     several = list(trust.extrapolate_ratios(planted()))
     assert "none" not in trust.extrapolation_sentence(several)
     assert "none" in trust.extrapolation_sentence([(*several[0][:2], ["mm", "none"])])
@@ -519,6 +523,8 @@ def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reach
     rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
     said = sentences.answer_sentence(replace(two_bounds(), stripes=rim))
     assert ("at least the travel" in said, "(c alone, m4)" in said) == (False, True)
+    alike = [planted().stripes[0], two_bounds().stripes[1]]
+    assert "(b, m4)" in sentences.answer_sentence(replace(two_bounds(), stripes=alike)), "the first of equal bounds"
 
 
 def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
@@ -649,6 +655,8 @@ def test_every_motion_of_every_bound_is_a_row_with_its_outcome() -> None:
     assert len(read) == 8
     assert read["m4", "b"] == (["none"], "travel reached")
     assert read["m4", "c"] == (["400"], "ok")
+    scales = {sentences.word_heading(replace(planted(), scales=each, stripes=[])) for each in ((1.0,), (2.0,), (0.5, 1.0))}
+    assert scales == {"A <block>: 4 motions", "A <block>: 4 motions, scale 2", "A <block>: 4 motions, scale 1"}
 
 
 def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> None:
@@ -758,7 +766,7 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
     ]
 
 
-def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
+def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pytest.CaptureFixture[str]) -> None:
     (row,) = trust.make_model_ratio_rows(planted())
     assert (row.motions, row.value) == (("m3", "m4"), pytest.approx(0.35)), "the other motions are in no mean"
     assert {key: ratio.mean for key, ratio in row.ratios.items()} == pytest.approx(
@@ -768,6 +776,14 @@ def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
         "−10.00 %",
         "+0.20 %",
         "+5.00 %",
+    ]
+    assert row.ratios["spatial"].text == "+5.00 %", "no range of equal ratios"
+    found = planted()
+    terminal.print_engine(make_wide_console(), replace(found, engine=replace(found.engine, motions=found.engine.motions[:1])))
+    assert capsys.readouterr().out.splitlines()[:3] == [
+        "The spatial engine computed: m3 (largest displacement).",
+        "The engine was asked for largest accelerations to 1 %.",
+        "b, mean difference from the exact equations on 2 motions:",
     ]
 
 
@@ -958,10 +974,11 @@ def fails(*rest: Any) -> None:
 @pytest.mark.parametrize(
     ("owner", "name", "lost"),
     [
-        (panels, "_demand_panel", "plot 1"), (panels, "_profile_panel", "plot 1"),
-        (page, "make_model_ratio_rows", "section trust"),
-        (page, "make_demand_rows", "section demands"), (sentences, "support_sentences", "section supports"),
-        (sentences, "answer_sentence", "answer"), (page, "extrapolate_ratios", "section extended"),
+        (panels, "_demand_panel", [f"plot {number}" for number in range(1, 5)]),
+        (panels, "_profile_panel", [f"plot {number}" for number in range(1, 5)]),
+        (page, "make_model_ratio_rows", ["section trust"]),
+        (page, "make_demand_rows", ["section demands"]), (sentences, "support_sentences", ["section supports"]),
+        (sentences, "answer_sentence", ["answer"]), (page, "extrapolate_ratios", ["section extended"]),
     ],
 )  # fmt: skip
 def test_a_part_that_fails_costs_one_line(
@@ -970,13 +987,13 @@ def test_a_part_that_fails_costs_one_line(
     capsys: pytest.CaptureFixture[str],
     owner: Any,
     name: str,
-    lost: str,
+    lost: list[str],
 ) -> None:
     whole = page.render_ensemble_page(found)
     monkeypatch.setattr(owner, name, fails)
     without = page.render_ensemble_page(found)
     said = capsys.readouterr().err.splitlines()
-    assert said[0] == f"{lost} could not be shown: RuntimeError: planted"
+    assert said == [f"{part} could not be shown: RuntimeError: planted" for part in lost]
     assert without.count("RuntimeError: planted") >= 1
     assert without.count("<section id=") == whole.count("<section id="), "its place says what is lost"
     assert len(without) > 0.4 * len(whole)
