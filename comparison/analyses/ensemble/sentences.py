@@ -12,6 +12,7 @@ from comparison.analyses.ensemble.rows import (
     name_floor,
     peak_in_g,
     statistics_of_column,
+    summarize_demand,
     word_bound,
 )
 from comparison.study.models import EXACT
@@ -391,15 +392,12 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
 
 def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
     """Return a warning of an implausible drift with its story and motion; "" for any other drift."""
-    stripes = [
-        row for row in ensemble.list_demands_of_bodies(structure.name, "drift_ratio") if row.largest.value is not None
-    ]
-    if not stripes:
-        return ""
-    worst = max(stripes, key=lambda row: row.largest.value or 0.0)
-    place = f"{locate_demand(structure, worst.quantity, worst.body)} under {worst.largest_motion}"
-    line = implausible_drift(worst.largest.value or 0.0, place)
-    return f"Warning: {line}" if line else ""
+    found = []
+    for row in ensemble.list_demands_of_bodies(structure.name, "drift_ratio"):
+        told = summarize_demand(structure, row)
+        place = f"{locate_demand(structure, row.quantity, row.body)} under {told.motion}"
+        found.append((told.numbers[-1].value or 0.0, place))
+    return f"Warning: {line}" if found and (line := implausible_drift(*max(found))) else ""
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
