@@ -111,6 +111,10 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     known, _, _ = statistics.summarize_demands(analysis.EnsemblePoints(points[:3]))
     assert known.largest_motion == "m2"
     assert (known.mean.value, known.mean.error) == pytest.approx((3.0, 0.3))
+    engine = [replace(point, model="spatial") for point in points]
+    for count, models in ((3, {"exact"}), (4, {"exact", "spatial"})):
+        both = statistics.summarize_demands(analysis.EnsemblePoints(points, (), {"spatial": engine[:count]}))
+        assert {each.model for each in both} == models, "of all motions, or no statistics"
 
 
 PLACES = [[3.0, 2.0], [-3.5, 2.0], [0.5, -2.5]]  # m

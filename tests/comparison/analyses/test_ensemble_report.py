@@ -896,6 +896,7 @@ def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
     by_engine = [each for each in series if each.get("color") == "ink" and each.get("marks")]
     assert [each["y"][0] for each in by_engine] == pytest.approx([315.0, 420.0])
     assert by_engine[0]["name"] == "spatial engine"
+    assert not any("at the travel" in each["name"] for each in series), "none reaches it"
 
 
 def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -> None:
