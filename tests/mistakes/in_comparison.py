@@ -787,7 +787,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/sentences.py", 'f"Peaks from {peak_in_g(min(peaks))} to {peak_in_g(max(peaks))}', 'f"Peaks from {peak_in_g(max(peaks))} to {peak_in_g(min(peaks))}',
             "Range of peaks turned round.", ("tests/comparison/analyses/test_ensemble_report.py::test_one_duration_is_no_range",)),
     Mistake("comparison/analyses/ensemble/sentences.py", "lacking = model == EXACT.key and any(each.motions < ensemble.motions for each in rows)", "lacking = model == EXACT.key and all(each.motions < ensemble.motions for each in rows)",
-            "One bound with a motion lost is not said.", ("tests/comparison/analyses/test_ensemble_report.py::test_support_forces_say_of_how_many_motions_they_are",)),
+            "One bound with a motion lost is not said.", ("tests/comparison/analyses/test_ensemble_tables.py::test_the_page_shows_every_table_and_sentence",)),
     Mistake("comparison/analyses/ensemble/rows.py", 'motions = f"{len(known)} of {ensemble.motions} ({ensemble.engine.model} engine)"', 'motions = f"{len(values)} of {ensemble.motions} ({ensemble.engine.model} engine)"',
             "Motions without a value count in the row of the engine.", ("tests/comparison/analyses/test_ensemble_tables.py::test_the_page_shows_every_table_and_sentence",)),
     Mistake("comparison/evidence/validation/frame.py", "and by {off:.3f} mm with {setup.ratio:.3f}", "and by {off:.3f} mm with {own.ratio:.3f}",

