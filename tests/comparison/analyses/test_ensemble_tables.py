@@ -381,8 +381,8 @@ def trust_by_hand(labels: Sequence[str]) -> str:
         "On the 4 motions that all models computed, four things are apart: the geometry of the sphere, which the small "
         f"equations leave out, is worth {largest('small', 'exact')}; given the same equations and friction law, the "
         f"two codes differ by {largest('translational', 'regularised')}; the regularized friction of the engines, "
-        f"which the exact equations have not, is worth {largest('regularised', 'exact')}; bodies that turn on "
-        f"their supports change a demand by {largest('spatial', 'translational')}, and the smallest support force, against "
+        f"which the exact equations have not, is worth {largest('regularised', 'exact')}; bodies that turn on their "
+        f"supports change a demand by {largest('spatial', 'translational')}, and the smallest support force, against "
         f"statics, by {largest('spatial', 'translational', smallest=True)}."
     )
 
