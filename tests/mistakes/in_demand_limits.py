@@ -329,7 +329,7 @@ MISTAKES = (
             ("tests/comparison/analyses/test_ensemble_tables.py::test_the_page_shows_every_table_and_sentence",)),
     Mistake("comparison/analyses/ensemble/hand_checks.py", "tons * GRAVITY, tons * GRAVITY, weight,", "weight, weight, weight,",
             "The weight by hand is that of the report.",
-            ("tests/comparison/analyses/test_ensemble_tables.py::test_the_page_shows_every_table_and_sentence",)),
+            (REPORT + "checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong",)),
     Mistake("comparison/analyses/ensemble/hand_checks.py", "if self.low <= self.found <= self.high:", "if True:",
             "Every number is inside its range.",
             ("tests/comparison/analyses/test_ensemble_tables.py::test_the_page_shows_every_table_and_sentence",)),
