@@ -49,7 +49,7 @@ from comparison.analyses.ensemble.members import (
     with_suite,
 )
 from comparison.analyses.ensemble.page import render_ensemble_page
-from comparison.analyses.ensemble.result import STORED, EnsembleResult
+from comparison.analyses.ensemble.result import STORED, EnsembleResult, TargetSpectrum
 from comparison.analyses.ensemble.table import format_table
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.analyses.ensemble.terminal import print_engine, print_equations
@@ -101,11 +101,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     jobs = read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
     members = list_members([make_suite_family(options, scene) for scene in options.scenes])
     asked = parse_engine_option(options.engine, members)
-    target = None
-    if options.target is not None:
-        members, target = match_spectrum(members, options.target, options.periods)
-    elif options.periods is not None:
-        raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
+    members, target = scale_to_target(options, members)
     if options.model is not None and asked != 0:
         refuse_scenes_without_model_data(members, ENGINES[options.model])
     check = make_demand_check(options, members)
@@ -135,11 +131,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         if further:
             write(results, ensemble.collect_points(results), print_equations, pending=len(chosen))
             display.extend(sum(task.seconds for task in further))
-            turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
-            engine = SPATIAL if turning else TRANSLATIONAL
-            count = f"{len(chosen)} of {len(members)} motions"
-            wall = estimate_wall_seconds([task.seconds for task in further], jobs) + WRITING_SECONDS
-            console.print(f"Next: {count} by the {engine.title}, about {wall:.0f} s on idle cores.")
+            console.print(word_engine_work(ensemble, chosen, further, jobs))
         shown.append((chosen, bool(further)))
         return further
 
@@ -152,6 +144,26 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         checks = write(results, ensemble.collect_points(results, chosen), print_engine)
     console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
     return print_checks(checks, asked=options.check or options.against is not None)
+
+
+def scale_to_target(
+    options: argparse.Namespace, members: tuple[EnsembleMember, ...]
+) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum | None]:
+    """Return the members as `--target` scales them, and its spectrum; without it as they are. Raises SceneError."""
+    if options.target is not None:
+        return match_spectrum(members, options.target, options.periods)
+    if options.periods is not None:
+        raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
+    return members, None
+
+
+def word_engine_work(ensemble: Ensemble, chosen: Sequence[ChosenMember], tasks: Sequence[Task], jobs: int) -> str:
+    """Return how many motions the engine computes next, by which model and in which time."""
+    turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
+    engine = SPATIAL if turning else TRANSLATIONAL
+    wall = estimate_wall_seconds([task.seconds for task in tasks], jobs) + WRITING_SECONDS
+    count = f"{len(chosen)} of {len(ensemble.members)} motions"
+    return f"Next: {count} by the {engine.title}, about {wall:.0f} s on idle cores."
 
 
 def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: EngineRequest, jobs: int) -> None:
@@ -169,7 +181,7 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
             limits = scene.acceptance.demands
             asked_of_it = limits is not None and limits.uplift is not None
             line = f"{name}: {why_not_spatial(scene)}{': no model has the uplift that a limit is on' * asked_of_it}."
-            console.print(f"{'Warning: ' * asked_of_it}{line}", soft_wrap=True, markup=False)
+            console.print(f"{'Warning: ' * asked_of_it}{line}", soft_wrap=True)
 
 
 def make_demand_check(
@@ -301,11 +313,11 @@ def read_listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
 def print_suite(console: Console, options: argparse.Namespace) -> None:
     """Print what the folder of the suite contains; with --write-motions write the list into it as motions.csv."""
     listed = list_motions(options.suite, Path(), options.components)
-    console.print(listed.sentence, soft_wrap=True, markup=False)
+    console.print(listed.sentence, soft_wrap=True)
     if options.write_motions:
         with report_write_errors(Path(options.suite)):
             place = write_new(Path(options.suite) / MOTIONS, motion_list_text(listed.motions).encode())
-        console.print(f"Motions: {place}", soft_wrap=True, markup=False)
+        console.print(f"Motions: {place}", soft_wrap=True)
 
 
 def make_suite_family(options: argparse.Namespace, source: str) -> Family:

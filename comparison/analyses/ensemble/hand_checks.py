@@ -59,10 +59,10 @@ def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator
     if read.support_loads:
         total = sum(read.support_loads) / 1e3
         yield HandCheck("dead loads of all supports together", "weight", weight, weight, total, "kN")
-    period = read.isolated_period[0][0] if read.isolated_period[0] else None
+    period = read.isolated_period[0][0]
     if read.radius is not None and period is not None:
         rigid = 2.0 * math.pi * math.sqrt(read.radius / GRAVITY)
-        fixed = read.fixed_base_period[0][0] if read.fixed_base_period and read.fixed_base_period[0] else 0.0
+        fixed = read.fixed_base_period[0][0] if read.fixed_base_period[0] else 0.0
         formula = f"T = 2π √({read.radius:.4g} / {GRAVITY:g}) to √(T² + {fixed:.3g}²)"
         yield HandCheck("first period on the isolator, along x", formula, rigid, math.hypot(rigid, fixed), period, "s")
     yield from _check_base_shear(ensemble, structure)
@@ -98,7 +98,7 @@ def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator
         ensemble.values_at_largest_scale(structure.name, name, top, EXACT.key) for name in ("story_shear", "drift")
     )
     shear, drift = (max((one.value or 0.0 for one in each.values()), default=0.0) for each in found)
-    if not read.stiffness or not shear or not drift:
+    if not read.stiffness or not shear:
         return
     soft, stiff = sorted(read.stiffness[-1])
     ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # of the third mode

@@ -51,15 +51,17 @@ class DemandCheck:
     """
     A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
 
-    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. on: the
-    statistic and its motions. found, stated: in SI; None without a number. excess: found less stated; of a limit 0
-    below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
-    compared, "" otherwise. is_least: whether the demand is larger than `found` by an unknown amount.
+    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. statistic:
+    what `found` is over the motions. on: the statistic and its motions in words. found, stated: in SI; None without a
+    number. excess: found less stated; of a limit 0 below it. allowed: size of it that is met. motion: of the largest
+    value, "" of a mean. reason: why nothing is compared, "" otherwise. is_least: whether the demand is larger than
+    `found` by an unknown amount.
     """
 
     key: str
     bound: str
     what: str
+    statistic: str
     on: str
     found: float | None
     stated: float | None
@@ -135,7 +137,7 @@ def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
     return [
         LimitVerdict(
             check.key, check.bound, check.verdict, word_check(check), check.what, check.on, check.found, check.stated,
-            check.unit, check.motion, check.is_least, _word_check_verdict(check),
+            check.unit, check.motion, check.is_least, _word_check_verdict(check), check.statistic,
         )
         for check in checks
     ]  # fmt: skip
@@ -183,6 +185,7 @@ def _check_body(
     per = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
     of_engine = model not in ("", EXACT.key)
     governing = of_engine and len(values) < ensemble.motions
+    taken = LARGEST_STATISTIC if governing else statistic
     lacking = (
         _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if governing else ""
     )
@@ -193,19 +196,19 @@ def _check_body(
     by = " by statics" if key == "support_force_max" and not of_engine else ""
     on += f" at scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 else ""
     what, bound = f"{_word_demand(structure, key, body)}{by}", label_structures(ensemble)[structure.name]
-    about: tuple[str, str, str, str] = f"{LIMIT_KEY_PREFIX}{key}", bound, what, on
+    about = f"{LIMIT_KEY_PREFIX}{key}", bound, what, taken, on
     unit, ended = "" if key == WEIGHT_SHARE_KEY else unit_of_demand(key), len(values) - len(known)
     reason = f"{ended} {'motion has' if ended == 1 else 'motions have'} no value" if ended else lacking
     if is_least:
         return DemandCheck(*about, least, limit, least - limit, 0.0, unit, least_motion, is_least=True)
-    if statistic == MEAN_STATISTIC and ended and not governing:
+    if taken == MEAN_STATISTIC and ended:
         reason += f"; with the travel there at least {_word_number(least, unit)}" if least > -math.inf else ""
         needed = (limit * len(values) - math.fsum(value for value, *_ in known) / per) / ended
         reason += _word_breaking_value(needed, ended, unit)
     if not known:
         reason = reason if values else _explain_lacking_demand(ensemble, key)
         return DemandCheck(*about, None, limit, unit=unit, reason=reason)
-    value, error, motion = _compute_mean(known) if statistic == MEAN_STATISTIC and not governing else max(known)
+    value, error, motion = _compute_mean(known) if taken == MEAN_STATISTIC else max(known)
     found, error = value / per, error / per
     excess = max(found - limit, 0.0)
     if excess > error and statistic == LARGEST_STATISTIC:  # The other motions can only make the largest value larger.
@@ -343,6 +346,7 @@ def _compare_demands(
             quantity,
             named[structure],
             demand_title(quantity, body),
+            statistic,
             f"{statistic}, scale {scale:g}",
             found,
             stated,

@@ -28,7 +28,6 @@ from comparison.analyses.ensemble.rows import (
     make_motion_heads,
     make_motion_rows,
     make_profile_rows,
-    name_floor,
 )
 from comparison.analyses.ensemble.trust import (
     EXTRAPOLATED_STATISTICS,
@@ -55,14 +54,11 @@ ContextReader = Callable[[EnsembleResult, LostParts], Context]
 def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
     return {
         "labels": label_structures(ensemble),
-        "name_floor": name_floor,
-        "isolator_sentence": sentences.isolator_sentence,
-        "mark_code": mark_code,
-        "below_contact_sentence": sentences.below_contact_sentence,
+        "warnings": list(map(mark_code, sentences.say_of_all(ensemble, sentences.below_contact_sentence))),
         "sentences": [
-            sentences.displaced_weight_sentence(ensemble.structures[0]),
-            sentences.damping_sentence(ensemble.structures[0]),
-            sentences.restoring_sentence(ensemble),
+            *sentences.say_of_all(ensemble, sentences.displaced_weight_sentence),
+            *sentences.say_of_all(ensemble, sentences.damping_sentence),
+            *filter(None, [sentences.restoring_sentence(ensemble)]),
         ],
         "word_plan_sizes": sentences.word_plan_sizes,
         "not_modeled": [mark_code(line) for line in sentences.list_not_modeled(ensemble)],

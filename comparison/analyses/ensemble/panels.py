@@ -145,7 +145,7 @@ def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]
         if each.building and each.building.travel and quantity == "displacement"
     ]
     limits = [
-        (f"limit ({each.on.partition(' ')[0]})", each.stated, {"color": "gray", "dash": "7 3"})
+        (f"limit ({each.statistic})", each.stated, {"color": "gray", "dash": "7 3"})
         for each in ensemble.limits
         if each.key == f"{LIMIT_KEY_PREFIX}{quantity}" and each.stated is not None
     ]
@@ -156,7 +156,7 @@ def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]
 def is_mean_limited(ensemble: EnsembleResult, quantity: str) -> bool:
     """Return whether a limit is on the mean of a demand."""
     key = f"{LIMIT_KEY_PREFIX}{quantity}"
-    return any(each.key == key and each.on.startswith(MEAN_STATISTIC) for each in ensemble.limits)
+    return any(each.key == key and each.statistic == MEAN_STATISTIC for each in ensemble.limits)
 
 
 def plots_note(ensemble: EnsembleResult) -> str:

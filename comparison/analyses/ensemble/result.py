@@ -292,6 +292,7 @@ class LimitVerdict:
     motion: Annotated[str, "of a largest value; empty of a mean"] = ""
     is_least: Annotated[bool, "whether the demand is larger than found by an unknown amount"] = False
     words: Annotated[str, "verdict, by how much it is not met, or why it is not compared"] = ""
+    statistic: Annotated[str, "mean or largest: what found is over the motions"] = ""
 
 
 @result

@@ -1,6 +1,6 @@
 """Sentences for the page and the terminal of an ensemble, each worded by one function from the result."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 
 from comparison.analyses.ensemble.quantities import display_unit, unit_of_check, word_value
@@ -12,6 +12,7 @@ from comparison.analyses.ensemble.rows import (
     name_floor,
     peak_in_g,
     statistics_of_column,
+    summarize_demand,
     word_bound,
 )
 from comparison.study.models import EXACT
@@ -84,6 +85,14 @@ def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
     count = sum(any(one.axis == "z" for one in each.components) for each in ensemble.suite)
     known = f"{VERTICAL_MOTION[:-1]}: {count or 'none'} of {word_motion_count(len(ensemble.suite))} here."
     return [known if line == VERTICAL_MOTION else line for line in NOT_MODELED]
+
+
+def say_of_all(ensemble: EnsembleResult, word: Callable[[Structure], str]) -> list[str]:
+    """Return what is said of every structure: once where it is the same of all, else each after its label."""
+    said = {each.name: word(each) for each in ensemble.structures}
+    if len({*said.values()}) == 1:
+        return list(filter(None, said.values()))[:1]
+    return [f"{word_bound(ensemble, name, '{}: ')}{line}" for name, line in said.items() if line]
 
 
 def word_heading(ensemble: EnsembleResult) -> str:
@@ -383,15 +392,12 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
 
 def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
     """Return a warning of an implausible drift with its story and motion; "" for any other drift."""
-    stripes = [
-        row for row in ensemble.list_demands_of_bodies(structure.name, "drift_ratio") if row.largest.value is not None
-    ]
-    if not stripes:
-        return ""
-    worst = max(stripes, key=lambda row: row.largest.value or 0.0)
-    place = f"{locate_demand(structure, worst.quantity, worst.body)} under {worst.largest_motion}"
-    line = implausible_drift(worst.largest.value or 0.0, place)
-    return f"Warning: {line}" if line else ""
+    found = []
+    for row in ensemble.list_demands_of_bodies(structure.name, "drift_ratio"):
+        told = summarize_demand(structure, row)
+        place = f"{locate_demand(structure, row.quantity, row.body)} under {told.motion}"
+        found.append((told.numbers[-1].value or 0.0, place))
+    return f"Warning: {line}" if found and (line := implausible_drift(*max(found))) else ""
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:

@@ -46,16 +46,16 @@ def print_engine(console: Console, ensemble: EnsembleResult) -> None:
         "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
         "table of models": partial(_print_model_ratios, console, ensemble),
         "support forces": lambda: print_lines(console, support_sentences(ensemble)),
-        "limits": lambda: print_lines(console, [line for line in [limits_sentence(ensemble)] if line]),
+        "limits": lambda: print_lines(console, [limits_sentence(ensemble)]),
     }
     for what, act in parts.items() if ensemble.engine.motions else ():
         attempt(what, act)
 
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
-    """Print the lines without markup or wrapping."""
-    for line in lines:
-        console.print(line, soft_wrap=True, markup=False)
+    """Print the lines without wrapping; an empty one is left out."""
+    for line in filter(None, lines):
+        console.print(line, soft_wrap=True)
 
 
 def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
@@ -99,7 +99,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
         ]
         bound = word_bound(ensemble, structure.name, "{}: ")
         print_lines(console, [f"{bound}{line}" for line in lines if line])
-    print_lines(console, [line for line in (travel_sentence(ensemble), answer_sentence(ensemble)) if line])
+    print_lines(console, [travel_sentence(ensemble), answer_sentence(ensemble)])
 
 
 def _print_model_ratios(console: Console, ensemble: EnsembleResult) -> None:

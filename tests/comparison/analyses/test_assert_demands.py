@@ -59,6 +59,14 @@ def test_accelerations_and_residuals_are_limited_too() -> None:
     assert "residual displacement" in first + second
 
 
+def test_a_limit_on_what_the_engine_alone_has_asks_for_its_motions(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr("comparison.analyses.ensemble.gate.choose_motions", lambda _, which: asked.append(which) or [])
+    for count, name in enumerate(("uplift", "support_displacement"), start=1):
+        assert "not compared (no model that was computed has it" in failure(**{name: 1.0})[-1]
+        assert asked == [None] * count
+
+
 def test_limits_of_the_call_take_the_place_of_those_in_the_file(tmp_path: Path, moved: float) -> None:
     text = (Path(reference.__file__).parent / "records/examples/synthetic-pair.toml").read_text()
     record = Path(reference.__file__).parent / "records/examples/synthetic-pair.csv"

@@ -1,6 +1,7 @@
 """Demands under a suite of motions at many intensities: fractiles, the engine's motions, the command and its files."""
 
 import csv
+import hashlib
 import json
 import math
 import re
@@ -110,6 +111,10 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     known, _, _ = statistics.summarize_demands(analysis.EnsemblePoints(points[:3]))
     assert known.largest_motion == "m2"
     assert (known.mean.value, known.mean.error) == pytest.approx((3.0, 0.3))
+    engine = [replace(point, model="spatial") for point in points]
+    for count, models in ((3, {"exact"}), (4, {"exact", "spatial"})):
+        both = statistics.summarize_demands(analysis.EnsemblePoints(points, (), {"spatial": engine[:count]}))
+        assert {each.model for each in both} == models, "of all motions, or no statistics"
 
 
 PLACES = [[3.0, 2.0], [-3.5, 2.0], [0.5, -2.5]]  # m
@@ -166,6 +171,9 @@ def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_wor
     forces = replace(
         FORCES, shear=(sure(9.0), sure(5.0), sure(2.0)), moment=(sure(70.0), sure(30.0), sure(4.0)),
         support_min=(sure(3.0), sure(2.0), sure(4.0)), support_max=(sure(6.0), sure(8.0), sure(7.0)),
+        shear_along=((sure(0.1), sure(0.2), sure(0.3)), (sure(0.4), sure(0.5), sure(0.6))),
+        moment_along=((sure(1.1), sure(1.2), sure(1.3)), (sure(1.4), sure(1.5), sure(1.6))),
+        drift_along=((sure(2.2), sure(2.3)), (sure(2.5), sure(2.6))),
     )  # fmt: skip
     found = quantities.collect_demand_values(scene, SimpleNamespace(drift=drifts), forces)  # type: ignore[arg-type]
     ratios = {body: (number.value, number.error) for (name, body), number in found.items() if name == "drift_ratio"}
@@ -174,6 +182,9 @@ def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_wor
     assert [found["story_shear", body].value for body in (1, 2, 3)] == [9.0, 5.0, 2.0]
     assert [found["overturning_moment", body].value for body in (1, 2, 3)] == [70.0, 30.0, 4.0]
     assert [found[f"support_force_{end}", 0].value for end in ("min", "max")] == [2.0, 8.0]
+    along = {(name, body): number.value for (name, body), number in found.items() if name[-2:] in ("_x", "_y")}
+    assert [*along.values()] == [0.1, 0.2, 0.3, 2.2, 2.3, 1.1, 1.2, 1.3, 0.4, 0.5, 0.6, 2.5, 2.6, 1.4, 1.5, 1.6]
+    assert [*along][3:8] == [("drift_x", 2), ("drift_x", 3), *(("overturning_moment_x", body) for body in (1, 2, 3))]
 
 
 def test_beside_a_suite_a_scene_keeps_its_scale_and_zero_line_alone() -> None:
@@ -272,7 +283,7 @@ def test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median()
     assert [(each.member.structure, each.member.motion) for each in by_bound] == [("mine", "a"), ("other", "a")]
 
 
-def test_each_motion_of_the_engine_is_computed_by_every_model(folder: Path) -> None:
+def test_each_motion_of_the_engine_is_computed_by_every_model(monkeypatch: pytest.MonkeyPatch) -> None:
     (member,) = list_members([load_family("synthetic-pair")])
     ensemble = analysis.Ensemble((member,))
     tasks = ensemble.make_engine_tasks([governing.ChosenMember(member, ())])
@@ -280,6 +291,17 @@ def test_each_motion_of_the_engine_is_computed_by_every_model(folder: Path) -> N
     tolerances = {"small": 1e-6, "regularised": 1e-6, "translational": 1e-2, "spatial": 1e-2}
     assert asked == tolerances, "relative errors"
     assert [task.argument[1].key for task in ensemble.make_equation_tasks()] == ["exact"]
+    used = {}
+
+    def integrate(scene: Any, phases: Any, **settings: Any) -> None:
+        used[task.argument[1].key] = settings["tolerance"]
+        raise InterruptedError
+
+    monkeypatch.setattr(analysis, "import_function", lambda name: integrate)
+    for task in tasks:
+        with pytest.raises(InterruptedError):
+            analysis.compute_demands(task.argument)
+    assert used == tolerances
     assert len(replace(ensemble, spatial=False).make_engine_tasks([governing.ChosenMember(member, ())])) == 3
 
 
@@ -288,6 +310,7 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: py
     assert {file.name for file in Path("out").iterdir()} == {*WRITTEN_FILES, "manifest.json"} - {CHECKS_FILE}
     summary = content()
     assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
+    assert len([*Path("suite").iterdir()]) == 3, "no list of motions that nobody asked for"
     with open("out/ensemble.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [row["model"] for row in rows] == ["exact"] * 6 + ["small", "regularised", "translational"]
@@ -379,6 +402,8 @@ def test_several_scenes_have_statistics_of_their_own(folder: Path) -> None:
     found = content()
     names = ["lower", *(f"both[friction=slow={0.02 + k:g}+fast={0.04 + k:g}+rate=50]" for k in (0.0, 0.04))]
     assert [each["name"] for each in found["structures"]] == names
+    read = {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in ("lower.toml", "both.toml")}
+    assert found["run"]["scenes"] == read
     for part in ("stripes", "spectra"):
         lower, first = ([{**row, "structure": ""} for row in found[part] if row["structure"] == n] for n in names[:2])
         assert lower == first

@@ -196,6 +196,11 @@ def test_a_mean_of_the_engine_is_met_where_the_largest_of_the_governing_motions_
     assert line.endswith(f"{IN_TWO}, for the mean: 0 mm (Kobe), allowed 0 mm: met") or line.endswith(
         f"{IN_TWO}, for the mean: 0 mm (Imperial Valley), allowed 0 mm: met"
     )
+    limits = {"job[upper bound]": DemandLimits(uplift=0.0, displacement=0.6, statistic="mean")}
+    verdicts = list_verdicts(check_limits(ensemble_of(MOVED, flat), limits))
+    assert {each.key: each.statistic for each in verdicts} == {
+        "acceptance.demands.displacement": "mean", "acceptance.demands.uplift": "largest"
+    }  # fmt: skip
     lifted: Values = {("uplift", None): (0.002, 0.0)}
     (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.001, statistic="mean")
     assert line.endswith(
@@ -303,6 +308,13 @@ def test_demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_erro
     grown = ensemble_of({("displacement", None): (0.30, 0.51, 0.43), ("stops", None): (9.0, 9.0, 9.0)})
     assert {check.verdict for check in compare_with_stored(stored, stored, 0.0)} == {"met"}
     assert [check.verdict for check in compare_with_stored(grown, stored, 0.03)] == ["met", "met"]
+    mixed = [
+        *check_limits(grown, {"job[upper bound]": DemandLimits(displacement=0.6)}),
+        *compare_with_stored(grown, stored, 0.03),
+    ]
+    assert (
+        limits_sentence(replace(grown, limits=list_verdicts(mixed))) == "3 of 3 demands met, 0 not compared, 0 not met."
+    )
     assert [word_check(check) for check in compare_with_stored(grown, stored, 0.01)] == [
         "job[upper bound]: largest displacement of the isolator, mean, scale 1: 413.3 mm, stored 410 mm: met",
         "job[upper bound]: largest displacement of the isolator, largest, scale 1: 510 mm (Imperial Valley), "

@@ -21,7 +21,7 @@ from printed_pages import A4, BEYOND, CUT, DOT, MARGIN, as_printed, letters, pri
 from runs import SMALL, quick_figures
 
 import reference
-from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, trust
+from comparison.analyses.ensemble import hand_checks, page, panels, rows, sentences, terminal, trust
 from comparison.analyses.ensemble.command import main
 from comparison.analyses.ensemble.limits import check_limits, list_verdicts
 from comparison.analyses.ensemble.quantities import word_value
@@ -44,6 +44,7 @@ from comparison.analyses.ensemble.result import (
 from comparison.analyses.ensemble.statistics import summarize_motions
 from comparison.run import main as study
 from comparison.runner.attempts import LostParts
+from comparison.runner.progress import make_wide_console
 from reference.measures import Estimate
 from reference.problem import GRAVITY
 from reference.problem.acceptance import DemandLimits
@@ -170,57 +171,12 @@ def test_nothing_of_the_report_is_cut_or_overlaps_on_paper_and_phone(folder: Pat
         visit.page.close()
 
 
-def test_shears_drifts_and_moments_along_x_and_y_are_on_the_page_and_in_the_table(
-    folder: Path, found: EnsembleResult
-) -> None:
-    read, text = table(folder), (folder / "out" / "index.html").read_text(encoding="utf-8")
-    for demand, unit, factor in (("story_shear", "N", 1e-3), ("drift", "m", 1e3), ("overturning_moment", "N m", 1e-3)):
-        shown = rows.make_direction_rows(found, demand)
-        stories = {"below roof": 3, "below body 2": 2} | ({} if demand == "drift" else {"isolator": 1})
-        assert [row.name for row, _ in shown if row.is_first] == list(stories)
-        for row, cells in shown:
-            below = [f"<br><small>{source}" if source else "" for _, source in cells]
-            assert all(f">{cell}{source}<" in text for (cell, _), source in zip(cells, below))
-            heads = [f"{demand}{of}_{stories[row.name]} [{unit}]" for of in ("", "_x", "_y")]
-            own = [each for each in read if (each["bound"], each["model"]) == (row.bound, "exact")]
-            whole, *along = ([float(each[head]) for each in own] for head in heads)
-            for place, values in enumerate(along if own else ()):
-                by_hand = [word_value(float(value), None, factor) for value in (np.mean(values), max(values))]
-                assert [cell.partition(" ")[0] for cell, _ in cells[2 * place :][:2]] == by_hand
-                largest = max(own, key=lambda each: float(each[heads[1 + place]]))
-                assert (cells[2 * place][1], cells[2 * place + 1][1]) == ("", largest["motion"])
-            if not own:
-                assert all(source.split(", ")[-1] in ("lower", "upper") for _, source in cells), "bounds of an envelope"
-                assert all(part <= (1.0 + 1e-6) * length for part, length in zip(values, whole))
-
-
 def test_the_building_is_on_the_page_as_it_was_read(folder: Path, found: EnsembleResult) -> None:
     text = (folder / "out" / "index.html").read_text(encoding="utf-8")
-    building = reference.describe_building(reference.load_family("mine.toml").scenes[0])
-    for value in (f"{building.weight / 1e3:.5g}", f"4, {building.load_per_support / 1e3:.4g} each", "0.5, 3.5, 6.5"):
-        assert f">{value}<" in text, value
-    assert f"{building.isolated_period[0, 0]:.3g}, " in text
     lower, upper = (each.building for each in found.structures)
     assert lower is not None
     assert upper is not None
     assert (list(lower.friction), list(upper.friction)) == (pytest.approx([0.024, 0.048]), pytest.approx([0.045, 0.09]))
-    for structure in found.structures:
-        isolator, moved = structure.isolator, found.find_demand(structure.name, "displacement")
-        assert isolator is not None
-        assert moved is not None
-        effective = reference.effective_isolator(
-            reference.load_scene("fig3-I").with_values({
-                "isolator": {"radius": 2.0, "friction": isolator.friction}, "bodies": [{"mass": 90e3}],
-            }),
-            moved.mean.value,
-        )  # fmt: skip
-        said = f"{effective.period:.3g} s, {100 * effective.damping:.3g} % at the mean displacement"
-        assert said in text
-    assert "roof" in text
-    for value in ("50", "30 along x, 20 along y; 20 along x, 25 along y", "7 × 5, all"):
-        assert f">{value}<" in text, value
-    assert sentences.displaced_weight_sentence(found.structures[0]) in text
-    assert 'radius of the spheres</th><td>m</td><td class="long">0.1<' in text
     assert f"phase-resonance {found.run['provenance']['phase-resonance']}" in text
     suite = {each.motion: each for each in found.suite}
     assert (suite["pulse 1"].magnitude, suite["pulse 2"].magnitude) == (6.9, None)
@@ -368,35 +324,11 @@ def with_demand(found: EnsembleResult, quantity: str, body: int | None, **models
     return replace(found, curves=[*found.curves, *curves], stripes=[*found.stripes, stripe])
 
 
-def test_the_sentence_of_trust_covers_every_demand_of_its_table() -> None:
-    """The largest difference of a single motion, of moments and support forces, too; the smallest force by itself."""
-    found = with_demand(planted(), "support_force_max", None, exact=(4.0, 4.0, 4.0, 4.0), spatial=(4.0, 4.0, 4.0, 4.4))
-    said = trust.model_ratio_sentence(found)
-    assert said.endswith("change a demand by up to 10 % (largest support force, m4).")
-    found = with_demand(found, "support_force_min", None, exact=(1.0, 1.0, 1.0, 1.0), spatial=(1.0, 1.0, 0.99, 0.8))
-    said = trust.model_ratio_sentence(found)
-    assert said.endswith(
-        "(largest support force, m4), and the smallest support force, against statics, by up to 20 % (m4)."
-    )
-    moments = {"exact": (1.0, 1.0, 1.0, 1.0), "translational": (1.0, 1.0, 1.0, 1.0), "spatial": (1.0, 1.0, 1.0, 1.5)}
-    others = {"small": (1.0,) * 4, "regularised": (1.0,) * 4}
-    said = trust.model_ratio_sentence(with_demand(found, "overturning_moment", 1, **moments, **others))
-    assert "change a demand by up to 50 % (overturning moment at the isolator, m4), and the smallest" in said
-
-
 def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion() -> None:
     """The story of the largest mean is not that of the largest value."""
     found = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
     found = with_demand(found, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009), spatial=(0.001,) * 4)
     found = with_demand(found, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005), spatial=(0.004,) * 4)
-    row = demand_row(found, "largest drift ratio")
-    assert (row.cells[0], row.cells[2], row.cells[4]) == ("0.525", "0.4", "0.9"), "mean, median and largest of maxima"
-    assert (row.motion, row.where) == ("m4", "below body 2")
-    table = {row.name: row.cells[4] for row in rows.make_profile_rows(found, "drift_ratio", 1.0)}
-    assert (table["below body 2"], table["below body 3"]) == ("0.9", "0.5"), "every story by itself"
-    for each in found.stripes:
-        if each.quantity == "drift_ratio":
-            assert float(row.cells[4]) >= 100.0 * each.largest.value - 1e-9  # type: ignore[operator]
     unknown = [
         replace(each, values=(None,)) if (each.quantity, each.body, each.motion) == ("drift_ratio", 3, "m1") else each
         for each in found.curves
@@ -417,9 +349,6 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     stripes = [*one.stripes, *(replace(each, structure="c") for each in other.stripes)]
     names = [*one.structures, replace(one.structures[0], name="c")]
     both = replace(one, structures=names, curves=curves, stripes=stripes)
-    row = demand_row(both, "largest drift ratio", "envelope")
-    assert (row.cells[0], row.cells[4], row.motion, row.where) == ("0.625", "0.9", "m4", "below body 2")
-    assert row.bounds == ("c", "c", "c", "b", "b")
     lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
     row = demand_row(replace(both, curves=lost), "largest drift ratio", "envelope")
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
@@ -460,14 +389,6 @@ def test_rows_of_one_demand_stay_together_on_paper(folder: Path, browser: Browse
     sheet.close()
 
 
-def test_an_extended_smallest_force_shows_its_harmful_end() -> None:
-    found = with_demand(planted(), "support_force_min", None, exact=(4e3, 3e3, 2e3, 1e3), spatial=(4e3, 3e3, 1e3, 5e2))
-    (cells,) = [cells for row, _, cells in trust.extrapolate_ratios(found) if row.name == "smallest support force"]
-    assert cells[1] == "1.875 (1.25 to 2.5)"
-    assert cells[2] == "16 %: 0.855 (0.57 to 1.14)"
-    assert cells[3] == "smallest: 0.75 (0.5 to 1)"
-
-
 def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
     def cells(exact: Sequence[float], spatial: Sequence[float], left_out: tuple[str, ...] = ()) -> list[str]:
         found = with_demand(planted(), "support_force_min", None, exact=exact, spatial=spatial)
@@ -482,6 +403,9 @@ def test_one_motion_extends_no_ratio_nor_does_a_force_below_zero() -> None:
     assert said.startswith("A ratio of fewer than 2 motions has no spread: it makes no estimate of the suite.")
     shown = page.render_ensemble_page(alone).partition('id="extended"')[2].partition("</section>")[0]
     assert ("makes no estimate" in shown, "<table" in shown) == (True, False)
+    mixed = with_demand(alone, "support_force_min", None, exact=(4e3, 3e3, 2e3, 1e3), spatial=(4e3, 3e3, 2e3, 1e3))
+    shown = page.render_ensemble_page(mixed).partition('id="extended"')[2].partition("</section>")[0]
+    assert "<table" in shown, "the second demand has several"
     several = list(trust.extrapolate_ratios(planted()))
     assert "none" not in trust.extrapolation_sentence(several)
     assert "none" in trust.extrapolation_sentence([(*several[0][:2], ["mm", "none"])])
@@ -510,26 +434,15 @@ def two_bounds() -> EnsembleResult:
 
 
 def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reaches_its_travel() -> None:
-    assert sentences.answer_sentence(two_bounds()) == (
-        "No value under m4 (b). Isolator displacement: at least the travel, 500 mm (b); mean 250 mm, largest 400 mm = "
-        "80 % of the travel (c alone, m4). Outcomes by the equations: 7 ok, 1 travel reached."
-    )
     assert "at least" not in sentences.answer_sentence(planted())
     assert " alone" not in sentences.answer_sentence(planted())
     rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
     said = sentences.answer_sentence(replace(two_bounds(), stripes=rim))
     assert ("at least the travel" in said, "(c alone, m4)" in said) == (False, True)
-
-
-def test_a_motion_that_reaches_the_travel_is_said_with_its_instant() -> None:
-    smaller = EndedMotion("b", "m9", 0.5, "travel reached", 3.0)
-    assert sentences.travel_sentence(replace(two_bounds(), ended=[smaller, *two_bounds().ended])) == (
-        "The travel is reached under m4 at 12.35 s (b). No demand has a value there. A run without `travel` gives the "
-        "displacement that is needed."
-    )
-    assert sentences.travel_sentence(planted()) == ""
     stopped = [EndedMotion("b", "m4", 1.0, "rim reached", 3.0)]
     assert sentences.travel_sentence(replace(two_bounds(), ended=stopped)) == ""
+    alike = [planted().stripes[0], two_bounds().stripes[1]]
+    assert "(b, m4)" in sentences.answer_sentence(replace(two_bounds(), stripes=alike)), "the first of equal bounds"
 
 
 def cells_of(found: EnsembleResult) -> list[tuple[str, ...]]:
@@ -541,7 +454,6 @@ def cells_of(found: EnsembleResult) -> list[tuple[str, ...]]:
 def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_none() -> None:
     """Three motions moved 0.1, 0.2 and 0.3 m, the fourth the travel of 0.5 m at least."""
     upper = ("250 ± 1", "400 ± 1", "m4", "4")
-    assert cells_of(two_bounds()) == [("≥ 275", "≥ 500", "", "3 of 4"), upper, ("≥ 275", "≥ 500", "", "")]
     rim = [replace(each, reasons={"rim reached": 1}) if each.reasons else each for each in two_bounds().stripes]
     envelope = ("≥ 250 ± 1", "≥ 400 ± 1", "m4", "")
     assert cells_of(replace(two_bounds(), stripes=rim)) == [
@@ -560,9 +472,6 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     folder: Path, found: EnsembleResult
 ) -> None:
     checks = {(bound, check.what): check for bound, check in hand_checks.list_hand_check_rows(found)}
-    assert len(checks) == 10
-    weight = checks["lower bound", "weight"]
-    assert (weight.by_hand, weight.found, weight.verdict) == ("882.9 kN", pytest.approx(882.9), "0.00 %")
     for (_, what), check in checks.items():
         assert check.verdict in ("0.00 %", "inside"), what
     structure = replace(found.structures[0], weight=2.0 * found.structures[0].weight)
@@ -570,36 +479,11 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
     assert hand_checks.HandCheck("weight", "", 28252.8, 28252.8, 28252.8, "kN").by_hand == "28253 kN"
-    own = [row for row in table(folder) if (row["bound"], row["model"]) == ("lower bound", "exact")]
-    drift = checks["lower bound", "largest drift below roof"]
-    shear, drifted = (1e3 * max(float(row[name]) for row in own) for name in ("story_shear_3 [N]", "drift_3 [m]"))
-    stories = [rows.make_profile_rows(found, name, 1.0) for name in ("story_shear", "drift")]
-    roofs = (next(row for row in each if (row.bound, row.name) == ("lower bound", "below roof")) for each in stories)
-    shown = [row.cells[-1].partition(" ±")[0] for row in roofs]
-    assert (f"V = {shown[0]} kN", f"{shown[1]} mm") == (drift.formula.split(", ")[1], drift.in_report), "in the tables"
-    assert (drift.low, drift.high) == pytest.approx((shear / 25e6, shear / 20e6), rel=1e-4), "x and y"
-    assert drift.found == pytest.approx(drifted, rel=1e-4)
-    damped = replace(found.structures[0].building, modal_damping=[[0.05, 0.2], [0.05, 0.3]])  # type: ignore[type-var]
-    (drift,) = (
-        each
-        for each in hand_checks.list_hand_checks(found, replace(found.structures[0], building=damped))
-        if "drift" in each.what
-    )
-    assert drift.low == pytest.approx(shear / 25e6 / math.hypot(1.0, 0.6), rel=1e-4)
-    moved = max(own, key=lambda row: float(row["displacement [m]"]))
-    slope = math.tan(math.asin(float(moved["displacement [m]"]) / 2.0))
-    base = checks["lower bound", f"base shear under {moved['motion']}"]
-    assert base.low == pytest.approx(882.9 * math.hypot(slope, 0.024), rel=1e-3)
 
 
 def test_the_displaced_weight_is_worded_about_the_contact_points_and_once() -> None:
     structure = planted().structures[0]
     assert structure.building is not None
-    sphere = replace(structure, building=replace(structure.building, sphere_radius=0.5))
-    said = sentences.displaced_weight_sentence(sphere)
-    assert "W × (R / ρ × displacement + drift) about the contact points" in said
-    assert said.endswith("ρ = 2 m, r = 0.5 m, R = ρ + r = 2.5 m, R / ρ = 1.25.")
-    assert "R / ρ = 1." in sentences.displaced_weight_sentence(structure), "no radius of a sphere"
     flat = replace(structure, building=replace(structure.building, radius=None))
     assert "W × (displacement + drift)" in sentences.displaced_weight_sentence(flat)
     assert "ρ" not in "".join(sentences.DEFINITIONS), "the definitions refer to it"
@@ -631,24 +515,10 @@ def test_support_forces_say_of_how_many_motions_they_are() -> None:
     (said,) = sentences.support_sentences(whole)
     assert said.startswith("By the equations and statics, 4 motions: ")
     assert "may be" not in said
-    (said,) = sentences.support_sentences(
-        replace(two_bounds(), supports=[about, replace(about, structure="c", motions=4)])
-    )
-    assert "statics, 3 of 4 motions of the b, 4 motions of the c: " in said
-    assert said.endswith("The worst may be under a motion without a value."), "of one bound, and so of all"
     (said,) = sentences.support_sentences(replace(planted(), supports=[replace(about, model="spatial", motions=2)]))
     assert said.startswith("By the spatial engine, 2 of 4 motions: ")
     shown = page.render_ensemble_page(some)
     assert '<td class="number">3 of 4</td>' in shown
-
-
-def test_every_motion_of_every_bound_is_a_row_with_its_outcome() -> None:
-    found = two_bounds()
-    assert rows.make_motion_heads(found) == ["isolator displacement, mm"]
-    read = {(motion, bound): (cells, outcome) for motion, bound, cells, outcome in rows.make_motion_rows(found)}
-    assert len(read) == 8
-    assert read["m4", "b"] == (["none"], "travel reached")
-    assert read["m4", "c"] == (["400"], "ok")
 
 
 def test_what_is_not_modeled_is_one_list_in_the_report_and_in_the_guide() -> None:
@@ -712,16 +582,10 @@ def test_the_literal_supremum_is_a_row_only_where_it_differs(folder: Path, found
 
 
 def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: EnsembleResult) -> None:
-    titles = [make()["title"] for make in panels.make_floor_spectra_panels(found)]
-    assert titles == ["floor spectrum: deck", "floor spectrum: roof"]
     assert str(page.mark_code("a `b` <c>")) == "a <code>b</code> &lt;c&gt;"
     text = (folder / "out" / "index.html").read_text(encoding="utf-8")
     assert "state it by <code>offset</code> at" in text
     assert ">peak velocity x, m/s<" in text
-    (ground,) = [make()["plot"] for make in panels.make_ground_panels(found)]
-    ticks = {text for _, text in ground["x"]["ticks"]}
-    assert {"0.1", "0.2", "0.5", "1", "2"} <= ticks
-    assert len({each["color"] for each in ground["series"]}) == 2, "a motion and the mean"
 
 
 def test_one_duration_is_no_range() -> None:
@@ -733,17 +597,6 @@ def test_one_duration_is_no_range() -> None:
 
 
 def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
-    chosen = [
-        ChosenMotion("b", "m3", 1.0, ["displacement"], {"spatial": "ok", "small": "step limit"}),
-        ChosenMotion("c", "m4", 1.0, ["base shear", "median"], {"spatial": "step limit"}),
-        ChosenMotion("c", "m2", 1.0, ["asked for"], {"spatial": "ok"}),
-    ]
-    found = replace(two_bounds(), engine=EngineMotions("spatial", chosen, 0.02))
-    assert sentences.engine_sentences(found) == [
-        "The spatial engine computed, b: m3 (displacement).",
-        "The spatial engine computed, c: m4 (base shear, median; step limit); m2 (asked for).",
-        "The engine was asked for largest accelerations to 2 %.",
-    ]
     numbers = {
         ("b", 1, 3.0, 2.0): ((-2e3, "m3"), (7e3, "m4"), 0.002), ("c", 2, -3.5, 2.5): ((1e3, "m4"), (9e3, "m1"), 0.0),
         ("c", 3, 0.5, -2.5): ((2e3, "m2"), (8e3, "m2"), 0.001),
@@ -752,97 +605,30 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
         SupportExtremes(*at, "spatial", 2, Statistic(low, 20.0), one, Statistic(high, 30.0), two, Statistic(gap, 0.0))
         for at, ((low, one), (high, two), gap) in numbers.items()
     ]
-    assert sentences.support_sentences(replace(found, supports=supports)) == [
+    assert sentences.support_sentences(replace(two_bounds(), supports=supports)) == [
         "By the spatial engine, 2 of 4 motions of each bound: largest force 9 ± 0.03 kN, support 2 at [-3.5, 2.5] m "
         "(m1, c); smallest force -2 ± 0.02 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1."
     ]
 
 
-def test_models_stand_beside_each_other_on_the_motions_that_all_have() -> None:
+def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pytest.CaptureFixture[str]) -> None:
     (row,) = trust.make_model_ratio_rows(planted())
-    assert (row.motions, row.value) == (("m3", "m4"), pytest.approx(0.35)), "the other motions are in no mean"
-    assert {key: ratio.mean for key, ratio in row.ratios.items()} == pytest.approx(
-        {"small": 0.9, "translational": 1.002, "spatial": 1.05}
-    )
-    assert [row.ratios[key].brief for key in ("small", "translational", "spatial")] == [
-        "−10.00 %",
-        "+0.20 %",
-        "+5.00 %",
-    ]
-
-
-def test_the_ratio_of_the_engine_is_extended_to_the_suite_with_its_spread() -> None:
+    assert row.ratios["spatial"].text == "+5.00 %", "no range of equal ratios"
     found = planted()
-    curves = [
-        replace(each, values=(0.44,)) if (each.model, each.motion) == ("spatial", "m4") else each
-        for each in found.curves
+    terminal.print_engine(
+        make_wide_console(), replace(found, engine=replace(found.engine, motions=found.engine.motions[:1]))
+    )
+    assert capsys.readouterr().out.splitlines()[:3] == [
+        "The spatial engine computed: m3 (largest displacement).",
+        "The engine was asked for largest accelerations to 1 %.",
+        "b, mean difference from the exact equations on 2 motions:",
     ]
-    ((_, ratio, cells),) = trust.extrapolate_ratios(replace(found, curves=curves))
-    assert (ratio.mean, ratio.smallest, ratio.largest) == pytest.approx((1.075, 1.05, 1.1))
-    mean, share, largest = 0.25 * 1.075, 1e3 * 0.386 * 1.075, 1e3 * 0.4 * 1.075
-    assert cells == [
-        "mm", f"{1e3 * mean:.4g} ({250 * 1.05:.4g} to {250 * 1.1:.4g})",
-        f"{share:.4g} ({386 * 1.05:.4g} to {386 * 1.1:.4g})", f"{largest:.4g} ({400 * 1.05:.4g} to {400 * 1.1:.4g})",
-    ]  # fmt: skip
-
-
-def test_no_statistic_mixes_motions_of_the_equations_with_those_of_the_engine(found: EnsembleResult) -> None:
-    assert {each.model for each in found.stripes} == {"exact"}, "no fractiles of the engine's few motions"
-    named = {each.name: each for each in found.structures}
-    shown = rows.make_demand_rows(found, 1.0)
-    of_engine = "uplift of a support", "support displacement, with torsion"
-    uplift = [row for row in shown if row.name in of_engine]
-    assert [row.cells[:4] for row in uplift] == [("–",) * 4] * 2 * len(named)
-    for row in uplift:
-        assert "of 4 (spatial engine)" in row.motions
-    assert all("engine" not in row.motions for row in shown if row.name not in of_engine)
-    lifts = [
-        DemandCurve("b", "uplift", None, "spatial", name, (1.0,), (value,), (None,))
-        for name, value in (("m2", None), ("m3", 2e-3), ("m4", 5e-3), ("m1", 1e-3))
-    ]
-    row = demand_row(replace(planted(), curves=lifts), of_engine[0])
-    assert (row.cells[4], row.motion, row.motions) == ("5", "m4", "3 of 4 (spatial engine)")
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
     for motions, expected in ((2, ["–", "150", "–"]), (3, ["–", "200", "–"]), (4, ["114", "250", "386"])):
         row = demand_row(planted(motions=motions), "isolator displacement")
         assert list(row.cells[1:4]) == expected
-
-
-def test_the_envelope_is_the_worst_of_the_bounds_in_every_column() -> None:
-    one = planted()
-    other = [replace(each, structure="c", mean=Statistic(0.2, 0.0), largest=Statistic(0.9, 0.0), largest_motion="m1")
-             for each in one.stripes]  # fmt: skip
-    both = replace(
-        one, structures=[*one.structures, replace(one.structures[0], name="c")], stripes=[*one.stripes, *other]
-    )
-    envelope = demand_row(both, "isolator displacement", "envelope")
-    assert (envelope.cells[0], envelope.cells[-1], envelope.motion) == ("250 ± 1", "900", "m1")
-    assert (envelope.bounds, envelope.every_bound) == (("b", "b", "b", "b", "c"), ""), "each cell has its own bound"
-    assert "<small>c</small>" in page.render_ensemble_page(both)
-    lost = [replace(each, largest=Statistic(None, None), answered=3, reasons={"travel reached": 1}) for each in other]
-    envelope = demand_row(replace(both, stripes=[*one.stripes, *lost]), "isolator displacement", "envelope")
-    assert (envelope.cells[-1], envelope.motion, envelope.every_bound) == ("≥ 400 ± 1", "m4", "b")
-
-
-def test_bounds_of_different_weight_are_compared_in_the_unit_that_is_read() -> None:
-    """The heavier has the larger force, the lighter the larger share; mean and largest share are of two bounds."""
-    one = planted()
-    shears = [
-        replace(one.stripes[0], structure=name, quantity="base_shear", unit="N", mean=Statistic(mean, 0.0),
-                largest=Statistic(largest, 0.0))
-        for name, mean, largest in (("b", 300.0, 400.0), ("c", 700.0, 1000.0), ("d", 310.0, 380.0))
-    ]  # fmt: skip
-    weights = {"b": 1e3, "c": 4e3, "d": 1e3}
-    structures = [replace(one.structures[0], name=name, weight=weight) for name, weight in weights.items()]
-    found = replace(one, structures=structures, stripes=shears)
-    force, share = (row for row in rows.make_demand_rows(found, 1.0) if row.bound == "envelope")
-    assert (force.cells[0], force.cells[-1], force.motion) == ("0.7", "1", "m4")
-    assert (share.cells[0], share.cells[-1], share.motion) == ("31", "40", "m4")
-    assert [(row.bounds[0], row.bounds[-1]) for row in (force, share)] == [("c", "c"), ("d", "b")]
-    said = sentences.answer_sentence(found)
-    assert "mean 30 % of the weight, largest 40 % of the weight (b, m4)" in said
 
 
 def test_the_first_sentence_says_what_has_no_value_before_what_has() -> None:
@@ -854,85 +640,6 @@ def test_the_first_sentence_says_what_has_no_value_before_what_has() -> None:
     said = sentences.answer_sentence(replace(found, curves=curves, outcomes={"ok": 3, "travel reached": 1}))
     assert said.startswith("No value under m4 (b). ")
     assert said.endswith("Outcomes by the equations: 3 ok, 1 travel reached.")
-
-
-def test_a_platform_below_its_contact_is_said() -> None:
-    structure = planted().structures[0]
-    assert structure.building is not None
-    below = replace(structure, building=replace(structure.building, heights=(-1.84,)))
-    assert sentences.below_contact_sentence(below).startswith(
-        "The center of mass of the deck is 1.84 m below the sliding contact"
-    )
-    assert sentences.below_contact_sentence(structure) == ""
-    assert (
-        sentences.below_contact_sentence(replace(structure, building=replace(structure.building, heights=(0.5,)))) == ""
-    )
-
-
-def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
-    found = planted()
-    curves = [replace(each, errors=(0.01,)) for each in found.curves]
-    (drawn,) = (make() for make in panels.make_isolator_panels(replace(found, curves=curves)))
-    series = drawn["plot"]["series"]
-    dots = [each for each in series if each.get("color") == 0 and "one motion" in each["name"]]
-    assert [each["y"][0] for each in dots] == pytest.approx([100.0, 200.0, 300.0, 400.0])
-    assert [(each["low"][0], each["high"][0]) for each in dots[:1]] == [(pytest.approx(90.0), pytest.approx(110.0))]
-    by_engine = [each for each in series if each.get("color") == "ink" and each.get("marks")]
-    assert [each["y"][0] for each in by_engine] == pytest.approx([315.0, 420.0])
-    assert by_engine[0]["name"] == "spatial engine"
-
-
-def test_the_median_the_travel_and_the_limit_are_told_apart_from_the_motions() -> None:
-    """A motion at the travel is an arrow there, in the slot that its dot would have."""
-    (check,) = list_verdicts(check_limits(planted(), {"b": DemandLimits(displacement=0.6, statistic="mean")}))
-    found = replace(two_bounds(), limits=[check, check])
-    (drawn,) = (make() for make in panels.make_isolator_panels(found))
-    series = {each["name"]: each for each in drawn["plot"]["series"] if each.get("legend", True)}
-    assert [name for name in series if name.startswith("b")] == [
-        "b: one motion", "b: at the travel", "b: median, 16 to 84 %", "b: mean",
-    ]  # fmt: skip
-    dots = [each for each in drawn["plot"]["series"] if each["name"] == "b: one motion"]
-    arrow, median = series["b: at the travel"], series["b: median, 16 to 84 %"]
-    assert (arrow["x"], arrow["y"], dots[3]["y"]) == (dots[3]["x"], [500.0], [None])
-    assert len({arrow["marks"], median["marks"], dots[0]["marks"], series["b: mean"]["marks"]}) == 4
-    assert series["c: mean"]["y"] == [250.0]
-    assert "diamond" in panels.plots_note(found)
-    assert "diamond" not in panels.plots_note(two_bounds()), "no limit is on the mean"
-    assert (series["travel"]["y"], series["limit (mean)"]["y"]) == ([500.0] * 2, [600.0] * 2)
-    assert drawn["plot"]["y"]["range"][1] > 600.0
-    scaled = replace(found, scales=(0.5, 1.0), curves=[
-        replace(each, scales=(0.5, 1.0), values=(0.05, *each.values), errors=(0.0, *each.errors))
-        for each in found.curves
-    ])  # fmt: skip
-    (drawn,) = (make() for make in panels.make_isolator_panels(scaled))
-    arrow = next(each for each in drawn["plot"]["series"] if "at the travel" in each["name"])
-    assert (arrow["x"], arrow["y"]) == ([1.0], [500.0])
-
-
-def test_moments_stand_where_they_are_taken_and_shears_in_the_middle_of_their_stories(found: EnsembleResult) -> None:
-    expected = {
-        "overturning moment": [0.0, 0.5, 3.5],
-        "story shear": [0.25, 2.0, 5.0],
-        "drift over the height of the story": [2.0, 5.0],
-    }
-    drawn = [make() for make in panels.make_height_panels(found)]
-    for title, heights in expected.items():
-        (panel,) = (each for each in drawn if each["title"] == f"{title} over the height")
-        for line in panel["plot"]["series"]:
-            assert line["y"] == pytest.approx(heights), title
-        assert panel["plot"]["series"][0]["titles"][-1].startswith("below roof: ")
-
-
-def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) -> None:
-    drawn = next(
-        each for each in (make() for make in panels.make_height_panels(found)) if "acceleration" in each["title"]
-    )
-    assert drawn["plot"]["y"]["title"] == "height above the sliding contact, m"
-    median = next(each for each in drawn["plot"]["series"] if each["name"] == "upper bound, 50 %")
-    assert median["y"] == pytest.approx([0.5, 3.5, 6.5])
-    expected = [found.find_demand("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
-    assert median["x"] == pytest.approx([each.fractiles[1].value / GRAVITY for each in expected])  # type: ignore[union-attr, operator]
-    assert [each.partition(":")[0] for each in median["titles"]] == ["deck", "body 2", "roof"]
 
 
 @pytest.mark.parametrize(("share", "name"), [(1.5, "limit (mean)"), (2.5, "limit (mean): {:.4g} g, beyond the axis")])
@@ -958,10 +665,11 @@ def fails(*rest: Any) -> None:
 @pytest.mark.parametrize(
     ("owner", "name", "lost"),
     [
-        (panels, "_demand_panel", "plot 1"), (panels, "_profile_panel", "plot 1"),
-        (page, "make_model_ratio_rows", "section trust"),
-        (page, "make_demand_rows", "section demands"), (sentences, "support_sentences", "section supports"),
-        (sentences, "answer_sentence", "answer"), (page, "extrapolate_ratios", "section extended"),
+        (panels, "_demand_panel", [f"plot {number}" for number in range(1, 5)]),
+        (panels, "_profile_panel", [f"plot {number}" for number in range(1, 5)]),
+        (page, "make_model_ratio_rows", ["section trust"]),
+        (page, "make_demand_rows", ["section demands"]), (sentences, "support_sentences", ["section supports"]),
+        (sentences, "answer_sentence", ["answer"]), (page, "extrapolate_ratios", ["section extended"]),
     ],
 )  # fmt: skip
 def test_a_part_that_fails_costs_one_line(
@@ -970,13 +678,13 @@ def test_a_part_that_fails_costs_one_line(
     capsys: pytest.CaptureFixture[str],
     owner: Any,
     name: str,
-    lost: str,
+    lost: list[str],
 ) -> None:
     whole = page.render_ensemble_page(found)
     monkeypatch.setattr(owner, name, fails)
     without = page.render_ensemble_page(found)
     said = capsys.readouterr().err.splitlines()
-    assert said[0] == f"{lost} could not be shown: RuntimeError: planted"
+    assert said == [f"{part} could not be shown: RuntimeError: planted" for part in lost]
     assert without.count("RuntimeError: planted") >= 1
     assert without.count("<section id=") == whole.count("<section id="), "its place says what is lost"
     assert len(without) > 0.4 * len(whole)

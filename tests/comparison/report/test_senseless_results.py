@@ -53,6 +53,8 @@ SENSELESS = [
     (ENSEMBLE.name, ("stripes", 0, "structure"), "another", "is none of the structures"),
     (ENSEMBLE.name, ("stripes", 0, "scale"), 77.0, "is none of the scales"),
     (ENSEMBLE.name, ("stripes", 0, "body"), 10**9, "body must be from 1 to"),
+    (ENSEMBLE.name, ("spectra", 0, "mean"), [], "mean, every fractile and largest must be 2 values, not 0"),
+    (ENSEMBLE.name, ("spectra", 0, "largest"), [], "mean, every fractile and largest must be 2 values, not 0"),
     (STORED.name, ("trades", 0, "bodies"), 10**9, "bodies must be from 1 to 10000"),
     (STORED.name, ("trades", 0, "entries", 0, "most"), [], "most must be 2 values, not 0"),
     (STORED.name, ("trades", 0, "questions"), [], "is none of the questions"),
