@@ -812,8 +812,6 @@ MISTAKES = (
             "mu_1 at the own yield displacement is that of the largest.",
             (TESTS + "analyses/test_conditioning.py::test_the_sentence_on_a_yield_displacement_follows_from_the_curve",)),
     # one of two that look alike
-    Mistake("comparison/analyses/ensemble/gate.py", "any(each.uplift is not None or each", "any(each.uplift is not None and each",
-            "A limit on uplift alone is not asked of the engine.", (OF + "assert_demands.py::test_the_engine_answers_each_limit_that_the_equations_cannot",)),
     Mistake(EVIDENCE + "extremes/rows.py", "amplitude = limit / math.cos(phase)", "amplitude = limit * math.cos(phase)",
             "Starts at the friction limit are below it.", (EVIDENT + "extremes.py::test_starts_at_the_friction_limit_stand_there_and_go_on_as_they_say",)),
     Mistake(CLI + "computing.py", '128 + getattr(stop, "number", signal.SIGINT)', "128 + signal.SIGINT",

@@ -8,7 +8,6 @@ from chains import refusal
 from known_analyses import with_engine_off_by
 
 import reference
-from comparison.analyses.ensemble import gate
 from comparison.testing import assert_consistent, assert_demands
 
 
@@ -32,23 +31,6 @@ def test_a_demand_within_its_limit_passes_and_one_beyond_it_fails_by_its_excess(
     assert count == "1 demand: 0 met, 1 not met, 0 not compared"
     assert line.endswith(f"{1e3 * moved:.4g} mm (synthetic-pair.csv), allowed {800 * moved:.4g} mm: not met (by +25 %)")
     assert "(by +25 %)" in failure(displacement=moved / 1.25, statistic="mean")[-1]
-
-
-@pytest.mark.parametrize(
-    ("limit", "asked"), [("displacement", False), ("uplift", True), ("support_displacement", True)]
-)
-def test_the_engine_answers_each_limit_that_the_equations_cannot(
-    limit: str, asked: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    class EngineAskedError(Exception):
-        """Whether the engine is to compute."""
-
-    def end(ensemble: object, engine: bool) -> None:
-        raise EngineAskedError(engine)
-
-    monkeypatch.setattr(gate, "compute_ensemble", end)
-    with pytest.raises(EngineAskedError, match=str(asked)):
-        assert_demands("synthetic-pair", **{limit: 0.1})
 
 
 def test_accelerations_and_residuals_are_limited_too() -> None:
