@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
+from matplotlib.patches import Circle
 from PIL import Image
 
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
 from multibody.film import FilmSettings, arrange_boxes, choose_magnification, draw_film
-from reference.problem import load_scene
+from reference.problem import ADVICE, Outcome, load_scene
 
 SHORT = """
 title = "short"
@@ -74,6 +75,10 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
     assert message.startswith("short: there is no motion to show: step limit: refused before any step")
     assert "a looser tolerance does not help" in message
     assert message.count("\n") == 1
+    Path(words[0]).write_text(SHORT.replace("duration = 0.2", "duration = 0.1"))  # 26 steps, of which a first chunk takes 32
+    assert main([*words, "--max-work", "28"]) == 2
+    advice = ADVICE[Outcome.STEP_LIMIT]
+    assert capsys.readouterr().err == f"short: there is no motion to show: step limit: {advice}\n"
     assert not Path(words[-1]).exists()
 
 
@@ -201,6 +206,10 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
             assert len(apart) >= 4
             assert apart.min(axis=1).max() < 1e-12
     above, along_y, _ = figure.axes
+    widest = 1.08 * max(np.abs(box[:, :2]).max() for box in corners)
+    assert above.get_xlim() == above.get_ylim() == pytest.approx((-widest, widest))
+    rings = [patch for patch in above.patches if isinstance(patch, Circle)]
+    assert [ring.radius for ring in rings] == pytest.approx([1.0]), "that of the supports"
     np.testing.assert_allclose(np.array(above.lines[0].get_data()).T, scene.support_places)
     arms = np.column_stack([scene.support_places - [0.1, -0.2], np.full(4, -0.2)])  # from the center of mass
     moved = position[-1, 0] + arms @ (RotXYZ2RotationMatrix(turns[-1, 0]) - np.eye(3)).T

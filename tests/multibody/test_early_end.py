@@ -11,7 +11,16 @@ from random_buildings import random_building, under_a_record
 import multibody
 from multibody.integration import look_ahead
 from multibody.integration.adaptive import Checkpoint, Integration, continue_run
-from multibody.integration.chunk import find_last_row_near_peak, find_rim_exit_rows, largest_distance
+from multibody.integration.chunk import (
+    absolute_acceleration_sizes,
+    find_last_row_near_peak,
+    find_rim_exit_rows,
+    has_larger_entry,
+    largest_distance,
+    slip_change_ratios,
+    smallest_loaded_slip,
+    vector_lengths,
+)
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _choose_early_stop
@@ -81,6 +90,26 @@ def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share:
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
     assert find_last_row_near_peak(size, sizes, distance, far) == (near[-1] if len(near) else -1)
+
+
+def test_what_is_read_from_every_row_is_that_of_numpy() -> None:
+    bodies, plate = np.array([[6, 1, 4], [0, 3, 7]]), DRAW.normal(size=(STEPS, 3))
+    sizes = np.linalg.norm(ACCELERATIONS[:, bodies] + plate[:, None], axis=2)
+    np.testing.assert_allclose(absolute_acceleration_sizes(ACCELERATIONS, bodies, plate), sizes)
+    lengths = np.linalg.norm(ACCELERATIONS[:, [5, 2]], axis=1)
+    np.testing.assert_allclose(vector_lengths(ACCELERATIONS, np.array([5, 2])), lengths)
+    slip = np.where(CONTACT[:, 0::4] < 0.0, CONTACT[:, 1::4], np.inf).min(axis=1)
+    assert [smallest_loaded_slip(CONTACT, row) for row in range(STEPS)] == slip.tolist()
+    of_platform = ACCELERATIONS[:, [6, 1, 4]]
+    change = np.linalg.norm(np.diff(of_platform, axis=0, prepend=of_platform[:1]), axis=1)
+    expected = 0.7 * np.maximum(np.linalg.norm(of_platform, axis=1), 2.0 * change) / np.maximum(slip, 0.3)
+    np.testing.assert_allclose(slip_change_ratios(ACCELERATIONS, np.array([6, 1, 4]), CONTACT, 0.7, 0.3), expected)
+    for row, body in ((40, 0), (STEPS - 1, 1)):  # of the largest entry, of which the least that counts is a little less
+        size = sizes.copy()
+        size[row, body] = 9.0
+        least = np.where(np.arange(2) == body, 8.9, 10.0)
+        assert [has_larger_entry(size, first, least) for first in (0, row, row + 1)] == [True, True, False]
+        assert not has_larger_entry(size, 0, least[::-1].copy())
 
 
 def test_the_largest_distance_is_that_between_the_instants_too() -> None:

@@ -37,8 +37,9 @@ def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
     truth = reference.amplification(EXAMPLE, [ANY], regularization=1e-3)
     assert_agree(found, truth)
     assert np.all(found.error >= 8e-4 * found.mu)
-    for levels, before in ((loose, 0), (usual, 1)):
-        runs = SimpleNamespace(levels=levels, runs=[None, None])
+    for levels, before in ((loose, 2), (usual, 3)):
+        other = replace(levels[3], warping_compliance=1.0)
+        runs = SimpleNamespace(levels=[*levels[:3], other, levels[4]], runs=[None] * 5)
         assert LevelRuns._count_levels_on_same_springs(runs) == before  # type: ignore[arg-type]
 
 

@@ -13,12 +13,15 @@ import multibody
 import reference
 from multibody import demand_surface
 from multibody.integration.candidate import Candidate
+from multibody.integration.constant_step import EngineMotion
 from multibody.integration.estimate import compliance_error, contact_lag, error_between_levels
 from multibody.integration.peak import PeakReader
+from multibody.integration.step_control import StepControl
 from multibody.integration.termination import find_travel_end
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
+from multibody.models.plane import _largest_distance_possible
 from multibody.models.spatial import _critical_tilt
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, ground_acceleration, load_scene
 
@@ -39,6 +42,97 @@ def test_a_travel_passed_within_a_step_is_passed_on_the_way_out() -> None:
     assert row == 0
     # the squared displacement is of fourth order in time, of which the cubic between two samples misses some
     assert instant == pytest.approx((speed - math.sqrt(speed**2 - 2.0 * braking * travel)) / braking, abs=0.05)
+
+
+UNEVEN = {"bodies.0.mass": 2.0, "bodies.1.mass": 3.0, "isolator.friction": 0.07}
+LEVELS_OF: dict[str, tuple[dict[str, Any], str, float, float]] = {
+    "slower than friction relaxes": (UNEVEN, "translational", 1e-3, 1e-3),
+    "as stiff as rounding allows": ({**UNEVEN, "excitation.decay": [0.2, 900.0]}, "translational", 1e-2, 1e-5),
+    "weak loading": ({**UNEVEN, "excitation.scale": 3e-5}, "translational", 1e-4, 1e-3),
+    "quick link": ({**UNEVEN, "bodies.1.period": [0.01, 0.02]}, "translational", 1e-3, 1e-2),
+    "quick link of a body that turns": ({**UNEVEN, "bodies.1.period": [0.01, 0.02]}, "spatial", 1e-3, 1e-2),
+}
+
+
+@pytest.mark.parametrize(("values", "model", "tolerance", "v_reg"), LEVELS_OF.values(), ids=LEVELS_OF)
+def test_levels_follow_from_the_times_of_the_motion(
+    values: dict[str, Any], model: str, tolerance: float, v_reg: float
+) -> None:
+    """Each halves the step, and quarters the contact's compliance as long as its rounding permits."""
+    scene, turns = load_scene("fig3-I").with_values(values), model == "spatial"
+    unit = math.sqrt(scene.radius / GRAVITY)
+    relaxation = 0.4 * v_reg / (0.07 * GRAVITY) / unit  # with the platform's share of the mass
+    period, load = float(reference.modes(scene).period.min()) / unit, scene.largest_acceleration / GRAVITY
+    strength, weak = (load, True) if load < 1e-4 else (1.0, False)
+    far = (1.2 / scene.radius) ** 2 if turns else 1.0  # of the upper body, squared
+    softest = min((0.3 * relaxation) ** 2, ((0.04 if turns else 0.25) * period / (2.0 * math.pi)) ** 2, 1e-6)
+    stiffest = 1e-15 * far / (0.25 * (strength if weak else 0.2) * min(tolerance, 1e-3))
+    softest = max(softest, stiffest)
+    most, brief = math.floor(math.log(softest / stiffest, 4.0) + 1e-9), []
+    if "excitation.decay" in values:
+        decay = values["excitation.decay"][1] * unit
+        brief = [(28.0 / decay, 1.0 / 24.0 / decay)]
+    smallest = min(0.05 * 0.14 * relaxation, *(step for _, step in brief), period / 150.0)
+    divisions = max(7, math.ceil(math.log(period / 150.0 / smallest, 4.0)))
+    levels = multibody.levels(scene, model, tolerance, v_reg)
+    assert len(levels) == 8
+    for number, level in enumerate(levels):
+        step, penetration = period / 150.0 / 2.0**number, softest / 4.0 ** min(number, most)
+        newton = max(1e-5 / 4.0**number * min(1.0, 1e3 * penetration / step**2), 1e-12)
+        columns = [level.step, level.slip_change, level.penetration, level.newton, level.residual, level.error_floor]
+        residual = max(1e-3 * newton * strength, 1e-15 * far / penetration)
+        np.testing.assert_allclose(
+            columns, [step, 0.14 / 2.0**number, penetration, newton, residual, 8e-4 / 4.0**number]
+        )
+        bounds = [level.load, level.force_change, level.softest, level.warping_compliance, level.max_divisions]
+        change = 12.0 * (load * scene.duration / unit) ** 2
+        followed = (0.05 * scene.duration / unit) ** 2
+        np.testing.assert_allclose(bounds, [0.0 if turns else 2.0 * load, change, followed, 2e-5, divisions])
+        np.testing.assert_allclose(level.decays, [(until, short / 2.0**number) for until, short in brief])
+
+
+def test_a_level_counts_its_steps() -> None:
+    """
+    Small steps so that chunks of all levels end alike; those of brief motions and behind an impact, by powers of four.
+    """
+    level = replace(LEVELS[0], step=0.1, decays=((2.0, 0.01), (1.0, 1e-3)), max_divisions=5)
+    assert [level.min_divisions(time) for time in (0.5, 1.0, 1.9, 2.0)] == [4, 2, 2, 0]
+    assert replace(level, max_divisions=3).min_divisions(0.5) == 3
+    coarse = replace(
+        level, step=0.4, slip_change=0.56, newton=10.0 * level.newton, decays=((2.0, 0.04), (1.0, 4e-3))
+    )
+    assert level.coarsen() == coarse
+    changes = [*(0.14 / 2.0**np.arange(8)), 1.0, 1e-9]
+    counts = [StepControl(MODEL, replace(level, slip_change=change)).count_small_steps() for change in changes]
+    assert counts == [*(32 * 2 ** np.arange(8)), 8, 4096]
+    for step, divisions in ((0.9e-4, 0), (2.4e-4, 0), (0.9e-3, 1), (1.1e-3, 2), (0.5, 5)):
+        behind = StepControl(MODEL, replace(level, step=step, penetration=1e-6)).count_divisions_behind_impact()
+        assert behind == divisions, "the first step is a quarter of the contact's response time of 1e-3"
+
+
+def test_a_state_has_the_rates_of_the_step_before_it() -> None:
+    """Of the slip speeds, and of the loads over the shares of the weight of two contacts."""
+    draw, time = np.random.default_rng(4), np.array([0.0, 0.3, 0.35, 0.75])
+    contact, force = draw.normal(size=(4, 8)), draw.normal(size=(4, 2, 2, 3))
+    motion = EngineMotion(time, *draw.normal(size=(3, 4, 5)), contact, force.reshape(4, 12))
+    load = 2.0 * np.abs((force[:, :, 0] * force[:, :, 1]).sum(axis=2))
+    for row, before in ((1, 0), (2, 1), (-1, 2)):
+        state, span = motion.state_at(row), time[row] - time[before]
+        np.testing.assert_array_equal(state.velocities, motion.velocities[row])
+        np.testing.assert_allclose(state.slip_rate, (contact[row, 1::4] - contact[before, 1::4]) / span)
+        np.testing.assert_allclose([state.load, state.load_rate], [load[row], (load[row] - load[before]) / span])
+    first, unloaded = motion.state_at(0), motion._replace(force=np.empty((4, 0))).state_at(2)
+    np.testing.assert_allclose(first.load, load[0])
+    assert (first.slip_rate, first.load_rate, unloaded.load, unloaded.load_rate) == (None,) * 4
+    assert unloaded.slip_rate is not None
+
+
+def test_a_plane_is_as_wide_as_a_platform_may_move() -> None:
+    """From where it starts, with its own speed and twice the largest acceleration of the loading, but never back."""
+    units, coordinates, velocities = MODEL.units, np.array([0.2, -7.0, 1.0]), np.array([-3.0, 0.5, 2.0])
+    end, load = BRIEF.duration / units.time, 2.0 * BRIEF.largest_acceleration / units.acceleration
+    expected = 7.0 + 3.0 * end + load * end**2
+    assert _largest_distance_possible(BRIEF, units, coordinates, velocities) == pytest.approx(expected)
 
 
 def peaks_of(*values: Any) -> list[PeakReader]:
@@ -100,6 +194,27 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
         answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)
         assert answer.relative_error == pytest.approx(expected[0])
+
+
+def test_rounding_makes_a_finer_answer_worse_where_it_may_exceed_the_coarser_one_s_error() -> None:
+    """Of any body; without a known error a finer answer is no better."""
+    coarse, fine = (answer_with(errors, LEVELS[0]) for errors in ((2e-3, 9e-3), (3e-3, 6e-3)))
+    for best, own, rounding, worse in (
+        (coarse, (3e-3, 9e-3), 1e-3, False),  # rounding is smaller than both errors
+        (coarse, (3e-3, 9.1e-3), 3e-3, True),
+        (coarse, (1e-3, 9e-3), 3e-3, True),
+        (coarse, (1e-3, 8e-3), 1.0, False),
+        (fine, (math.nan, 1e-3), 4e-3, True),
+    ):
+        level = replace(LEVELS[0], rounding_moment=rounding * LEVELS[0].penetration)
+        assert answer_with(own, level).is_worse_by_rounding(best) == worse, (own, rounding)
+
+
+def answer_with(errors: tuple[float, float], level: Any) -> Candidate:
+    """Peaks of 1 and 2 with these errors."""
+    run: Any = SimpleNamespace(peaks=peaks_of((1.0, 2.0))[0])
+    nothing = np.zeros(2)
+    return Candidate(run, level, False, np.array(errors), nothing, nothing, None, (), confirmed=True, floor=0.0)
 
 
 def test_a_motion_comes_with_the_accuracy_of_all_its_numbers() -> None:
