@@ -172,6 +172,7 @@ class FrictionSprings:
         speeds, rates = (jacobian @ turning @ values[:BODY_COORDINATES] for values in (velocities, accelerations))
         if len(self.depressions.vertical):
             speeds[:, 2] -= velocities[self.depressions.vertical]
+            rates[:, 2] -= accelerations[self.depressions.vertical]
         for number, (turn, normal) in enumerate(zip(self.turns, normals)):
             surface = np.cross(state.coordinates[turn], normal)
             along = surface / max(float(np.linalg.norm(surface)), SMALLEST_DISPLACEMENT)

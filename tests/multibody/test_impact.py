@@ -79,6 +79,8 @@ def test_the_friction_of_an_impact_is_that_of_the_whole_speed() -> None:
     )
     assert along[0] == pytest.approx(across[1], rel=1e-6)
     assert along[0] == pytest.approx(0.4 - (0.2 - 0.18 * math.exp(-0.4)) * 0.7, rel=1e-6)
+    crept, _ = block(0.0, 0.2, 0.5).solve_impact(np.zeros(6), np.array([0.4, 0.0, -0.7, 0.0, 0.0, 0.0]), NONE, ALL)
+    assert crept[0] == pytest.approx(0.4 / (1.0 + 0.2 * 0.7 / 0.5), rel=1e-6), "below v_reg in proportion to the speed"
 
 
 @pytest.mark.parametrize("seed", range(40))

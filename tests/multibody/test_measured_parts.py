@@ -139,18 +139,19 @@ def tower(bars: dict[str, Any] | None = None, **more: Any) -> Scene:
     return load_scene("fig3-I").with_values(values)
 
 
+def connectors_of(built: Any) -> list[dict[str, Any]]:
+    """The connectors of the links as the engine has them."""
+    built.set_contact(PENETRATION)
+    found = map(built.mbs.GetObject, range(built.mbs.systemData.NumberOfObjects()))
+    return [item for item in found if item["objectType"] == "ConnectorRigidBodySpringDamper"]
+
+
 def test_stiff_links_are_ten_times_softer_than_contacts_and_damped_critically() -> None:
     """As the mass above them vibrates; bars of their own stiffness have no such damper, and no share in its times."""
     for scene, own in ((tower(), [True, True]), (tower({}), [False, True])):
         built = assemble(scene, "spatial", V_REG)
-        built.set_contact(PENETRATION)
-        connectors = [
-            item
-            for item in map(built.mbs.GetObject, range(built.mbs.systemData.NumberOfObjects()))
-            if item["objectType"] == "ConnectorRigidBodySpringDamper"
-        ]
         times = built.bar_damping_times(PENETRATION)
-        for connector, stiff, lag, carried in zip(connectors, own, times, (2.7 / 5.7, 0.7 / 5.7)):
+        for connector, stiff, lag, carried in zip(connectors_of(built), own, times, (2.7 / 5.7, 0.7 / 5.7)):
             if not stiff:
                 assert lag == 0.0
                 continue
@@ -159,6 +160,8 @@ def test_stiff_links_are_ten_times_softer_than_contacts_and_damped_critically() 
             np.testing.assert_allclose(damping, [*[2.0 * math.sqrt(carried * 0.1 / PENETRATION)] * 3, 0.0])
             assert lag == pytest.approx(damping[0] / stiffness[0])
             assert connector["offset"][2] == pytest.approx(carried / stiffness[0])
+    stiffest, _ = connectors_of(assemble(tower({"axial_stiffness": 1e12}), "spatial", V_REG))
+    np.testing.assert_array_equal(np.diag(stiffest["stiffness"])[2:5], 1e7)
 
 
 @pytest.mark.parametrize("bars", [{}, {"load_effect": "shortening"}], ids=["clamped", "shortening"])

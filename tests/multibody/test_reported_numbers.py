@@ -18,6 +18,7 @@ from multibody.integration.estimate import compliance_error, contact_lag, error_
 from multibody.integration.peak import PeakReader
 from multibody.integration.step_control import StepControl
 from multibody.integration.termination import find_travel_end
+from multibody.integration.time_scales import list_brief_motions
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
@@ -108,6 +109,17 @@ def test_a_level_counts_its_steps() -> None:
     for step, divisions in ((0.9e-4, 0), (2.4e-4, 0), (0.9e-3, 1), (1.1e-3, 2), (0.5, 5)):
         behind = StepControl(MODEL, replace(level, step=step, penetration=1e-6)).count_divisions_behind_impact()
         assert behind == divisions, "the first step is a quarter of the contact's response time of 1e-3"
+
+
+def test_motions_that_a_step_does_not_resolve_are_listed_with_theirs() -> None:
+    """Harmonics that decay and a platform that oil brakes; until 28 times the time in which each falls to 1/e."""
+    values = {"bodies.0.mass": 2.0, "bodies.1.mass": 3.0, "isolator.lubrication": 7.0, "excitation.decay": [0.2, 0.9]}
+    scene = load_scene("fig4-viscous").with_values(values)
+    model = assemble(scene, "translational", None)
+    times = np.array([1.0 / 0.2, 1.0 / 0.9, 2.0 / (7.0 * 5.0 * GRAVITY)]) / model.units.time
+    np.testing.assert_allclose(list_brief_motions(scene, model, 1e3), np.column_stack([28.0 * times, times / 24.0]))
+    np.testing.assert_allclose(list_brief_motions(scene, model, times[2] / 23.9)[0][0], 28.0 * times[2])
+    assert list_brief_motions(scene, model, times[2] / 24.1) == []
 
 
 def test_a_state_has_the_rates_of_the_step_before_it() -> None:
@@ -313,15 +325,22 @@ def test_behind_an_impact_stretched_bars_balance_their_dampers() -> None:
 
 @pytest.mark.parametrize("body", [1, 2])
 def test_a_body_that_turns_about_its_link_s_end_bends_it(body: int) -> None:
-    """The end is below its center of mass, half way to the body below and on the links' axis."""
-    law = three_bodies_on_bars()
-    end = np.array([0.0, 0.0, law.centers[body - 1 : body + 1, 2].mean()])
+    """
+    The end is below its center of mass, half way to the body below and on the links' axis. The link's own axis turns by
+    half as much, which stretches it by what it is displaced across.
+    """
+    law, coordinates = three_bodies_on_bars(), np.random.default_rng(9).uniform(-0.3, 0.3, 18)
+    places = law.centers + coordinates.reshape(3, 6)[:, :3]
+    turned = rotation_matrices(coordinates.reshape(3, 6)[:, 3:])
+    end = np.array([0.0, 0.0, law.centers[body - 1 : body + 1, 2].mean()])  # at rest
+    below, above = (places[each] + turned[each] @ (end - law.centers[each]) for each in (body - 1, body))
     for axis in np.eye(3):
         velocity = np.zeros((3, 2, 3))
-        for above in range(body, 3):
-            velocity[above] = np.cross(axis, law.centers[above] - end), axis
-        rates = (law._bar_rates(np.zeros(18), UPRIGHT) @ velocity.ravel()).reshape(2, 3)
-        np.testing.assert_allclose(rates[body - 1], [0.0, axis[0], axis[1]], atol=1e-12)
+        for moving in range(body, 3):
+            velocity[moving] = np.cross(axis, places[moving] - above), axis
+        rates = (law._bar_rates(coordinates, turned) @ velocity.ravel()).reshape(2, 3)
+        stretch = -0.5 * axis @ np.cross(above - below, turned[body - 1][:, 2])
+        np.testing.assert_allclose(rates[body - 1], [stretch, *(axis @ turned[body - 1][:, :2])], atol=1e-12)
         np.testing.assert_allclose(rates[2 - body], 0.0, atol=1e-12)
 
 
