@@ -1,16 +1,25 @@
 """Friction that yields in the engine: a closed form, the equations of the same law, and supports that stand apart."""
 
+import math
+from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from scenes_at_hand import one_body
+from scipy.spatial.transform import Rotation
 
 import multibody
 import reference
+from multibody.integration.adaptive import Checkpoint, _AdaptiveRun
+from multibody.integration.constant_step import silence_engine
+from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import PeakReader
 from multibody.models.assembly import assemble
-from reference.problem import GRAVITY, Scene, State, load_scene
+from multibody.models.state import EngineState
+from reference.problem import GRAVITY, Outcome, Scene, State, load_scene
 
 LOADS = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]}
 PHASE = (0.3, 1.1)
@@ -88,6 +97,92 @@ def test_supports_that_stand_apart_share_the_stiffness() -> None:
     turning = multibody.amplification(scene, [PHASE], model="spatial", full=True)
     straight = multibody.amplification(scene, [PHASE])
     np.testing.assert_allclose(turning.mu, straight.mu, rtol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("friction", "values"),
+    [
+        ({"slow": 0.1, "load_exponent": -0.2, "yield_displacement": 1e-3}, LOADS),
+        ({"slow": 0.05, "fast": 0.1, "rate": 20.0, "initial_stiffness": 1000.0}, {}),
+    ],
+    ids=["of load", "of speed"],
+)
+def test_a_slide_begins_at_the_limit_of_its_instant(friction: dict[str, float], values: dict[str, Any]) -> None:
+    """Load and speed change it within the step before by a ten-thousandth."""
+    scene = _yielding("fig3-II", friction, **values, duration=1.0)
+    model, level = assemble(scene, "translational", 1e-3, contact_force=True), multibody.levels(scene)[0]
+    with silence_engine():
+        chunks = PhasePair(scene, model, np.array(PHASE)).run_level(level, Budget(1e6), keep=True).chunks
+    begun = [after for before, after in pairwise(chunks) if before.slip[0, 0] == 0.0 < after.slip[0, 0]]
+    assert begun
+    for chunk in begun:
+        elongation = model.springs.depressions.radius * np.linalg.norm(chunk.coordinates[0, model.springs.turns[0]])
+        assert elongation == pytest.approx(model.springs.limits(chunk)[0, 0], rel=1e-6)
+
+
+@pytest.mark.parametrize("supports", [3, 5])
+def test_spheres_restart_with_the_speed_of_rest_or_slip(supports: int) -> None:
+    """Their surface moves with the depression but for the slip along the spring, faster than its limit grows."""
+    on = {"isolator.supports": supports, "isolator.sphere_radius": 0.13}
+    scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **on)
+    model, draw, end = assemble(scene, "spatial", 1e-3), np.random.default_rng(6), 0.02
+    springs, place = model.springs, model.springs.depressions
+    count = model.coordinates
+    coordinates, velocities, accelerations = draw.uniform(-0.1, 0.1, (3, count))
+    grows, sliding = draw.uniform(-0.1, 0.1, supports), np.arange(supports) != 1
+    state = EngineState(coordinates, velocities, np.zeros(4 * supports), sliding=tuple(sliding.tolist()))
+    after = springs.restart_state(state, state, accelerations, grows, end)
+    vertical = np.zeros((2, supports))
+    if supports > 3:
+        vertical = np.array([velocities, accelerations])[:, place.vertical]
+    apart, _ = place.sphere_positions(coordinates[None])
+    for number, normal in enumerate(apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]):
+        at_rest = np.array([*place.ring[number], 1.0])
+        at_rest[2] += coordinates[place.vertical[number]] if supports > 3 else 0.0
+        arm = at_rest + place.radius * normal - coordinates[:3] - place.center
+        turn, moving = springs.turns[number], []
+        for rates, own, rise in zip((velocities, accelerations), (after.velocities, after.accelerations), vertical):
+            ahead, behind = (Rotation.from_euler("XYZ", coordinates[3:6] + s * rates[3:6]) for s in (1e-6, -1e-6))
+            spin = (ahead * behind.inv()).as_rotvec() / 2e-6
+            depression = rates[:3] + np.cross(spin, arm)
+            surface = [0.0, 0.0, rise[number]] + np.cross(own[turn], place.radius * normal)
+            moving.append((depression - surface) @ (np.eye(3) - np.outer(normal, normal)))
+            moving.append(depression - [0.0, 0.0, rise[number]])
+        slips, relative, left, _ = moving
+        along = np.cross(coordinates[turn], normal)
+        along /= np.linalg.norm(along)
+        slip = max(relative @ along - grows[number], end)
+        slides = sliding[number] and relative @ along - grows[number] > end
+        np.testing.assert_allclose(slips, slip * along if slides else 0.0, atol=1e-8)
+        assert after.contact[4 * number + 1] == pytest.approx(slip if slides else 0.0)
+        assert after.sliding[number] == slides
+        if slides:
+            np.testing.assert_array_equal(after.accelerations[turn], 0.0)
+        else:
+            np.testing.assert_allclose(left, 0.0, atol=1e-8)
+    assert 0 < sum(after.sliding) < supports
+
+
+def test_a_step_that_fails_is_divided_until_its_slides_end() -> None:
+    """From the third division on contacts go to rest, and the first division follows; without a slide it goes on."""
+    springs = SimpleNamespace(state_at_rest=lambda state: SimpleNamespace(sliding=(False, False)))
+    for divisions, sliding, goes_on, then, rested in (
+        (2, (False, True), True, 3, -1.0),
+        (3, (False, True), True, 1, 0.7),
+        (7, (True, False), True, 1, 0.7),
+        (3, (False, False), True, 4, -1.0),
+        (7, (), False, 7, -1.0),
+    ):
+        at = Checkpoint(SimpleNamespace(sliding=sliding), 0.7, divisions)  # type: ignore[arg-type]
+        run: Any = EngineRun(PeakReader(1, 1.0), 1.0)
+        under_way: Any = SimpleNamespace(
+            run=run, at=at, model=SimpleNamespace(springs=springs), level=SimpleNamespace(max_divisions=7)
+        )
+        assert _AdaptiveRun._divide_after_failure(under_way) == goes_on
+        assert (at.divisions, at.rested_at, at.time) == (then, rested, 0.7)
+        assert any(at.state.sliding) == (any(sliding) and rested < 0.0)
+        assert (run.outcome, run.instant) == ((Outcome.OK, pytest.approx(math.nan, nan_ok=True)) if goes_on else (
+            Outcome.SOLVER_FAILED, 0.7))  # fmt: skip
 
 
 def test_rigid_friction_has_no_springs() -> None:

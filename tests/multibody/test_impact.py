@@ -16,7 +16,7 @@ from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.estimate import widen_by_impacts
 from multibody.integration.level import PHYSICAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
-from multibody.integration.openings import BEARING_SETTLING_TIME
+from multibody.integration.openings import BEARING_SETTLING_TIME, Event, Openings
 from multibody.integration.peak import PeakReader
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
@@ -100,6 +100,39 @@ def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
     inertia = axes @ np.diag(MOMENTS) @ axes.T
     energies = [0.5 * v[:3] @ v[:3] + 0.5 * v[3:] @ inertia @ v[3:] for v in (turning @ before, turning @ after)]
     assert energies[1] <= energies[0] * (1.0 + 1e-9)
+
+
+GAPS: dict[str, tuple[bool, Any, float | None]] = {  # of two contacts, in penetrations, behind a step of a length
+    "opens": (False, lambda t: (t - 0.3, t - 0.2), 0.2),
+    "is open already": (False, lambda t: (t, t - 0.2), None),
+    "closes": (True, lambda t: (0.3 - t, 0.6 - t), 0.3),
+    "closes behind a flight within the step": (True, lambda t: (t * (0.1 - t), 1.0), 0.1),
+    "closes behind a flight half as long as its first trial": (True, lambda t: (t * (0.4 - t), 1.0), 0.4),
+    "touches without a flight": (True, lambda t: (-t, 1.0), None),
+    "rounds to a gap at the end of the step": (True, lambda t: (2.0 - t, 1.0 - t + 1e-9), 1.0),
+}
+
+
+@pytest.mark.parametrize(("closes", "gaps", "expected"), GAPS.values(), ids=GAPS)
+def test_an_event_is_located_within_its_step(closes: bool, gaps: Any, expected: float | None) -> None:
+    """Where the first of its contacts opens or closes, also behind a flight that is shorter than the step."""
+    penetration, which = 1e-6, np.array([True, True, False])
+
+    def run(state: Any, time: float, length: float, count: int) -> Any:
+        assert (time, count) == (7.0, 1)
+        return SimpleNamespace(coordinates=np.array([[0.0], [length]]), length=length)
+
+    def clearance(coordinates: Any) -> Any:
+        return penetration * (1.0 + np.array([[*gaps(float(t)), -5.0 if closes else 5.0] for [t] in coordinates]))
+
+    model = SimpleNamespace(take_out_open_contacts=lambda is_open, penetration: None)
+    law: Any = SimpleNamespace(depressions=SimpleNamespace(clearance=clearance, ring=np.zeros((3, 2))))
+    solver: Any = SimpleNamespace(model=model, run=run)
+    state: Any = SimpleNamespace(coordinates=np.zeros(1))
+    motion: Any = Openings(solver, law, penetration).locate_event(state, 7.0, 1.0, Event(0, closes, which))
+    assert (motion is None) == (expected is None)
+    if motion is not None:
+        assert motion.length == pytest.approx(expected, abs=1e-4)
 
 
 PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down
@@ -246,7 +279,9 @@ def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float
     """Bounds on its place and angles prove it, and only where that is so."""
     draw, proved = np.random.default_rng(3), 0
     ring = 0.4 * width * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-    place = Depressions(ring, np.array([0.0, 0.0, height]), 0.1, np.arange(6, 10))
+    place = Depressions(ring, np.array([0.3 * width, -0.2 * width, height]), 0.1, np.arange(6, 10))
+    levers = [*ring.T, np.zeros(4)] - place.center[:, None]
+    assert place._farthest == pytest.approx(np.linalg.norm(levers, axis=0).max())
     for size in np.geomspace(1e-3, 3.0, 400):
         moved = draw.random(10) < 0.5  # some of them alone come further before a sphere leaves
         coordinates = size * moved * draw.uniform(-1.0, 1.0, (20, 10))

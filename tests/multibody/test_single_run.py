@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import multibody
+from multibody.integration.constant_step import EngineSolver
 from multibody.models import assembly
 from multibody.models.engine import reset_when_unused
 from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
@@ -37,6 +38,12 @@ def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
     ]
     for run in runs:
         assert run.position[0, 0, 2] == pytest.approx(-1e-3 * scene.radius * 4.0 / GRAVITY, rel=1e-6)
+
+
+def test_a_run_that_cannot_end_takes_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(EngineSolver, "run", lambda *given: pytest.fail("a step was spent"))
+    run = multibody.single_run(SCENE, PHASE, level=replace(multibody.levels(SCENE)[0], step=1e-9))
+    assert (run.status, run.instant, len(run.time)) == (Outcome.STEP_LIMIT, 0.0, 0)
 
 
 @pytest.mark.parametrize("model", ["translational", "spatial"])

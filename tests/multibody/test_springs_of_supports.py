@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import multibody
-from multibody.integration.engine_run import Budget, EngineRun
+from multibody.integration.engine_run import Budget, EngineRun, _record_warping
 from multibody.integration.level import (
     COMPLIANCE_OF_CLOSED_SUPPORTS,
     COMPLIANCE_RATIO,
@@ -233,6 +233,22 @@ def test_a_softer_contact_without_an_answer_leaves_the_error_open(refined: Any) 
     done = refined(runs, 3, stiffenings=1)
     assert (done.asked, done.answer.outcome) == ("0s 1s 2s 2~", BEYOND)
     np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [1.01, 0.015 * 1.001 + 1.01e-6])
+
+
+def test_warping_counts_while_all_supports_are_closed_and_have_settled() -> None:
+    """Twenty times the root of the compliance behind an opening, over two chunks."""
+    run, level = result(1.0, opens=False), replace(LEVELS[0], warping_compliance=1e-4)  # settles in 0.2
+    model: Any = SimpleNamespace(warping_displacement=lambda coordinates: coordinates[:, 0])
+    for time, warped, gaps, load, last_open in (
+        ([0.0, 0.1, 0.2], [1e-5, 3e-5, 2e-5], [-1.0, -1.0, -1.0], 0.3, -math.inf),
+        ([0.2, 0.3, 0.4], [2e-5, 5e-5, 9e-5], [-1.0, 1e-9, -1.0], 0.3, 0.3),
+        ([0.4, 0.49, 0.51], [9e-5, 8e-5, 4e-5], [-1.0, -1.0, -1.0], 0.4, 0.3),
+        ([0.51, 0.6, 0.9], [4e-5, 7e-5, 6e-5], [-1.0, -1.0, -1.0], 0.7, 0.3),
+    ):
+        gap = np.column_stack([np.full(3, -1.0), gaps])
+        motion: Any = SimpleNamespace(time=np.array(time), coordinates=np.array(warped)[:, None], gap=gap)
+        _record_warping(run, motion, model, level)
+        assert (run.warping_load, run.last_open_at) == (pytest.approx(load), last_open)
 
 
 def test_springs_give_way_as_stated_and_do_not_ring() -> None:

@@ -130,6 +130,15 @@ def test_an_eccentric_platform_tilts_and_moves_aside() -> None:
     assert motion.position[0, 0, 0] == pytest.approx(tilt * height, rel=2e-3)
 
 
+def test_friction_holds_a_platform_that_tilts_on_a_plane() -> None:
+    """Nothing else does: its center of mass stays where it is, and it does not yaw."""
+    body = {**PLATFORM, "height": 0.7, "offset": [0.03, -0.05]}
+    on = {"isolator.radius": np.inf, "isolator.support_stiffness": 2e3, "duration": 1e-3}
+    motion = multibody.trajectory(ON_BEARINGS.with_values({"bodies": [body], **on}), STILL_AT_FIRST, "spatial", 5e-3)
+    assert np.abs(motion.extra["turns"][0, 0, :2]).min() > 1e-4
+    np.testing.assert_allclose([*motion.position[0, 0, :2], motion.extra["turns"][0, 0, 2]], 0.0, atol=1e-12)
+
+
 def test_an_eccentric_body_on_bearings_has_its_factors() -> None:
     """Those of elastic_chain.py to 1e-8; a start out of balance gave 5.055 at any tolerance."""
     for amplitude, expected in ((0.05, [0.999012, 2.418480]), (1.0, [0.922187, 1.107874])):
