@@ -153,6 +153,8 @@ def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -
     for scene in (load_scene(words[0]), load_scene("fig3-I").with_values({"bodies.1.height": 0.2})):
         heights, sizes, factor = arrange_boxes(scene)
         assert (heights.tolist(), sizes.tolist(), factor) == ([0.0, 1.0], [[2.0, 2.0, 0.2]] * 2, 1.0)
+    [height], [size], factor = arrange_boxes(scene.with_values({"bodies": [{"mass": 1.0}]}))
+    assert (height, size.tolist(), factor) == (0.0, [2.0, 2.0, 0.2], 1.0)
 
 
 def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -163,6 +163,26 @@ def test_spheres_restart_with_the_speed_of_rest_or_slip(supports: int) -> None:
     assert 0 < sum(after.sliding) < supports
 
 
+def test_steps_follow_springs_and_the_slide_that_turns_fastest() -> None:
+    """Half of the yield displacement in a step, or 0.3 of a change of velocity over the slowest slip of a slide."""
+    scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **{"isolator.supports": 3})
+    springs = assemble(scene, "spatial", 1e-3).springs
+    draw, size = np.random.default_rng(2), int(springs.turns.max()) + 1
+    turned, moved, slip = 1e-3 * draw.normal(size=(4, size)), draw.normal(size=(4, size)), draw.uniform(0.0, 2.0, (4, 3))
+    motion = SimpleNamespace(coordinates=turned, velocities=moved, slip=slip, time=np.arange(4.0))
+    by_springs = [
+        springs.depressions.radius / springs.displacement * max(np.linalg.norm(change[turn]) for turn in springs.turns)
+        for change in np.diff(turned, axis=0)
+    ]
+    for sliding in ((), (True, False, True)):
+        expected = [0.0, *by_springs]
+        if sliding:
+            turning = 0.3 * np.linalg.norm(np.diff(moved[:, :3], axis=0), axis=1)
+            expected[1:] = np.maximum(by_springs, turning / np.maximum(slip[1:, [0, 2]].min(axis=1), 0.7))
+        state = EngineState(turned[0], moved[0], np.zeros(12), sliding=sliding)
+        np.testing.assert_allclose(springs.step_ratio(motion, state, 0.7), expected)
+
+
 def test_a_step_that_fails_is_divided_until_its_slides_end() -> None:
     """From the third division on contacts go to rest, and the first division follows; without a slide it goes on."""
     springs = SimpleNamespace(state_at_rest=lambda state: SimpleNamespace(sliding=(False, False)))

@@ -18,6 +18,7 @@ from multibody.integration.level import PHYSICAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import BEARING_SETTLING_TIME, Event, Openings
 from multibody.integration.peak import PeakReader
+from multibody.integration.termination import _compute_tilt
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
@@ -60,6 +61,10 @@ def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
     after = law.carry_spheres_along(np.zeros(10), before, RIGHT)
     of_corners = -0.7 + 0.3 * CORNERS[:, 1] + 0.2 * CORNERS[:, 0]
     np.testing.assert_allclose(after, [*before[:6], *np.where(RIGHT, of_corners, before[6:])], atol=1e-12)
+    for of_spheres, met in ((0.05, 0.0), (-0.3, -0.3)):  # spheres that spring up do not push a block that falls on them
+        fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0, *[of_spheres] * 4])
+        rebound, _ = replace(law, restitution=0.4).solve_impact(np.zeros(10), fall, NONE, ALL)
+        assert rebound[2] == pytest.approx(met + 0.4 * (met + 0.7), abs=1e-8)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
@@ -235,6 +240,7 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     motion: Any = SimpleNamespace(coordinates=np.tile(coordinates, (5, 1)), gap=gap)
     found = _measure_attitude(model, motion, 0.1 * np.arange(5))
     np.testing.assert_allclose(found["tilt"], np.arccos(rotation_matrices(angles[0])[2, 2]))
+    np.testing.assert_allclose(_compute_tilt(motion, model), found["tilt"])
     np.testing.assert_array_equal(found["yaw"], [0.9] * 5)
     np.testing.assert_array_equal(found["turns"][3], angles)
     np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])

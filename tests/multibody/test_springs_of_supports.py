@@ -66,10 +66,12 @@ def result(platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK
 def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """Refine with such runs: answer, levels and springs asked for in letters, the springs, the work left to each."""
 
-    def refine_on(runs: Runs, levels: int = 6, max_work: float = 1e9, stiffenings: int = 6) -> Any:
+    def refine_on(
+        runs: Runs, levels: int = 6, max_work: float = 1e9, stiffenings: int = 6, of: list[Level] = LEVELS
+    ) -> Any:
         done = SimpleNamespace(asked="", springs=[], work=[])
         contacts = [LEVELS[min(number, stiffenings)].penetration for number in range(levels)]
-        planned = [replace(level, penetration=contact) for level, contact in zip(LEVELS, contacts)]
+        planned = [replace(level, penetration=contact) for level, contact in zip(of, contacts)]
 
         def run_level(pair: PhasePair, level: Level, budget: Budget, *given: Any, **more: Any) -> EngineRun:
             number = [other.step for other in LEVELS].index(level.step)
@@ -182,12 +184,17 @@ def test_levels_and_springs_follow_from_what_runs_say(
 
 
 def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
-    changes = [3e-4, 5e-4]
-    done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
+    levels, changes = [1.0, 1.0001], [3e-4, 5e-4]
+    done = refined(lambda number, springs: result(levels[number] + changes[number] * (springs == REAL)))
     assert done.asked == "0s 0r 1s 1r"
-    np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
+    np.testing.assert_allclose(done.answer.errors, [5e-4 + 1.0001 * level_error(1), 2.0 * level_error(1)])
     (_, (real, share)) = done.answer.coarser
-    assert (real.peaks.value[0], share) == (1.0005, 1.0), "any number of the motion has its change as an error"
+    assert (real.peaks.value[0], share) == (1.0006, 1.0), "any number of the motion has its change as an error"
+
+
+def test_levels_on_real_bearings_begin_with_a_full_run_where_the_trial_rattles(refined: Any) -> None:
+    real = [replace(level, warping_compliance=REAL) for level in LEVELS]
+    assert refined(failing(LIMIT, lambda number, _: number == 0), of=real).asked == "0r 0r 1r 2r"
 
 
 def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
@@ -228,11 +235,13 @@ def test_a_softer_contact_without_an_answer_leaves_the_error_open(refined: Any) 
         return result((1.0, 1.01, 1.0105)[number], opens=False, outcome=FAILED if springs == SOFTER else OK)
 
     done = refined(lambda number, springs: runs(0, springs), 2, stiffenings=0)
+    assert len(done.answer.coarser) == 0
     assert (done.asked, done.answer.outcome, done.answer.instant) == ("0s 1s 1~", FAILED, SCENE.duration)
     assert np.isnan(done.answer.peaks).all()
     done = refined(runs, 3, stiffenings=1)
     assert (done.asked, done.answer.outcome) == ("0s 1s 2s 2~", BEYOND)
     np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [1.01, 0.015 * 1.001 + 1.01e-6])
+    assert [run.peaks.value[0] for run, _ in done.answer.coarser] == [1.01], "the level before, without the softer run"
 
 
 def test_warping_counts_while_all_supports_are_closed_and_have_settled() -> None:

@@ -137,6 +137,7 @@ def test_friction_holds_a_platform_that_tilts_on_a_plane() -> None:
     motion = multibody.trajectory(ON_BEARINGS.with_values({"bodies": [body], **on}), STILL_AT_FIRST, "spatial", 5e-3)
     assert np.abs(motion.extra["turns"][0, 0, :2]).min() > 1e-4
     np.testing.assert_allclose([*motion.position[0, 0, :2], motion.extra["turns"][0, 0, 2]], 0.0, atol=1e-12)
+    assert motion.contact_force[0] == pytest.approx(GRAVITY, rel=1e-6)
 
 
 def test_an_eccentric_body_on_bearings_has_its_factors() -> None:
