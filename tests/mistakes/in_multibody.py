@@ -12,6 +12,7 @@ SPRINGS = TESTS + "test_springs_of_supports.py::"
 PEAK = TESTS + "test_peak.py::"
 NUMBERS = TESTS + "test_reported_numbers.py::"
 IMPACT = TESTS + "test_impact.py"
+PARTS = TESTS + "test_measured_parts.py::"
 YIELDING = TESTS + "test_friction_springs.py::"
 
 # fmt: off
@@ -146,7 +147,7 @@ MISTAKES = (
             (NUMBERS + "test_a_tower_tips_where_its_center_is_above_its_edge",)),
     Mistake(MODELS + "spatial.py", "ratio = DAMPING_RATIO if stated is None else stated", "ratio = DAMPING_RATIO",
             "The stated damping of supports is not read.",
-            (UNEVEN + "test_damping_of_supports_is_critical_unless_stated",)),
+            (PARTS + "test_contacts_press_damp_and_rub_as_their_law_says",)),
     Mistake(MODELS + "spatial.py", "restitution = scene.isolator.restitution or 0.0", "restitution = 0.0",
             "The restitution of supports is not read.",
             (TESTS + "test_sliding_plate.py::test_a_platform_thrown_up_moves_as_flights_and_impacts_say", IMPACT)),
@@ -199,7 +200,7 @@ MISTAKES = (
             (TESTS + "test_plate_frame.py::test_inertial_forces_and_a_moving_plate_agree",)),
     Mistake(MODELS + "units.py", "return scene.damping * (units.time / units.mass)",
             "return scene.damping * (units.time**2 / units.mass)", "Dampers are in a wrong unit.",
-            (TESTS + "test_damped_links.py::test_a_damped_body_on_a_held_platform_decays_in_closed_form",)),
+            (PARTS + "test_bars_damp_every_direction_in_proportion_to_its_stiffness",)),
     Mistake(INTEGRATION + "estimate.py", "change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value",
             "change: Array = 0.5 * SAFETY_TWO_LEVELS * np.abs(stiff.value",
             "The error that a softer contact shows is halved.",
@@ -292,7 +293,7 @@ MISTAKES = (
     Mistake("multibody/models/spatial.py", "center[2] - (1.0 + radius)))", "center[2] - 1.0))",
             "Critical tilt without the radius of the spheres.", (NUMBERS + "test_a_tower_tips_where_its_center_is_above_its_edge",)),
     Mistake("multibody/models/supports.py", "2.0 * np.sqrt(soft / count))", "0.2 * np.sqrt(soft / count))",
-            "Warping of supports is damped tenfold less.", ("tests/multibody/test_springs_of_supports.py::test_springs_give_way_as_stated_and_do_not_ring",)),
+            "Warping of supports is damped tenfold less.", (PARTS + "test_spheres_carry_weight_and_give_way_to_heave_tilt_and_warping",)),
     Mistake("multibody/models/depressions.py", "shift, lift, turn = sum(largest[:3]), largest[2], sum(largest[3:6])", "shift, lift, turn = sum(largest[:3]), largest[1], sum(largest[3:6])",
             "The proof of rest takes the lift from y.", ("tests/multibody/test_impact.py::test_a_platform_near_its_rest_has_all_spheres_in",)),
     Mistake("multibody/models/loading.py", "float(-self.exponents.real.min())", "float(-self.exponents.real.max())",

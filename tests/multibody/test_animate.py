@@ -75,7 +75,7 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
     assert message.startswith("short: there is no motion to show: step limit: refused before any step")
     assert "a looser tolerance does not help" in message
     assert message.count("\n") == 1
-    Path(words[0]).write_text(SHORT.replace("duration = 0.2", "duration = 0.1"))  # 26 steps, of which a first chunk takes 32
+    Path(words[0]).write_text(SHORT.replace("duration = 0.2", "duration = 0.1"))  # 26 steps; the first chunk takes 32
     assert main([*words, "--max-work", "28"]) == 2
     advice = ADVICE[Outcome.STEP_LIMIT]
     assert capsys.readouterr().err == f"short: there is no motion to show: step limit: {advice}\n"

@@ -127,60 +127,44 @@ def test_spheres_restart_with_the_speed_of_rest_or_slip(supports: int) -> None:
     scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **on)
     model, draw, end = assemble(scene, "spatial", 1e-3), np.random.default_rng(6), 0.02
     springs, place = model.springs, model.springs.depressions
-    count = model.coordinates
-    coordinates, velocities, accelerations = draw.uniform(-0.1, 0.1, (3, count))
+    coordinates, velocities, accelerations = draw.uniform(-0.1, 0.1, (3, model.coordinates))
     grows, sliding = draw.uniform(-0.1, 0.1, supports), np.arange(supports) != 1
     state = EngineState(coordinates, velocities, np.zeros(4 * supports), sliding=tuple(sliding.tolist()))
     after = springs.restart_state(state, state, accelerations, grows, end)
-    vertical = np.zeros((2, supports))
-    if supports > 3:
-        vertical = np.array([velocities, accelerations])[:, place.vertical]
     apart, _ = place.sphere_positions(coordinates[None])
     for number, normal in enumerate(apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]):
-        at_rest = np.array([*place.ring[number], 1.0])
-        at_rest[2] += coordinates[place.vertical[number]] if supports > 3 else 0.0
-        arm = at_rest + place.radius * normal - coordinates[:3] - place.center
-        turn, moving = springs.turns[number], []
-        for rates, own, rise in zip((velocities, accelerations), (after.velocities, after.accelerations), vertical):
+        free = place.vertical[number : number + 1]  # of the sphere, if it can move
+        center = np.array([*place.ring[number], 1.0 + coordinates[free].sum()])
+        turn, across = springs.turns[number], np.eye(3) - np.outer(normal, normal)
+        along = np.cross(coordinates[turn], normal) / np.linalg.norm(np.cross(coordinates[turn], normal))
+        slips, relative = [], []
+        for rates, own in ((velocities, after.velocities), (accelerations, after.accelerations)):
             ahead, behind = (Rotation.from_euler("XYZ", coordinates[3:6] + s * rates[3:6]) for s in (1e-6, -1e-6))
-            spin = (ahead * behind.inv()).as_rotvec() / 2e-6
-            depression = rates[:3] + np.cross(spin, arm)
-            surface = [0.0, 0.0, rise[number]] + np.cross(own[turn], place.radius * normal)
-            moving.append((depression - surface) @ (np.eye(3) - np.outer(normal, normal)))
-            moving.append(depression - [0.0, 0.0, rise[number]])
-        slips, relative, left, _ = moving
-        along = np.cross(coordinates[turn], normal)
-        along /= np.linalg.norm(along)
-        slip = max(relative @ along - grows[number], end)
-        slides = sliding[number] and relative @ along - grows[number] > end
-        np.testing.assert_allclose(slips, slip * along if slides else 0.0, atol=1e-8)
-        assert after.contact[4 * number + 1] == pytest.approx(slip if slides else 0.0)
-        assert after.sliding[number] == slides
-        if slides:
-            np.testing.assert_array_equal(after.accelerations[turn], 0.0)
-        else:
-            np.testing.assert_allclose(left, 0.0, atol=1e-8)
+            spin, arm = (ahead * behind.inv()).as_rotvec() / 2e-6, center + place.radius * normal - place.center
+            relative.append(rates[:3] + np.cross(spin, arm - coordinates[:3]) - [0.0, 0.0, rates[free].sum()])
+            slips.append(across @ (relative[-1] - np.cross(own[turn], place.radius * normal)))
+        speed = relative[0] @ along - grows[number]
+        slides = bool(sliding[number] and speed > end)
+        np.testing.assert_allclose(slips[0], speed * along if slides else 0.0, atol=1e-8)
+        np.testing.assert_allclose(slips[1], across @ relative[1] if slides else 0.0, atol=1e-8)
+        expected = (slides, pytest.approx(speed if slides else 0.0))
+        assert (after.sliding[number], after.contact[4 * number + 1]) == expected
     assert 0 < sum(after.sliding) < supports
 
 
-def test_steps_follow_springs_and_the_slide_that_turns_fastest() -> None:
-    """Half of the yield displacement in a step, or 0.3 of a change of velocity over the slowest slip of a slide."""
+def test_steps_follow_the_spring_that_turns_most_and_the_slowest_slide() -> None:
+    """By the change of elongation over that of yield, and 0.3 of a change of velocity over the slip, or its end."""
     scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **{"isolator.supports": 3})
-    springs = assemble(scene, "spatial", 1e-3).springs
-    draw, size = np.random.default_rng(2), int(springs.turns.max()) + 1
-    turned, moved, slip = 1e-3 * draw.normal(size=(4, size)), draw.normal(size=(4, size)), draw.uniform(0.0, 2.0, (4, 3))
-    motion = SimpleNamespace(coordinates=turned, velocities=moved, slip=slip, time=np.arange(4.0))
-    by_springs = [
-        springs.depressions.radius / springs.displacement * max(np.linalg.norm(change[turn]) for turn in springs.turns)
-        for change in np.diff(turned, axis=0)
-    ]
-    for sliding in ((), (True, False, True)):
-        expected = [0.0, *by_springs]
-        if sliding:
-            turning = 0.3 * np.linalg.norm(np.diff(moved[:, :3], axis=0), axis=1)
-            expected[1:] = np.maximum(by_springs, turning / np.maximum(slip[1:, [0, 2]].min(axis=1), 0.7))
+    springs, draw = assemble(scene, "spatial", 1e-3).springs, np.random.default_rng(2)
+    turned, moved, slip = 1e-3 * draw.normal(size=(5, 30)), draw.normal(size=(5, 30)), draw.uniform(0.0, 2.0, (5, 3))
+    motion = SimpleNamespace(coordinates=turned, velocities=moved, slip=slip, time=np.arange(5.0))
+    turns = np.linalg.norm(np.diff(turned[:, 12:].reshape(5, 3, 6)[..., 3:], axis=0), axis=2).max(axis=1)
+    by_springs = springs.depressions.radius / springs.displacement * turns
+    slowest = np.maximum(slip[1:, [0, 2]].min(axis=1), 0.7)
+    by_slides = 0.3 * np.linalg.norm(np.diff(moved[:, :3], axis=0), axis=1) / slowest
+    for sliding, expected in (((), by_springs), ((True, False, True), np.maximum(by_springs, by_slides))):
         state = EngineState(turned[0], moved[0], np.zeros(12), sliding=sliding)
-        np.testing.assert_allclose(springs.step_ratio(motion, state, 0.7), expected)
+        np.testing.assert_allclose(springs.step_ratio(motion, state, 0.7), [0.0, *expected])
 
 
 def test_a_step_that_fails_is_divided_until_its_slides_end() -> None:
@@ -193,19 +177,12 @@ def test_a_step_that_fails_is_divided_until_its_slides_end() -> None:
         (3, (False, False), True, 4, -1.0),
         (7, (), False, 7, -1.0),
     ):
-        at = Checkpoint(SimpleNamespace(sliding=sliding), 0.7, divisions)  # type: ignore[arg-type]
-        run: Any = EngineRun(PeakReader(1, 1.0), 1.0)
-        under_way: Any = SimpleNamespace(
-            run=run, at=at, model=SimpleNamespace(springs=springs), level=SimpleNamespace(max_divisions=7)
-        )
+        state: Any = SimpleNamespace(sliding=sliding)
+        at, run = Checkpoint(state, 0.7, divisions), EngineRun(PeakReader(1, 1.0), 1.0)
+        model, level = SimpleNamespace(springs=springs), SimpleNamespace(max_divisions=7)
+        under_way: Any = SimpleNamespace(run=run, at=at, model=model, level=level)
         assert _AdaptiveRun._divide_after_failure(under_way) == goes_on
         assert (at.divisions, at.rested_at, at.time) == (then, rested, 0.7)
         assert any(at.state.sliding) == (any(sliding) and rested < 0.0)
-        assert (run.outcome, run.instant) == ((Outcome.OK, pytest.approx(math.nan, nan_ok=True)) if goes_on else (
-            Outcome.SOLVER_FAILED, 0.7))  # fmt: skip
-
-
-def test_rigid_friction_has_no_springs() -> None:
-    scene = load_scene("fig3-I")
-    assert assemble(scene, "spatial", 1e-3).springs is None
-    assert [level.slide_end for level in multibody.levels(scene)] == [0.0] * 8
+        assert run.outcome == (Outcome.OK if goes_on else Outcome.SOLVER_FAILED)
+        np.testing.assert_equal(run.instant, math.nan if goes_on else 0.7)

@@ -85,10 +85,9 @@ def test_levels_follow_from_the_times_of_the_motion(
         np.testing.assert_allclose(
             columns, [step, 0.14 / 2.0**number, penetration, newton, residual, 8e-4 / 4.0**number]
         )
-        bounds = [level.load, level.force_change, level.softest, level.warping_compliance, level.max_divisions]
-        change = 12.0 * (load * scene.duration / unit) ** 2
-        followed = (0.05 * scene.duration / unit) ** 2
-        np.testing.assert_allclose(bounds, [0.0 if turns else 2.0 * load, change, followed, 2e-5, divisions])
+        bounds = [level.load, level.force_change, level.softest, level.max_divisions, level.slide_end]
+        change, followed = 12.0 * (load * scene.duration / unit) ** 2, (0.05 * scene.duration / unit) ** 2
+        np.testing.assert_allclose(bounds, [0.0 if turns else 2.0 * load, change, followed, divisions, 0.0])
         np.testing.assert_allclose(level.decays, [(until, short / 2.0**number) for until, short in brief])
 
 
@@ -99,11 +98,9 @@ def test_a_level_counts_its_steps() -> None:
     level = replace(LEVELS[0], step=0.1, decays=((2.0, 0.01), (1.0, 1e-3)), max_divisions=5)
     assert [level.min_divisions(time) for time in (0.5, 1.0, 1.9, 2.0)] == [4, 2, 2, 0]
     assert replace(level, max_divisions=3).min_divisions(0.5) == 3
-    coarse = replace(
-        level, step=0.4, slip_change=0.56, newton=10.0 * level.newton, decays=((2.0, 0.04), (1.0, 4e-3))
-    )
+    coarse = replace(level, step=0.4, slip_change=0.56, newton=10.0 * level.newton, decays=((2.0, 0.04), (1.0, 4e-3)))
     assert level.coarsen() == coarse
-    changes = [*(0.14 / 2.0**np.arange(8)), 1.0, 1e-9]
+    changes = [*(0.14 / 2.0 ** np.arange(8)), 1.0, 1e-9]
     counts = [StepControl(MODEL, replace(level, slip_change=change)).count_small_steps() for change in changes]
     assert counts == [*(32 * 2 ** np.arange(8)), 8, 4096]
     for step, divisions in ((0.9e-4, 0), (2.4e-4, 0), (0.9e-3, 1), (1.1e-3, 2), (0.5, 5)):

@@ -22,7 +22,6 @@ from multibody.integration.level_runs import MAX_WORK_SHARE_OF_TRIAL
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
-from multibody.models import supports
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from reference.problem import Outcome, load_scene
 
@@ -258,11 +257,3 @@ def test_warping_counts_while_all_supports_are_closed_and_have_settled() -> None
         motion: Any = SimpleNamespace(time=np.array(time), coordinates=np.array(warped)[:, None], gap=gap)
         _record_warping(run, motion, model, level)
         assert (run.warping_load, run.last_open_at) == (pytest.approx(load), last_open)
-
-
-def test_springs_give_way_as_stated_and_do_not_ring() -> None:
-    """Under a weight of one on five supports; each carries a fifth of the mass."""
-    rest, damping = supports._sharing_springs(5, 3e-7, 7e-5)
-    np.testing.assert_allclose(0.2 / np.array(rest), [3e-8, 7e-5])
-    for stiffness, damper in zip(rest, damping):
-        np.testing.assert_allclose(np.roots([0.2, damper, stiffness]), -np.sqrt(stiffness / 0.2), rtol=1e-6)

@@ -14,7 +14,7 @@ from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation_matrices
-from reference.problem import GRAVITY, Outcome, Scene, SceneError, load_scene
+from reference.problem import GRAVITY, Outcome, Scene, load_scene
 
 PHASE = (2.0, 0.7)
 PENTAGON = [[1.0, 0.8], [-0.9, 1.1], [-1.2, -0.7], [0.8, -1.0], [0.1, 0.9]]
@@ -172,19 +172,6 @@ def test_a_start_without_equilibrium_is_a_named_outcome(monkeypatch: pytest.Monk
     assert answer.status.tolist() == [Outcome.SOLVER_FAILED]
     assert np.isnan(answer.mu).all()
     assert answer.instant[0] == 0.0
-
-
-def test_damping_of_supports_is_critical_unless_stated() -> None:
-    absent, critical, half = (
-        multibody.amplification(ON_BEARINGS.with_values(values), [STILL_AT_FIRST], "spatial", 5e-3).mu
-        for values in ({}, {"isolator.support_damping": 1.0}, {"isolator.support_damping": 0.5})
-    )
-    np.testing.assert_array_equal(absent, critical)
-    assert (absent != half).any()
-    with pytest.raises(SceneError, match="remove one of the two keys"):
-        ON_BEARINGS.with_values({"isolator.restitution": 0.5})
-    with pytest.raises(SceneError, match=r"isolator\.support_stiffness.*gives way"):
-        ON_BEARINGS.with_values({"isolator.support_stiffness": 10.0})
 
 
 def test_a_box_at_an_angle_has_the_turned_tensor_of_inertia() -> None:
