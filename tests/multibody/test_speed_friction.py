@@ -9,6 +9,7 @@ import reference
 from multibody.integration.constant_step import silence_engine
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
+from multibody.models.speed_friction import _compute_rate_of_length
 from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, DryFriction, State, load_scene
 from reference.problem.friction import Heat
@@ -47,6 +48,12 @@ def test_a_step_heats_for_the_share_in_which_it_covers_the_center(begin: float, 
     np.testing.assert_allclose(
         heat.temperature(1.3, power, end), 15.0 + 3.0 * 0.3 * share * 4.0 / 3.0 * 0.8 * power, rtol=2e-3
     )
+
+
+def test_the_rate_of_a_speed_is_the_part_of_the_acceleration_along_it() -> None:
+    velocity, acceleration = np.array([3.0, 0.0, -4.0]), np.array([1.0, 2.0, 7.0, 9.0])
+    assert _compute_rate_of_length(velocity, acceleration) == pytest.approx(-5.0)
+    assert _compute_rate_of_length(0.0 * velocity, acceleration) == _compute_rate_of_length(velocity, None) == 0.0
 
 
 def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
