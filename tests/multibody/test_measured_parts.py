@@ -78,9 +78,9 @@ def test_spheres_carry_weight_and_give_way_to_heave_tilt_and_warping(friction: d
     heave_and_tilt, _ = np.linalg.qr(np.insert(np.array(PENTAGON), 0, 1.0, axis=1))
     warping = np.linalg.svd(heave_and_tilt.T)[2][3:].T
     is_open, zero = np.tile([1.0, 0.0, 0.0, 0.0], 5), np.zeros(size)
-    start = built.start(None, np.zeros(3), PENETRATION)
-    at_rest, _ = forces_of_engine(built, start.coordinates, zero, np.tile([-1.0, 0.0, 0.0, 0.0], 5))
-    np.testing.assert_allclose(at_rest[[2, *vertical]], 0.0, atol=1e-9)
+    start = built.start(None, np.array([0.0, 0.0, 0.3 * GRAVITY]), PENETRATION)  # pressed by 1.3 of the weight
+    begun, _ = forces_of_engine(built, start.coordinates, zero, np.tile([-1.0, 0.0, 0.0, 0.0], 5))
+    np.testing.assert_allclose(begun[[2, *vertical]], [0.3, *[0.0] * 5], atol=1e-9)
     weight, mass = forces_of_engine(built, zero, zero, is_open)
     np.testing.assert_allclose(weight[vertical], 0.2)
     np.testing.assert_allclose(mass[vertical][:, vertical], 0.01 / 5 * np.eye(5))
