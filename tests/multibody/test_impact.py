@@ -22,6 +22,7 @@ from multibody.integration.termination import _compute_tilt
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
+from multibody.models.state import EngineState
 from multibody.motion import _measure_attitude
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, load_scene
 
@@ -138,6 +139,76 @@ def test_an_event_is_located_within_its_step(closes: bool, gaps: Any, expected: 
     assert (motion is None) == (expected is None)
     if motion is not None:
         assert motion.length == pytest.approx(expected, abs=1e-4)
+
+
+THREE = [True, True, True, False]
+HITS: dict[str, tuple[Any, ...]] = {  # contacts that close, gaps in penetrations, rates of the gaps; which are hit
+    "within a penetration": ([1, 0, 0, 0], [1e-4, 0.5, 3.0, -1.0], [-1.0, -0.2, -0.2, 0.0], [1, 1, 0, 0]),
+    "and not those that part": ([1, 0, 0, 0], [1e-4, 0.5, 1.5e-4, 0.0], [-1.0, 0.2, 0.1, -1.0], [1, 0, 0, 0]),
+    "unless they overlap": ([1, 0, 0, 0], [1e-4, -0.1, 9.0, 0.0], [-1.0, 0.2, -0.1, 0.0], [1, 1, 0, 0]),
+    "within a tenth of a microsecond": ([1, 0, 0, 0], [1e-4, 1.2, 1.3, 0.0], [-1.0, -50.0, -50.0, 0.0], [1, 1, 0, 0]),
+    "the nearest if none has closed": ([1, 1, 0, 0], [0.9, 0.7, 0.2, 0.0], [0.1, 0.1, 0.1, 0.0], [0, 1, 0, 0]),
+    "the fastest decides": ([1, 1, 0, 0], [1e-4, 1e-4, 9.0, 0.0], [-2e-5, -5e-7, 0.0, 0.0], [1, 1, 0, 0]),
+    "slowly": ([1, 1, 0, 0], [1e-4, 0.5, 9.0, 0.0], [-9e-7, -5e-7, 0.0, 0.0], [1, 1, 0, 0]),
+}
+
+
+@pytest.mark.parametrize("penetration", [4e-6, 1e-8])
+@pytest.mark.parametrize("name", HITS)
+def test_contacts_that_close_at_once_share_an_impact(name: str, penetration: float) -> None:
+    which, gaps, rates, hit = (np.array(part, float) for part in HITS[name])
+    if name == "within a tenth of a microsecond":
+        rates *= penetration / 4e-6
+    which, hit = which > 0.0, hit > 0.0
+    jumps, calm = name not in ("slowly", "the nearest if none has closed"), name in ("the nearest if none has closed",)
+    seen: list[Any] = []
+
+    def solve_impact(coordinates: Any, velocities: Any, closed: Any, struck: Any) -> Any:
+        seen.append((closed.tolist(), struck.tolist()))
+        return 2.0 * velocities, np.array([False, False, True, True])
+
+    law: Any = SimpleNamespace(
+        depressions=SimpleNamespace(clearance=lambda _: penetration * (1.0 + gaps[None]), ring=np.zeros((4, 2))),
+        normal_speeds=lambda *_: (rates, rates),
+        carry_spheres_along=lambda coordinates, velocities, struck: velocities + struck,
+        unload_bar_dampers=lambda coordinates, before, after, times: coordinates + after - before + times,
+        solve_impact=solve_impact,
+    )
+    model = SimpleNamespace(take_out_open_contacts=lambda *_: None, bar_damping_times=lambda _: 0.5)
+    openings = Openings(SimpleNamespace(model=model), law, penetration)  # type: ignore[arg-type]
+    openings.is_open = np.array(THREE)
+    moving, rest = np.array([0.1, 0.2, 0.3, 0.4]), np.zeros(4)
+    state = EngineState(rest, moving, np.arange(16.0), np.ones(4), np.ones(4))
+    after = openings.apply_impact(state, 7.0, which)
+    np.testing.assert_array_equal(after.contact[0::4], np.where(hit, -1e-4 * penetration, [0.0, 4.0, 8.0, 12.0]))
+    quiet = calm or -2.0 * rates[hit].min() <= 1e-3 * math.sqrt(penetration)
+    assert openings.settled_at == (-math.inf if quiet else 7.0 + max(40.0 * math.sqrt(penetration), 0.04))
+    if jumps:
+        assert (seen, openings.impacts) == ([([False, False, False, True], hit.tolist())], 1)
+        np.testing.assert_allclose([after.velocities, after.coordinates], [2.0 * moving, moving + 0.5])
+        assert (openings.is_open.tolist(), after.slip_rate, after.load) == ([False, False, True, True], None, None)
+    else:
+        assert (seen, openings.impacts, after.load is None) == ([], 0, False)
+        np.testing.assert_array_equal(after.velocities, moving + hit)
+        np.testing.assert_array_equal(openings.is_open, THREE & ~hit)
+
+
+def test_the_first_contact_that_opens_or_comes_closer_overlapping_is_an_event() -> None:
+    """Not one that is closed and comes closer, or open and parts."""
+    for gaps, closed_gaps, expected in (
+        ([1.0, 0.2, -0.3], [-1.0, -1.0, -2.0], (1, True, [True, False])),
+        ([-0.5, -0.2, -0.1], [-1.0, -2.0, -3.0], None),
+        ([-0.5, -0.2, 0.4], [-1.0, 1e-4, 3e-4], (1, False, [False, True])),
+        ([1.0, -0.1, -0.5], [-1.0, 3e-4, 3e-4], (0, True, [True, False])),
+        ([1.0, 1.0, 1.0], [3e-4, 1e-4, -1.0], None),
+    ):
+        law: Any = SimpleNamespace(depressions=SimpleNamespace(ring=np.zeros((2, 2)), clearance=lambda at: at + 1.0))
+        model = SimpleNamespace(take_out_open_contacts=lambda *_: None)
+        openings = Openings(SimpleNamespace(model=model), law, 1.0)  # type: ignore[arg-type]
+        openings.is_open = np.array([True, False])
+        both = np.column_stack([gaps, closed_gaps])
+        event = openings.find_first_event(SimpleNamespace(coordinates=both, gap=both))  # type: ignore[arg-type]
+        assert (None if event is None else (event.row, event.closes, event.contacts.tolist())) == expected
 
 
 PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down

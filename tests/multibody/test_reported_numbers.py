@@ -14,7 +14,7 @@ import reference
 from multibody import demand_surface
 from multibody.integration.candidate import Candidate
 from multibody.integration.constant_step import EngineMotion
-from multibody.integration.estimate import compliance_error, contact_lag, error_between_levels
+from multibody.integration.estimate import compliance_error, contact_lag, contact_noise_error, error_between_levels
 from multibody.integration.peak import PeakReader
 from multibody.integration.step_control import StepControl
 from multibody.integration.termination import find_travel_end
@@ -203,6 +203,34 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
         answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)
         assert answer.relative_error == pytest.approx(expected[0])
+
+
+def test_noise_of_the_contact_is_an_error_along_the_vertical() -> None:
+    """
+    Half of a force's rounding, which adds to a peak as to its vertical component. On a plane a part of what Newton's
+    method leaves acts on the platform, of 2/5 of the mass; of bodies that turn only a peak that is noise has it.
+    """
+    level = replace(LEVELS[0], rounding_moment=2e-3 * LEVELS[0].penetration, newton=1.0)
+    level = replace(level, strength=5.0)  # residual: 5e-3
+    scene, peak = BRIEF.with_values({"bodies.0.mass": 2.0, "bodies.1.mass": 3.0}), np.array([0.2, 0.9])
+    run: Any = SimpleNamespace(peaks=peaks_of(peak)[0], max_vertical=0.3)
+
+    def noise_of(turns: bool, vertical: bool, flat: bool, run: Any = run) -> Any:
+        ground = SimpleNamespace(accelerates=lambda axis: vertical and axis == 2)
+        model: Any = SimpleNamespace(depressions="some" if turns else None, ground=ground)
+        case = scene.with_values({"isolator.period": None, "isolator.radius": math.inf}) if flat else scene
+        return contact_noise_error(run, level, case, model)
+
+    slow, fast = (peak - np.sqrt(peak**2 - (2.0 * v + 1e-3) * 1e-3) for v in (np.minimum(peak, 0.3), peak))
+    np.testing.assert_allclose(noise_of(False, False, False), np.minimum(slow, 1e-3))
+    np.testing.assert_allclose(noise_of(False, True, False), np.minimum(fast, 1e-3))
+    left = 5e-3 / 0.4
+    np.testing.assert_allclose(noise_of(False, False, True) - np.minimum(slow, 1e-3), [left, 0.0], atol=1e-15)
+    tenfold: Any = SimpleNamespace(peaks=peaks_of(10.0 * peak)[0], max_vertical=0.0)
+    found = noise_of(False, False, True, tenfold)[0] - noise_of(False, False, False, tenfold)[0]
+    assert found == pytest.approx(left * 40.0 * left / 2.0)
+    weak: Any = SimpleNamespace(peaks=peaks_of((3.9e-4, 4.1e-4))[0], max_vertical=0.3)
+    np.testing.assert_allclose(noise_of(True, True, False, weak), [4e-4, 0.0])
 
 
 def test_rounding_makes_a_finer_answer_worse_where_it_may_exceed_the_coarser_one_s_error() -> None:
