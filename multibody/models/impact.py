@@ -222,7 +222,7 @@ class ImpactLaw:
         # largest eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not
         # overshoot.
         impulses = np.zeros_like(before)
-        scale = float(np.abs(before).max())
+        scale = float(np.abs(before).max(initial=0.0))
         friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()
         for _ in range(MAX_SWEEPS):
             change = 0.0

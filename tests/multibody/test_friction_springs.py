@@ -170,7 +170,8 @@ def test_steps_follow_the_spring_that_turns_most_and_the_slowest_slide() -> None
 
 def test_a_step_that_fails_is_divided_until_its_slides_end() -> None:
     """From the third division on contacts go to rest, and the first division follows; without a slide it goes on."""
-    springs = SimpleNamespace(state_at_rest=lambda state: SimpleNamespace(sliding=(False, False)))
+    at_rest = SimpleNamespace(sliding=(False, False))
+    springs = SimpleNamespace(state_at_rest=lambda _: at_rest, find_sliding_change=lambda *given: given[2:])
     for divisions, sliding, goes_on, then, rested in (
         (2, (False, True), True, 3, -1.0),
         (3, (False, True), True, 1, 0.7),
@@ -180,10 +181,12 @@ def test_a_step_that_fails_is_divided_until_its_slides_end() -> None:
     ):
         state: Any = SimpleNamespace(sliding=sliding)
         at, run = Checkpoint(state, 0.7, divisions), EngineRun(PeakReader(1, 1.0), 1.0)
-        model, level = SimpleNamespace(springs=springs), SimpleNamespace(max_divisions=7)
+        model, level = SimpleNamespace(springs=springs), SimpleNamespace(max_divisions=7, slide_end=0.2)
         under_way: Any = SimpleNamespace(run=run, at=at, model=model, level=level)
         assert _AdaptiveRun._divide_after_failure(under_way) == goes_on
         assert (at.divisions, at.rested_at, at.time) == (then, rested, 0.7)
         assert any(at.state.sliding) == (any(sliding) and rested < 0.0)
         assert run.outcome == (Outcome.OK if goes_on else Outcome.SOLVER_FAILED)
         np.testing.assert_equal(run.instant, math.nan if goes_on else 0.7)
+        begins: Any = _AdaptiveRun._find_sliding_change(under_way, None)  # type: ignore[arg-type]
+        assert begins == (0.2, 0.2 if rested < 0.0 else math.inf), "no slide begins where a slide has just failed"

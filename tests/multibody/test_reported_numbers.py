@@ -14,7 +14,13 @@ import reference
 from multibody import demand_surface
 from multibody.integration.candidate import Candidate
 from multibody.integration.constant_step import EngineMotion
-from multibody.integration.estimate import compliance_error, contact_lag, contact_noise_error, error_between_levels
+from multibody.integration.estimate import (
+    compliance_error,
+    contact_lag,
+    contact_noise_error,
+    error_between_levels,
+    rounding_error,
+)
 from multibody.integration.peak import PeakReader
 from multibody.integration.step_control import StepControl
 from multibody.integration.termination import find_travel_end
@@ -183,6 +189,10 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
             peaks[-1].sampling_error[:] = reading
             error = error_between_levels(peaks, LEVELS[: len(values)], MODEL)[0]
             assert error == pytest.approx(expected + reading + 1e-6 * values[-1], rel=1e-9)
+    for springs, floor in ((None, 2e-4), ("some", 6e-4)):  # where levels agree by chance
+        model: Any = replace(MODEL, springs=springs)  # type: ignore[arg-type]
+        error = error_between_levels(peaks_of(3.0, 3.00001), LEVELS[:2], model)[0]
+        assert error == pytest.approx(3.00001 * (floor + 1e-6), rel=1e-9)
 
 
 def test_what_newton_s_method_leaves_is_an_error() -> None:
@@ -203,6 +213,20 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
         answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)
         assert answer.relative_error == pytest.approx(expected[0])
+
+
+def test_a_softer_contact_shows_what_rounding_leaves() -> None:
+    """Four thirds of the change, with a safety, no less than a level typically has; never more than rounding itself."""
+    level = replace(LEVELS[0], rounding_moment=0.1 * LEVELS[0].penetration)
+    for ratio, safety, change, expected in (
+        (4.0, 1.5, (0.01, 0.02), (0.02, 0.04)),
+        (4.0, 3.0, (0.01, 0.03), (0.04, 0.1)),
+        (4.0, 1.5, (1e-5, 0.01), (8e-4, 0.02)),
+        (3.9, 1.5, (0.0, 0.0), (0.1, 0.1)),
+    ):
+        stiff, soft = peaks_of((1.0, 2.0), np.array([1.0, 2.0]) + [1.0, -1.0] * np.array(change))
+        softer = replace(level, penetration=ratio * level.penetration)
+        np.testing.assert_allclose(rounding_error(stiff, level, soft, softer, safety), expected)
 
 
 def test_noise_of_the_contact_is_an_error_along_the_vertical() -> None:

@@ -191,6 +191,11 @@ def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
     assert (real.peaks.value[0], share) == (1.0006, 1.0), "any number of the motion has its change as an error"
 
 
+def test_no_level_is_begun_without_work_for_its_softer_contact(refined: Any) -> None:
+    asked = [refined(lambda *_: result(1.0, opens=False), 6, work * STEPS, 0).asked for work in (2.9, 3.1)]
+    assert asked == ["0s", "0s 1s 1~"]
+
+
 def test_levels_on_real_bearings_begin_with_a_full_run_where_the_trial_rattles(refined: Any) -> None:
     real = [replace(level, warping_compliance=REAL) for level in LEVELS]
     assert refined(failing(LIMIT, lambda number, _: number == 0), of=real).asked == "0r 0r 1r 2r"
