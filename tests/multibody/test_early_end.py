@@ -1,6 +1,7 @@
 """Runs that stop once nothing can come lose no peak, displacement or outcome; what is read from their chunks."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,7 +24,7 @@ from multibody.integration.chunk import (
 )
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
-from multibody.integration.level_runs import _choose_early_stop
+from multibody.integration.level_runs import _choose_early_stop, _compute_work_until, _confirms_early_stop
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
@@ -172,6 +173,24 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
     ahead = EngineRun(PeakReader(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
     ahead.peaks.value[:] = 0.8, peak
     assert look_ahead._comes_near_largest(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
+
+
+def test_an_early_stop_is_confirmed_by_peaks_and_displacement() -> None:
+    """Each within a fifth of what later values may differ, a tenth; a run that stopped would have cost its share."""
+    for peak, moved, outcome, confirmed in (
+        (2.03, 0.509, Outcome.OK, True),
+        (2.05, 0.5, Outcome.OK, False),
+        (2.0, 0.511, Outcome.OK, False),
+        (2.0, 0.5, Outcome.STEP_LIMIT, False),
+    ):
+        before, run = (
+            EngineRun(PeakReader(2, math.inf), 4.0, outcome, work=600.0, max_displacement=place)
+            for place in (0.5, moved)
+        )
+        before.peaks.value[:], run.peaks.value[:] = (1.0, 2.0), (1.0, peak)
+        assert _confirms_early_stop(run, before) == confirmed
+        work = [_compute_work_until(each, 2.0, 9.0) for each in (run, replace(run, scanned_from=3.0))]
+        assert work == pytest.approx([300.0, 400.0] if outcome == Outcome.OK else [600.0, 600.0])
 
 
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])
