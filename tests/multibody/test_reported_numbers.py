@@ -14,6 +14,7 @@ import reference
 from multibody import demand_surface
 from multibody.integration.candidate import Candidate
 from multibody.integration.constant_step import EngineMotion
+from multibody.integration.engine_run import Budget
 from multibody.integration.estimate import (
     compliance_error,
     contact_lag,
@@ -24,7 +25,7 @@ from multibody.integration.estimate import (
 from multibody.integration.peak import PeakReader
 from multibody.integration.step_control import StepControl
 from multibody.integration.termination import find_travel_end
-from multibody.integration.time_scales import list_brief_motions
+from multibody.integration.time_scales import largest_step, list_brief_motions
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
@@ -271,9 +272,33 @@ def test_rounding_makes_a_finer_answer_worse_where_it_may_exceed_the_coarser_one
         assert answer_with(own, level).is_worse_by_rounding(best) == worse, (own, rounding)
 
 
+def test_an_answer_is_judged_by_all_bodies_and_any_rounding() -> None:
+    """And only if the runs that confirm it have ended; a softer contact may show that less rounds."""
+    answer = answer_with((4e-3, 4e-3), LEVELS[0])
+    for confirmed, tolerance, meets in ((True, 4e-3, True), (True, 3.9e-3, False), (False, 1.0, False)):
+        asked = replace(answer, confirmed=confirmed)
+        assert (asked.meets(tolerance), asked.may_meet(tolerance)) == (meets, meets)
+    for rounding, limited in ((0.9e-3, False), (1.5e-3, True), (2.5e-3, True)):
+        level = replace(LEVELS[0], rounding_moment=rounding * LEVELS[0].penetration)
+        assert answer_with((4e-3, 4e-3), level).is_limited_by_rounding(1e-3) == limited
+    soft: Any = SimpleNamespace(outcome=Outcome.OK, peaks=peaks_of((1.01, 2.001))[0])
+    pair: Any = SimpleNamespace(run_level=lambda *_, **given: soft, model=MODEL)
+    level = replace(LEVELS[0], rounding_moment=0.1 * LEVELS[0].penetration)
+    shared = replace(answer_with((0.0, 0.0), level), shares_contact=True, rounding=np.array([0.03, 0.03]))
+    whole = shared.add_compliance_error(pair, Budget(1.0), keep=False)
+    np.testing.assert_allclose(whole.rounding, [0.03, 0.004])
+    assert (shared.is_complete, whole.is_complete, [run for run, _ in whole.coarser]) == (False, True, [soft])
+
+
+def test_bars_shorten_steps_up_to_twentyfold() -> None:
+    for frequency, step in ((0.0, 0.02), (2.0, 0.02), (2.0 * math.pi, 1.0 / 40.0 / 2.0), (1e4, 1e-3)):
+        bars: Any = SimpleNamespace(fastest_bar_frequency=2.0 * frequency)
+        assert largest_step(3.0, bars) == pytest.approx(step)
+
+
 def answer_with(errors: tuple[float, float], level: Any) -> Candidate:
     """Peaks of 1 and 2 with these errors."""
-    run: Any = SimpleNamespace(peaks=peaks_of((1.0, 2.0))[0])
+    run: Any = SimpleNamespace(peaks=peaks_of((1.0, 2.0))[0], stop=math.inf)
     nothing = np.zeros(2)
     return Candidate(run, level, False, np.array(errors), nothing, nothing, None, (), confirmed=True, floor=0.0)
 

@@ -189,9 +189,7 @@ def test_an_answer_hardly_changed_by_bearings_stays(refined: Any, changes: list[
     assert done.asked == "0s 0r 1s 1r"
     np.testing.assert_allclose(done.answer.errors, [5e-4 + 1.0001 * level_error(1), 2.0 * level_error(1)])
     (_, (real, share)) = done.answer.coarser
-    assert (real.peaks.value[0], share) == (1.0001 + changes[1], 1.0), (
-        "any number of the motion has its change as an error"
-    )
+    assert (real.peaks.value[0], share) == (1.0001 + changes[1], 1.0), "the error of any number"
 
 
 def test_no_level_is_begun_without_work_for_its_softer_contact(refined: Any) -> None:
