@@ -17,7 +17,9 @@ from multibody.integration.constant_step import silence_engine
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
+from multibody.integration.time_scales import shortest_period
 from multibody.models.assembly import assemble
+from multibody.models.friction_springs import _find_slide_end, _find_slide_start
 from multibody.models.state import EngineState
 from reference.problem import GRAVITY, Outcome, Scene, State, load_scene
 
@@ -34,6 +36,9 @@ def test_a_platform_vibrates_on_its_springs_below_yield_without_loss() -> None:
     scene = one_body(1.0, duration=3.0).with_values({"isolator.friction": {"slow": 0.1, "yield_displacement": 1e-3}})
     start, pendulum, spring = 0.01, GRAVITY, 0.1 * GRAVITY / 1e-3
     middle = start * spring / (spring + pendulum)
+    model = assemble(scene, "translational", 1e-3)
+    period = 2.0 * np.pi / np.sqrt(spring + pendulum)
+    assert shortest_period(scene, model) * model.units.time == pytest.approx(period)
     motion = multibody.trajectory(scene, (0.0, 0.0), initial=State(np.array([[start, 0.0]]), np.zeros((1, 2))))
     expected = middle + (start - middle) * np.cos(np.sqrt(spring + pendulum) * motion.time)
     np.testing.assert_allclose(motion.position[:, 0, 0], expected, atol=4e-3 * (start - middle))
@@ -151,6 +156,25 @@ def test_spheres_restart_with_the_speed_of_rest_or_slip(supports: int) -> None:
         expected = (slides, pytest.approx(speed if slides else 0.0))
         assert (after.sliding[number], after.contact[4 * number + 1]) == expected
     assert 0 < sum(after.sliding) < supports
+
+
+@pytest.mark.parametrize(
+    ("find", "values", "expected"),
+    [
+        (_find_slide_start, [-2.0, 2.0, 3.0], (0, 0.5)),
+        (_find_slide_start, [3.0, 2.0, 2.5], (1, 0.0)),  # where it grows again
+        (_find_slide_start, [3.0, 2.0, 1.5], None),
+        (_find_slide_start, [0.5, 0.9, 0.95], None),
+        (_find_slide_end, [9.0, 4.0, 3.0], (1, 0.8)),  # where the next step would end it
+        (_find_slide_end, [1.2, 0.9, 0.5], (1, 1.0)),  # below the speed of slides that end
+        (_find_slide_end, [9.0, 5.0, 4.0], None),
+        (_find_slide_end, [0.5, 0.6, 0.9], None),
+    ],
+)
+def test_a_slide_begins_beyond_its_limit_and_ends_with_its_speed(find: Any, values: Any, expected: Any) -> None:
+    found = find(2, np.array(values))
+    assert (found and (found.row, found.step_share)) == expected
+    assert found is None or (found.contact, found.slides) == (2, find is _find_slide_start)
 
 
 def test_steps_follow_the_spring_that_turns_most_and_the_slowest_slide() -> None:

@@ -53,48 +53,45 @@ def test_a_travel_passed_within_a_step_is_passed_on_the_way_out() -> None:
 
 
 UNEVEN = {"bodies.0.mass": 2.0, "bodies.1.mass": 3.0, "isolator.friction": 0.07}
+QUICK = {"bodies.1.period": [0.01, 0.02]}
 LEVELS_OF: dict[str, tuple[dict[str, Any], str, float, float]] = {
-    "slower than friction relaxes": (UNEVEN, "translational", 1e-3, 1e-3),
-    "as stiff as rounding allows": ({**UNEVEN, "excitation.decay": [0.2, 900.0]}, "translational", 1e-2, 1e-5),
-    "weak loading": ({**UNEVEN, "excitation.scale": 3e-5}, "translational", 1e-4, 1e-3),
-    "quick link": ({**UNEVEN, "bodies.1.period": [0.01, 0.02]}, "translational", 1e-3, 1e-2),
-    "quick link of a body that turns": ({**UNEVEN, "bodies.1.period": [0.01, 0.02]}, "spatial", 1e-3, 1e-2),
+    "slower than friction relaxes": ({}, "translational", 1e-3, 1e-3),
+    "as stiff as rounding allows": ({"excitation.decay": [0.2, 900.0]}, "translational", 1e-2, 1e-5),
+    "weak loading": ({"excitation.scale": 3e-5}, "translational", 1e-4, 1e-3),
+    "quick link": (QUICK, "translational", 1e-3, 1e-2),
+    "quick link of a body that turns": (QUICK, "spatial", 1e-3, 1e-2),
 }
 
 
-@pytest.mark.parametrize(("values", "model", "tolerance", "v_reg"), LEVELS_OF.values(), ids=LEVELS_OF)
-def test_levels_follow_from_the_times_of_the_motion(
-    values: dict[str, Any], model: str, tolerance: float, v_reg: float
-) -> None:
+@pytest.mark.parametrize("name", LEVELS_OF)
+def test_levels_follow_from_the_times_of_the_motion(name: str) -> None:
     """Each halves the step, and quarters the contact's compliance as long as its rounding permits."""
-    scene, turns = load_scene("fig3-I").with_values(values), model == "spatial"
-    unit = math.sqrt(scene.radius / GRAVITY)
+    values, model, tolerance, v_reg = LEVELS_OF[name]
+    scene, turns = load_scene("fig3-I").with_values({**UNEVEN, **values}), model == "spatial"
+    unit, load = math.sqrt(scene.radius / GRAVITY), scene.largest_acceleration / GRAVITY
     relaxation = 0.4 * v_reg / (0.07 * GRAVITY) / unit  # with the platform's share of the mass
-    period, load = float(reference.modes(scene).period.min()) / unit, scene.largest_acceleration / GRAVITY
-    strength, weak = (load, True) if load < 1e-4 else (1.0, False)
-    far = (1.2 / scene.radius) ** 2 if turns else 1.0  # of the upper body, squared
-    softest = min((0.3 * relaxation) ** 2, ((0.04 if turns else 0.25) * period / (2.0 * math.pi)) ** 2, 1e-6)
-    stiffest = 1e-15 * far / (0.25 * (strength if weak else 0.2) * min(tolerance, 1e-3))
-    softest = max(softest, stiffest)
-    most, brief = math.floor(math.log(softest / stiffest, 4.0) + 1e-9), []
-    if "excitation.decay" in values:
-        decay = values["excitation.decay"][1] * unit
-        brief = [(28.0 / decay, 1.0 / 24.0 / decay)]
+    period, end = float(reference.modes(scene).period.min()) / unit, scene.duration / unit
+    strength, peak = (load, load) if name == "weak loading" else (1.0, 0.2)
+    moment = 1e-15 * (1.2 / scene.radius) ** 2 if turns else 1e-15  # by the place of the upper body, squared
+    stiffest = moment / (0.25 * peak * min(tolerance, 1e-3))
+    response = min(0.3 * relaxation, (0.04 if turns else 0.25) * period / (2.0 * math.pi), 1e-3)
+    softest = max(response**2, stiffest)
+    decay = values.get("excitation.decay", [0.0, 0.0])[1] * unit
+    brief = [(28.0 / decay, 1.0 / 24.0 / decay)] if decay else []
     smallest = min(0.05 * 0.14 * relaxation, *(step for _, step in brief), period / 150.0)
     divisions = max(7, math.ceil(math.log(period / 150.0 / smallest, 4.0)))
     levels = multibody.levels(scene, model, tolerance, v_reg)
     assert len(levels) == 8
     for number, level in enumerate(levels):
-        step, penetration = period / 150.0 / 2.0**number, softest / 4.0 ** min(number, most)
+        step = period / 150.0 / 2.0**number
+        penetration = softest / 4.0 ** min(number, math.floor(math.log(softest / stiffest, 4.0) + 1e-9))
         newton = max(1e-5 / 4.0**number * min(1.0, 1e3 * penetration / step**2), 1e-12)
+        residual = max(1e-3 * newton * strength, moment / penetration)
+        expected = [step, 0.14 / 2.0**number, penetration, newton, residual, 8e-4 / 4.0**number]
+        expected += [0.0 if turns else 2.0 * load, 12.0 * (load * end) ** 2, (0.05 * end) ** 2, divisions, 0.0]
         columns = [level.step, level.slip_change, level.penetration, level.newton, level.residual, level.error_floor]
-        residual = max(1e-3 * newton * strength, 1e-15 * far / penetration)
-        np.testing.assert_allclose(
-            columns, [step, 0.14 / 2.0**number, penetration, newton, residual, 8e-4 / 4.0**number]
-        )
-        bounds = [level.load, level.force_change, level.softest, level.max_divisions, level.slide_end]
-        change, followed = 12.0 * (load * scene.duration / unit) ** 2, (0.05 * scene.duration / unit) ** 2
-        np.testing.assert_allclose(bounds, [0.0 if turns else 2.0 * load, change, followed, divisions, 0.0])
+        columns += [level.load, level.force_change, level.softest, level.max_divisions, level.slide_end]
+        np.testing.assert_allclose(columns, expected)
         np.testing.assert_allclose(level.decays, [(until, short / 2.0**number) for until, short in brief])
 
 

@@ -62,9 +62,11 @@ def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
     table = {"isolator.friction": {"slow": law.slow, "fast": law.fast, "rate": law.rate}}
     scene = load_scene("fig3-I").with_values({**table, "bodies.1.mass": 3.0})
     model = assemble(scene, "translational", V_REG)
-    slip, unit = np.array([[0.02], [0.1]]), model.units.velocity
+    slip, unit = np.array([[0.02], [0.1], [0.3 * V_REG]]), model.units.velocity
     slope = (law.at(slip[:, 0] + 1e-6) - law.at(slip[:, 0] - 1e-6)) / 2e-6 * unit
-    np.testing.assert_allclose(model.friction.friction_feedback_rate(slip / unit), 4.0 * slope, rtol=1e-6)
+    np.testing.assert_allclose(
+        model.friction.friction_feedback_rate(slip / unit), 4.0 * slope * [1.0, 1.0, 0.3], rtol=1e-6
+    )
 
 
 @pytest.mark.parametrize(

@@ -66,8 +66,9 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """Refine with such runs: answer, levels and springs asked for in letters, the springs, the work left to each."""
 
     def refine_on(
-        runs: Runs, levels: int = 6, max_work: float = 1e9, stiffenings: int = 6, of: list[Level] = LEVELS
-    ) -> Any:
+        runs: Runs, levels: int = 6, max_work: float = 1e9, stiffenings: int = 6, of: list[Level] = LEVELS,
+        tolerance: float = TOLERANCE,
+    ) -> Any:  # fmt: skip
         done = SimpleNamespace(asked="", springs=[], work=[])
         contacts = [LEVELS[min(number, stiffenings)].penetration for number in range(levels)]
         planned = [replace(level, penetration=contact) for level, contact in zip(of, contacts)]
@@ -84,7 +85,7 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
 
         monkeypatch.setattr(PhasePair, "run_level", run_level)
         pair = PhasePair(SCENE, MODEL, np.zeros(2), in_full=True)
-        done.answer = refine(pair, TOLERANCE, levels=planned, max_work=max_work)
+        done.answer = refine(pair, tolerance, levels=planned, max_work=max_work)
         done.asked = done.asked.strip()
         return done
 
@@ -162,6 +163,12 @@ PATHS: dict[str, tuple[Any, ...]] = {
     "a contact that stays shows by a softer one what it leaves":
         (lambda _, springs: result(1.0 + 2e-4 * (springs == SOFTER), opens=False), {"stiffenings": 0},
          "0s 1s 1~", OK, 1.0, level_error(1) + 1.5 * 2e-4 * (1.0 + 2e-3) + 4e-6),
+    "a level that fails behind an answer is the last":
+        (lambda number, _: result(1.0 + 0.1 * number, opens=False, outcome=FAILED if number == 2 else OK), {},
+         "0s 1s 2s", BEYOND, 1.1, 0.15 * 1.001 + 1.1e-6),
+    "behind impacts a level before level 0 confirms nothing":
+        (lambda *_: result(1.0, opens=False, impacts=1),
+         {"of": [replace(LEVELS[0], error_floor=3.2e-3), *LEVELS[1:]], "tolerance": 1e-2}, "0s 1s 2s", OK, 1.0, 2e-3),
     "supports opened by a misfit may give way by more":
         (lambda _, springs: result(1.0, opens=springs == STIFF, warping_load=1e-6 / springs), {},
          "0s 0r 1c", OK, 1.0, level_error(1) + 0.25e-10),
