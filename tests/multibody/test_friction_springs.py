@@ -1,6 +1,7 @@
 """Friction that yields in the engine: a closed form, the equations of the same law, and supports that stand apart."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
@@ -19,7 +20,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.time_scales import shortest_period
 from multibody.models.assembly import assemble
-from multibody.models.friction_springs import _find_slide_end, _find_slide_start
+from multibody.models.friction_springs import ContactChange, _find_slide_end, _find_slide_start
 from multibody.models.state import EngineState
 from reference.problem import GRAVITY, Outcome, Scene, State, load_scene
 
@@ -156,6 +157,16 @@ def test_spheres_restart_with_the_speed_of_rest_or_slip(supports: int) -> None:
         expected = (slides, pytest.approx(speed if slides else 0.0))
         assert (after.sliding[number], after.contact[4 * number + 1]) == expected
     assert 0 < sum(after.sliding) < supports
+    limits = np.array([0.02, 0.2, 0.3, 0.02, 0.01])[:supports]
+    resting = replace(state, sliding=(True, *[False] * (supports - 1)))
+    change = ContactChange(0, 1, 0.0, slides=True, limits=limits)
+    begun = springs.restart_state(resting, resting, accelerations, grows, end, change)
+    before, behind = (
+        place.radius * np.linalg.norm(each.coordinates[springs.turns], axis=1) for each in (resting, begun)
+    )
+    # springs at rest are shortened to their limits; the one that begins to slide has it
+    np.testing.assert_allclose(behind, [before[0], 0.2, *np.minimum(before, limits)[2:]])
+    assert begun.sliding[1]
 
 
 @pytest.mark.parametrize(

@@ -290,6 +290,7 @@ def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
     scene = tower(1.0).with_values({**values, "excitation.amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]]})
     run = one_level(scene, (2.0, 0.7), 4, 6e4)
     assert run.impacts > 10
+    assert run.has_opened
     assert run.outcome == Outcome.OK, "the engine shortened its step without end"
 
 

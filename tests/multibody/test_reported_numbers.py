@@ -24,7 +24,7 @@ from multibody.integration.estimate import (
 )
 from multibody.integration.peak import PeakReader
 from multibody.integration.step_control import StepControl
-from multibody.integration.termination import find_travel_end
+from multibody.integration.termination import find_termination, find_travel_end
 from multibody.integration.time_scales import largest_step, list_brief_motions
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
@@ -146,6 +146,18 @@ def test_a_plane_is_as_wide_as_a_platform_may_move() -> None:
     end, load = BRIEF.duration / units.time, 2.0 * BRIEF.largest_acceleration / units.acceleration
     expected = 7.0 + 3.0 * end + load * end**2
     assert _largest_distance_possible(BRIEF, units, coordinates, velocities) == pytest.approx(expected)
+
+
+def test_a_motion_ends_with_what_comes_first() -> None:
+    """It passes its travel of 0.5 between the rows 3 and 4; the contact opens before that or not."""
+    time, ends = np.arange(7.0), {2: (Outcome.CONTACT_LOST, 2), 4: (Outcome.TRAVEL_REACHED, 3)}
+    coordinates, velocities = np.zeros((2, 7, 3))
+    coordinates[:, 0], velocities[:, 0] = 0.15 * time, 0.15
+    model: Any = SimpleNamespace(depressions=None, bodies=np.arange(3)[None], travel=0.5, allows_liftoff=False)
+    for lost, (outcome, row) in ends.items():
+        contact = np.where(time >= lost, 1.0, -1.0)[:, None] * [1.0, 0.0, 0.0, 0.0]
+        motion: Any = SimpleNamespace(time=time, coordinates=coordinates, velocities=velocities, contact=contact)
+        assert find_termination(motion, model) == (outcome, row, pytest.approx(min(lost, 0.5 / 0.15)))
 
 
 def peaks_of(*values: Any) -> list[PeakReader]:
