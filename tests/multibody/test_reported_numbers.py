@@ -72,9 +72,7 @@ def test_levels_follow_from_the_times_of_the_motion(name: str) -> None:
     relaxation = 0.4 * v_reg / (0.07 * GRAVITY) / unit  # with the platform's share of the mass
     period, end = float(reference.modes(scene).period.min()) / unit, scene.duration / unit
     strength, peak = (load, load) if name == "weak loading" else (1.0, 0.2)
-    moment = (
-        1e-15 * (6.0 / scene.radius) ** 2 if turns else 1e-15
-    )  # of a place, squared
+    moment = 1e-15 * (6.0 / scene.radius) ** 2 if turns else 1e-15  # of a place, squared
     stiffest = moment / (0.25 * peak * min(tolerance, 1e-3))
     response = min(0.3 * relaxation, (0.04 if turns else 0.25) * period / (2.0 * math.pi), 1e-3)
     softest = max(response**2, stiffest)
