@@ -117,6 +117,16 @@ def test_nothing_moves_until_the_loading_does(name: str) -> None:
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-6 + 1e3 * level.rounding
 
 
+def test_a_push_that_is_gone_leaves_bearings_at_rest() -> None:
+    """Within a microsecond; springs in balance with its first value would throw the building up."""
+    push = {"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [4.0, 2.0]], "excitation.decay": [1e6, 1e6]}
+    scene = ON_BEARINGS.with_values({**push, "duration": 0.1})
+    pair = PhasePair(scene, assemble(scene, "spatial", 5e-3), np.zeros(2))
+    run = pair.run_level(multibody.levels(scene, "spatial")[0], Budget(1e5), keep=True)
+    later = np.concatenate([chunk.coordinates for chunk in run.chunks])[:, 2]
+    assert np.ptp(later) < 1e-6
+
+
 def test_an_eccentric_platform_tilts_and_moves_aside() -> None:
     """One body: the moment of its weight over the springs, and depressions that stay where the spheres are."""
     height, offset, stiffness, ring = 0.7, 0.03, 2e4, 0.6
