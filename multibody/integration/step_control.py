@@ -105,7 +105,7 @@ class StepControl:
     def count_largest_steps(self, motion: EngineMotion) -> int:
         """Return the number of largest steps to try after `motion`, until its slip speed needs smaller ones."""
         corner, level = self.model.corner, self.level
-        if len(motion.time) < 2 or not math.isfinite(corner):
+        if not math.isfinite(corner):
             return MAX_CHUNK_STEPS
         before, slip = smallest_loaded_slip(motion.contact, -2), smallest_loaded_slip(motion.contact, -1)
         if not math.isfinite(before + slip):

@@ -172,6 +172,7 @@ class FrictionSprings:
         speeds, rates = (jacobian @ turning @ values[:BODY_COORDINATES] for values in (velocities, accelerations))
         if len(self.depressions.vertical):
             speeds[:, 2] -= velocities[self.depressions.vertical]
+            rates[:, 2] -= accelerations[self.depressions.vertical]
         for number, (turn, normal) in enumerate(zip(self.turns, normals)):
             surface = np.cross(state.coordinates[turn], normal)
             along = surface / max(float(np.linalg.norm(surface)), SMALLEST_DISPLACEMENT)
@@ -194,8 +195,7 @@ class FrictionSprings:
     def state_at_rest(self, state: EngineState) -> EngineState:
         """Return the state to continue from with all contacts at rest."""
         assert state.accelerations is not None  # restart_state sets them
-        resting = replace(state, sliding=(False,) * len(self.contacts))
-        return self.restart_state(resting, resting, state.accelerations, np.zeros(len(self.contacts)), math.inf)
+        return self.restart_state(state, state, state.accelerations, np.zeros(len(self.contacts)), math.inf)
 
     def _mark_sliding(self, state: EngineState) -> tuple[bool, ...]:
         """Return whether each contact slides (K,); all contacts rest at the start."""

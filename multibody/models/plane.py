@@ -28,13 +28,12 @@ MIN_TRIANGLE_EXTENT = 1e4
 TRIANGLE_EXTENT_OVER_TRAVEL = 2.0
 
 
-def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, height: float, law: ContactLaw) -> Any:
-    """Return the engine's contact of a sphere with the plane at `height` above the marker `plane`."""
+def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, law: ContactLaw) -> Any:
+    """Return the engine's contact of a sphere with the marker `plane`, at the height that `set_plane_extent` sets."""
     return items.ObjectContactSphereTriangle(
         markerNumbers=[sphere, plane],
         nodeNumber=node,
         sphereRadius=radius,
-        trianglePoints=_make_triangle(MIN_TRIANGLE_EXTENT, height),
         includeEdges=0,
         dynamicFriction=law.friction,
         frictionProportionalZone=law.threshold,

@@ -346,7 +346,7 @@ def _add_contacts(
         nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))
         depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform, localPosition=[*place]))
         if flat:
-            contact = make_plane_contact(support, depression, nodes[-1], radius, 1.0 + radius, law)
+            contact = make_plane_contact(support, depression, nodes[-1], radius, law)
             contacts.append(mbs.AddObject(contact))
             continue
         contact = items.ObjectContactSphereSphere(

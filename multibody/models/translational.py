@@ -176,7 +176,7 @@ def _add_contact(
     if flat:
         plane = platform if turning.markers else mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate))
         sphere, height = (turning.markers[0], 1.0 + SPHERE_RADIUS) if turning.markers else (platform, -SPHERE_RADIUS)
-        return mbs.AddObject(make_plane_contact(sphere, plane, node, SPHERE_RADIUS, height, law)), node, height
+        return mbs.AddObject(make_plane_contact(sphere, plane, node, SPHERE_RADIUS, law)), node, height
     fixed = [] if turning.markers else [items.MarkerBodyRigid(bodyNumber=plate, localPosition=[0.0, 0.0, 1.0])]
     contact = items.ObjectContactSphereSphere(
         markerNumbers=[*turning.markers, *map(mbs.AddMarker, fixed), platform],

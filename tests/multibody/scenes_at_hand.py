@@ -35,6 +35,20 @@ def frame(duration: float, count: int = 6, period: float = 0.17) -> Scene:
     return Scene.model_validate({"title": "frame", "duration": duration, **values})
 
 
+def forces_of_engine(model: Any, coordinates: Any, velocities: Any, contact: Any) -> tuple[Any, Any]:
+    """The engine's forces (n,) and mass matrix (n, n), in its units; contacts whose data begin with -1 are closed."""
+    set_initial_state(model, EngineState(coordinates, velocities, np.array(contact)))
+    model.ground.begin(0.0)
+    solver, settings = exudyn.MainSolverImplicitSecondOrder(), exudyn.SimulationSettings()
+    settings.solution.file.write, settings.timeIntegration.verboseMode = False, 0
+    with silence_engine():
+        solver.InitializeSolver(model.mbs, settings)
+        solver.ComputeMassMatrix(model.mbs, 1.0)
+        mass = np.array(solver.GetSystemMassMatrix())
+        solver.ComputeODE2RHS(model.mbs)
+    return np.array(solver.GetSystemResidual()), mass
+
+
 def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[Any, Any, Any]:
     """The engine's forces and moments (N, 3) on bodies off their supports, and the model, in its units."""
     model = assemble(scene, "spatial", 1e-3)
@@ -42,13 +56,8 @@ def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[An
     count = 6 * len(scene.bodies)
     rest = np.zeros(model.coordinates - count)
     contact = np.tile([1.0, 0.0, 0.0, 0.0], scene.isolator.support_count or 0)  # open
-    set_initial_state(model, EngineState(np.append(coordinates, rest), np.append(velocities, rest), contact))
-    solver, settings = exudyn.MainSolverImplicitSecondOrder(), exudyn.SimulationSettings()
-    settings.solution.file.write, settings.timeIntegration.verboseMode = False, 0
-    with silence_engine():
-        solver.InitializeSolver(model.mbs, settings)
-        solver.ComputeODE2RHS(model.mbs)
-    pushed = np.array(solver.GetSystemResidual())[:count].reshape(-1, 2, 3).copy()
+    pushed, _ = forces_of_engine(model, np.append(coordinates, rest), np.append(velocities, rest), contact)
+    pushed = pushed[:count].reshape(-1, 2, 3).copy()
     for body, angles in enumerate(np.reshape(coordinates, (-1, 6))[:, 3:]):
         pushed[body, 1] = np.linalg.solve(angular_velocity_matrix(angles).T, pushed[body, 1])
     return pushed[:, 0], pushed[:, 1], model

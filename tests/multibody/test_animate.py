@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
+from matplotlib.patches import Circle
 from PIL import Image
 
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
 from multibody.film import FilmSettings, arrange_boxes, choose_magnification, draw_film
-from reference.problem import load_scene
+from reference.problem import ADVICE, Outcome, load_scene
 
 SHORT = """
 title = "short"
@@ -74,6 +75,10 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
     assert message.startswith("short: there is no motion to show: step limit: refused before any step")
     assert "a looser tolerance does not help" in message
     assert message.count("\n") == 1
+    Path(words[0]).write_text(SHORT.replace("duration = 0.2", "duration = 0.1"))  # 26 steps; the first chunk takes 32
+    assert main([*words, "--max-work", "28"]) == 2
+    advice = ADVICE[Outcome.STEP_LIMIT]
+    assert capsys.readouterr().err == f"short: there is no motion to show: step limit: {advice}\n"
     assert not Path(words[-1]).exists()
 
 
@@ -118,7 +123,7 @@ NAMED = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen
         (["fig3-I", "--stretch", "1e300"], "--stretch"),
         (["fig3-I", "--rate", "30"], "--rate: 30: must be 1, 2, 4, 5, 10, 20, 25 or 50 per second"),
         (["fig3-I", "--size", "10", "500"], "--size: 10 500: must be 320 to 4000 pixels each"),
-        (["fig3-I", "--out", "/nowhere/run.gif"], "--out"),
+        (["fig3-I", "--out", "/dev/null/run.gif"], "--out"),
         (["fig3-I", "--out", "run.mp4"], "must end in .gif"),
         (["fig3-I", "--out", "/"], "is a folder"),
         pytest.param(["fig3-I", "--view"], "--view: no screen", marks=NAMED),
@@ -148,6 +153,8 @@ def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -
     for scene in (load_scene(words[0]), load_scene("fig3-I").with_values({"bodies.1.height": 0.2})):
         heights, sizes, factor = arrange_boxes(scene)
         assert (heights.tolist(), sizes.tolist(), factor) == ([0.0, 1.0], [[2.0, 2.0, 0.2]] * 2, 1.0)
+    [height], [size], factor = arrange_boxes(scene.with_values({"bodies": [{"mass": 1.0}]}))
+    assert (height, size.tolist(), factor) == (0.0, [2.0, 2.0, 0.2], 1.0)
 
 
 def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,6 +208,10 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
             assert len(apart) >= 4
             assert apart.min(axis=1).max() < 1e-12
     above, along_y, _ = figure.axes
+    widest = 1.08 * max(np.abs(box[:, :2]).max() for box in corners)
+    assert above.get_xlim() == above.get_ylim() == pytest.approx((-widest, widest))
+    rings = [patch for patch in above.patches if isinstance(patch, Circle)]
+    assert [ring.radius for ring in rings] == pytest.approx([1.0]), "that of the supports"
     np.testing.assert_allclose(np.array(above.lines[0].get_data()).T, scene.support_places)
     arms = np.column_stack([scene.support_places - [0.1, -0.2], np.full(4, -0.2)])  # from the center of mass
     moved = position[-1, 0] + arms @ (RotXYZ2RotationMatrix(turns[-1, 0]) - np.eye(3)).T

@@ -11,7 +11,7 @@ import multibody
 from multibody.integration.constant_step import EngineSolver, silence_engine
 from multibody.models.assembly import assemble
 from multibody.models.state import EngineState
-from reference.problem import GRAVITY, Outcome, Scene, State, Trajectory
+from reference.problem import GRAVITY, Scene, State, Trajectory
 
 
 def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, float], **options: Any) -> Trajectory:
@@ -105,27 +105,3 @@ def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate(within: Callable[[f
     within(abs(np.unwrap(np.arctan2(y, x))[-1] / (rate * scene.duration) - 1.0), 1e-5)
     # the compliance gives way by N / k more than at rest: 1e-8 of rho
     np.testing.assert_allclose(motion.contact_force, GRAVITY / np.cos(cone), rtol=1e-4)
-
-
-def test_a_slide_on_a_plane_stops_after_v2_over_2_mu_g_wherever_it_is() -> None:
-    way, creep = 1.0 / (0.2 * GRAVITY), 1e-6 / (0.1 * GRAVITY)  # below v_reg the speed decays over v_reg^2 / (mu g)
-    run = started(one_body(radius=np.inf, duration=2.0), (1e4, 0.0), (0.6, 0.8))
-    moved = run.position[-1, 0, :2] - [1e4, 0.0]
-    np.testing.assert_allclose(moved, [0.6 * way, 0.8 * way], atol=creep + 2e-4 * way)
-    np.testing.assert_allclose(run.peak, 0.1 * GRAVITY, rtol=1e-4)
-    assert np.abs(run.position[:, 0, 2]).max() < 1e-6
-
-
-def test_overturning_shifts_the_load_as_statics_says() -> None:
-    """A block that slides along x with its center h above the plane: the load's center is mu h before that of mass."""
-    height, on = 0.3, {"isolator.supports": 4, "isolator.ring": 1.0, "isolator.sphere_radius": 0.05}
-    block = {"mass": 2.0, "height": height, "size": [2.0, 2.0, 0.2]}
-    scene = one_body(radius=np.inf, duration=0.5).with_values({"bodies": [block], **on})
-    run = started(scene, (0.0, 0.0), (0.8, 0.0), model="spatial")
-    middle, places = len(run.time) // 2, scene.support_places[:, 0]  # type: ignore[index]
-    weight = 2.0 * GRAVITY
-    center = 0.1 * height + run.position[middle, 0, 0]
-    expected = weight / 4.0 + weight * center * places / (places**2).sum()
-    assert run.status == Outcome.OK
-    np.testing.assert_allclose(run.extra["support_force"][middle], expected, rtol=1e-5)
-    assert np.abs(run.extra["yaw"]).max() < 1e-9

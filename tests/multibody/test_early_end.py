@@ -1,6 +1,7 @@
 """Runs that stop once nothing can come lose no peak, displacement or outcome; what is read from their chunks."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,10 +12,19 @@ from random_buildings import random_building, under_a_record
 import multibody
 from multibody.integration import look_ahead
 from multibody.integration.adaptive import Checkpoint, Integration, continue_run
-from multibody.integration.chunk import find_last_row_near_peak, find_rim_exit_rows, largest_distance
+from multibody.integration.chunk import (
+    absolute_acceleration_sizes,
+    find_last_row_near_peak,
+    find_rim_exit_rows,
+    has_larger_entry,
+    largest_distance,
+    slip_change_ratios,
+    smallest_loaded_slip,
+    vector_lengths,
+)
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
-from multibody.integration.level_runs import _choose_early_stop
+from multibody.integration.level_runs import _choose_early_stop, _compute_work_until, _confirms_early_stop
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
@@ -83,6 +93,26 @@ def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share:
     assert find_last_row_near_peak(size, sizes, distance, far) == (near[-1] if len(near) else -1)
 
 
+def test_what_is_read_from_every_row_is_that_of_numpy() -> None:
+    bodies, plate = np.array([[6, 1, 4], [0, 3, 7]]), DRAW.normal(size=(STEPS, 3))
+    sizes = np.linalg.norm(ACCELERATIONS[:, bodies] + plate[:, None], axis=2)
+    np.testing.assert_allclose(absolute_acceleration_sizes(ACCELERATIONS, bodies, plate), sizes)
+    lengths = np.linalg.norm(ACCELERATIONS[:, [5, 2]], axis=1)
+    np.testing.assert_allclose(vector_lengths(ACCELERATIONS, np.array([5, 2])), lengths)
+    slip = np.where(CONTACT[:, 0::4] < 0.0, CONTACT[:, 1::4], np.inf).min(axis=1)
+    assert [smallest_loaded_slip(CONTACT, row) for row in range(STEPS)] == slip.tolist()
+    of_platform = ACCELERATIONS[:, [6, 1, 4]]
+    change = np.linalg.norm(np.diff(of_platform, axis=0, prepend=of_platform[:1]), axis=1)
+    expected = 0.7 * np.maximum(np.linalg.norm(of_platform, axis=1), 2.0 * change) / np.maximum(slip, 0.3)
+    np.testing.assert_allclose(slip_change_ratios(ACCELERATIONS, np.array([6, 1, 4]), CONTACT, 0.7, 0.3), expected)
+    for row, body in ((40, 0), (STEPS - 1, 1)):  # of the largest entry, of which the least that counts is a little less
+        size = sizes.copy()
+        size[row, body] = 9.0
+        least = np.where(np.arange(2) == body, 8.9, 10.0)
+        assert [has_larger_entry(size, first, least) for first in (0, row, row + 1)] == [True, True, False]
+        assert not has_larger_entry(size, 0, least[::-1].copy())
+
+
 def test_the_largest_distance_is_that_between_the_instants_too() -> None:
     axes, between = np.array([0, 1]), 0
     for _ in range(20):
@@ -143,6 +173,24 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
     ahead = EngineRun(PeakReader(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
     ahead.peaks.value[:] = 0.8, peak
     assert look_ahead._comes_near_largest(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
+
+
+def test_an_early_stop_is_confirmed_by_peaks_and_displacement() -> None:
+    """Each within a fifth of what later values may differ, a tenth; a run that stopped would have cost its share."""
+    for peak, moved, outcome, confirmed in (
+        (2.03, 0.509, Outcome.OK, True),
+        (2.05, 0.5, Outcome.OK, False),
+        (2.0, 0.511, Outcome.OK, False),
+        (2.0, 0.5, Outcome.STEP_LIMIT, False),
+    ):
+        before, run = (
+            EngineRun(PeakReader(2, math.inf), 4.0, outcome, work=600.0, max_displacement=place)
+            for place in (0.5, moved)
+        )
+        before.peaks.value[:], run.peaks.value[:] = (1.0, 2.0), (1.0, peak)
+        assert _confirms_early_stop(run, before) == confirmed
+        work = [_compute_work_until(each, 2.0, 9.0) for each in (run, replace(run, scanned_from=3.0))]
+        assert work == pytest.approx([300.0, 400.0] if outcome == Outcome.OK else [600.0, 600.0])
 
 
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])

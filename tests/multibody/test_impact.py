@@ -16,11 +16,13 @@ from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.estimate import widen_by_impacts
 from multibody.integration.level import PHYSICAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
-from multibody.integration.openings import BEARING_SETTLING_TIME
+from multibody.integration.openings import BEARING_SETTLING_TIME, Event, Openings
 from multibody.integration.peak import PeakReader
+from multibody.integration.termination import _compute_tilt
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
+from multibody.models.state import EngineState
 from multibody.motion import _measure_attitude
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, load_scene
 
@@ -60,6 +62,11 @@ def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
     after = law.carry_spheres_along(np.zeros(10), before, RIGHT)
     of_corners = -0.7 + 0.3 * CORNERS[:, 1] + 0.2 * CORNERS[:, 0]
     np.testing.assert_allclose(after, [*before[:6], *np.where(RIGHT, of_corners, before[6:])], atol=1e-12)
+    for of_spheres, met in ((0.05, 0.0), (-0.3, -0.3)):  # spheres that spring up do not push a block that falls on them
+        fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0, *[of_spheres] * 4])
+        rebound, _ = replace(law, restitution=0.4).solve_impact(np.zeros(10), fall, NONE, ALL)
+        expected = [met + 0.4 * (met + 0.7), *[of_spheres] * 4]  # behind which the spheres stay
+        np.testing.assert_allclose(rebound[[2, 6, 7, 8, 9]], expected, atol=1e-8)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
@@ -79,6 +86,8 @@ def test_the_friction_of_an_impact_is_that_of_the_whole_speed() -> None:
     )
     assert along[0] == pytest.approx(across[1], rel=1e-6)
     assert along[0] == pytest.approx(0.4 - (0.2 - 0.18 * math.exp(-0.4)) * 0.7, rel=1e-6)
+    crept, _ = block(0.0, 0.2, 0.5).solve_impact(np.zeros(6), np.array([0.4, 0.0, -0.7, 0.0, 0.0, 0.0]), NONE, ALL)
+    assert crept[0] == pytest.approx(0.4 / (1.0 + 0.2 * 0.7 / 0.5), rel=1e-6), "below v_reg in proportion to the speed"
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -98,6 +107,99 @@ def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
     inertia = axes @ np.diag(MOMENTS) @ axes.T
     energies = [0.5 * v[:3] @ v[:3] + 0.5 * v[3:] @ inertia @ v[3:] for v in (turning @ before, turning @ after)]
     assert energies[1] <= energies[0] * (1.0 + 1e-9)
+
+
+GAPS: dict[str, tuple[bool, Any, float | None]] = {  # of two contacts, in penetrations, behind a step of a length
+    "opens": (False, lambda t: (t - 0.3, t - 0.2), 0.2),
+    "is open already": (False, lambda t: (t, t - 0.2), None),
+    "closes": (True, lambda t: (0.3 - t, 0.6 - t), 0.3),
+    "closes behind a flight within the step": (True, lambda t: (t * (0.1 - t), 1.0), 0.1),
+    "closes behind a flight half as long as its first trial": (True, lambda t: (t * (0.4 - t), 1.0), 0.4),
+    "touches without a flight": (True, lambda t: (-t, 1.0), None),
+    "rounds to a gap at the end of the step": (True, lambda t: (2.0 - t, 1.0 - t + 1e-9), 1.0),
+}
+
+
+@pytest.mark.parametrize(("closes", "gaps", "expected"), GAPS.values(), ids=GAPS)
+def test_an_event_is_located_within_its_step(closes: bool, gaps: Any, expected: float | None) -> None:
+    """Where the first of its contacts opens or closes, also behind a flight that is shorter than the step."""
+    penetration, which = 1e-6, np.array([True, True, False])
+
+    def run(state: Any, time: float, length: float, count: int) -> Any:
+        assert (time, count) == (7.0, 1)
+        return SimpleNamespace(coordinates=np.array([[0.0], [length]]), length=length)
+
+    def clearance(coordinates: Any) -> Any:
+        return penetration * (1.0 + np.array([[*gaps(float(t)), -5.0 if closes else 5.0] for [t] in coordinates]))
+
+    model = SimpleNamespace(take_out_open_contacts=lambda is_open, penetration: None)
+    law: Any = SimpleNamespace(depressions=SimpleNamespace(clearance=clearance, ring=np.zeros((3, 2))))
+    solver: Any = SimpleNamespace(model=model, run=run)
+    state: Any = SimpleNamespace(coordinates=np.zeros(1))
+    motion: Any = Openings(solver, law, penetration).locate_event(state, 7.0, 1.0, Event(0, closes, which))
+    assert (motion is None) == (expected is None)
+    if motion is not None:
+        assert motion.length == pytest.approx(expected, abs=1e-4)
+
+
+THREE = [True, True, True, False]
+HITS: dict[str, tuple[Any, ...]] = {  # contacts that close, gaps in penetrations, rates of the gaps; which are hit
+    "within a penetration": ([1, 0, 0, 0], [1e-4, 0.5, 3.0, -1.0], [-1.0, -0.2, -0.2, 0.0], [1, 1, 0, 0]),
+    "and not those that part": ([1, 0, 0, 0], [1e-4, 0.5, 1.5e-4, 0.0], [-1.0, 0.2, 0.1, -1.0], [1, 0, 0, 0]),
+    "unless they overlap": ([1, 0, 0, 0], [1e-4, -0.1, 9.0, 0.0], [-1.0, 0.2, -0.1, 0.0], [1, 1, 0, 0]),
+    "within a tenth of a microsecond": ([1, 0, 0, 0], [1e-4, 1.2, 1.3, 0.0], [-1.0, -50.0, -50.0, 0.0], [1, 1, 0, 0]),
+    "the nearest if none has closed": ([1, 1, 0, 0], [0.9, 0.7, 0.2, 0.0], [0.1, 0.1, 0.1, 0.0], [0, 1, 0, 0]),
+    "the fastest decides": ([1, 1, 0, 0], [1e-4, 1e-4, 9.0, 0.0], [-2e-5, -5e-7, 0.0, 0.0], [1, 1, 0, 0]),
+    "slowly": ([1, 1, 0, 0], [1e-4, 0.5, 9.0, 0.0], [-9e-7, -5e-7, 0.0, 0.0], [1, 1, 0, 0]),
+}
+
+
+@pytest.mark.parametrize("penetration", [4e-6, 1e-8])
+@pytest.mark.parametrize("name", HITS)
+def test_contacts_that_close_at_once_share_an_impact(name: str, penetration: float) -> None:
+    which, gaps, rates, hit = (np.array(part, kind) for part, kind in zip(HITS[name], (bool, float, float, bool)))
+    if name == "within a tenth of a microsecond":
+        rates *= penetration / 4e-6
+    seen, opened = [], np.array([False, False, True, True])
+    law: Any = SimpleNamespace(
+        depressions=SimpleNamespace(clearance=lambda _: penetration * (1.0 + gaps[None]), ring=np.zeros((4, 2))),
+        normal_speeds=lambda *_: (rates, rates),
+        carry_spheres_along=lambda coordinates, velocities, struck: velocities + struck,
+        unload_bar_dampers=lambda coordinates, before, after, times: coordinates + after - before + times,
+        solve_impact=lambda at, moving, *contacts: (seen.append([*contacts]), (2.0 * moving, opened))[1],
+    )
+    model = SimpleNamespace(take_out_open_contacts=lambda *_: None, bar_damping_times=lambda _: 0.5)
+    openings = Openings(SimpleNamespace(model=model), law, penetration)  # type: ignore[arg-type]
+    openings.is_open = np.array(THREE)
+    moving, rest = np.array([0.1, 0.2, 0.3, 0.4]), np.zeros(4)
+    state = EngineState(rest, moving, np.arange(16.0), np.ones(4), np.ones(4))
+    after = openings.apply_impact(state, 7.0, which)
+    np.testing.assert_array_equal(after.contact[0::4], np.where(hit, -1e-4 * penetration, [0.0, 4.0, 8.0, 12.0]))
+    quiet = -2.0 * rates[hit].min() <= 1e-3 * math.sqrt(penetration)
+    assert openings.settled_at == (-math.inf if quiet else 7.0 + max(40.0 * math.sqrt(penetration), 0.04))
+    jumps = rates[hit].min() < -1e-5
+    assert (openings.impacts, after.slip_rate is None, after.load is None) == (int(jumps), jumps, jumps)
+    np.testing.assert_array_equal(seen, [[~np.array(THREE), hit]] if jumps else [])
+    np.testing.assert_allclose(after.velocities, 2.0 * moving if jumps else moving + hit)
+    np.testing.assert_allclose(after.coordinates, moving + 0.5 if jumps else 0.0)
+    np.testing.assert_array_equal(openings.is_open, opened if jumps else THREE & ~hit)
+
+
+def test_the_first_contact_that_opens_or_comes_closer_overlapping_is_an_event() -> None:
+    """Not one that is closed and comes closer, or open and parts."""
+    law: Any = SimpleNamespace(depressions=SimpleNamespace(ring=np.zeros((2, 2)), clearance=lambda at: at + 1.0))
+    solver: Any = SimpleNamespace(model=SimpleNamespace(take_out_open_contacts=lambda *_: None))
+    openings = Openings(solver, law, 1.0)
+    openings.is_open = np.array([True, False])
+    for gaps, closed_gaps, expected in (
+        ([1.0, 0.2, -0.3], [-1.0, -1.0, -2.0], (1, True, [True, False])),
+        ([-0.5, -0.2, -0.1], [-1.0, -2.0, -3.0], None),
+        ([-0.5, -0.2, 0.4], [-1.0, 1e-4, 3e-4], (1, False, [False, True])),
+        ([1.0, -0.1, -0.5], [-1.0, 3e-4, 3e-4], (0, True, [True, False])),
+    ):
+        both: Any = np.column_stack([gaps, closed_gaps])
+        event = openings.find_first_event(SimpleNamespace(coordinates=both, gap=both))  # type: ignore[arg-type]
+        assert (None if event is None else (event.row, event.closes, event.contacts.tolist())) == expected
 
 
 PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down
@@ -188,6 +290,7 @@ def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
     scene = tower(1.0).with_values({**values, "excitation.amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]]})
     run = one_level(scene, (2.0, 0.7), 4, 6e4)
     assert run.impacts > 10
+    assert run.has_opened
     assert run.outcome == Outcome.OK, "the engine shortened its step without end"
 
 
@@ -200,6 +303,7 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     motion: Any = SimpleNamespace(coordinates=np.tile(coordinates, (5, 1)), gap=gap)
     found = _measure_attitude(model, motion, 0.1 * np.arange(5))
     np.testing.assert_allclose(found["tilt"], np.arccos(rotation_matrices(angles[0])[2, 2]))
+    np.testing.assert_allclose(_compute_tilt(motion, model), found["tilt"])
     np.testing.assert_array_equal(found["yaw"], [0.9] * 5)
     np.testing.assert_array_equal(found["turns"][3], angles)
     np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])
@@ -244,7 +348,9 @@ def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float
     """Bounds on its place and angles prove it, and only where that is so."""
     draw, proved = np.random.default_rng(3), 0
     ring = 0.4 * width * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-    place = Depressions(ring, np.array([0.0, 0.0, height]), 0.1, np.arange(6, 10))
+    place = Depressions(ring, np.array([0.3 * width, -0.2 * width, height]), 0.1, np.arange(6, 10))
+    levers = [*ring.T, np.zeros(4)] - place.center[:, None]
+    assert place._farthest == pytest.approx(np.linalg.norm(levers, axis=0).max())
     for size in np.geomspace(1e-3, 3.0, 400):
         moved = draw.random(10) < 0.5  # some of them alone come further before a sphere leaves
         coordinates = size * moved * draw.uniform(-1.0, 1.0, (20, 10))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from multibody.integration.peak import PeakReader, _alternating_part, _read_corner
+from multibody.integration.peak import PeakReader, _alternating_part, _list_smooth_stretches, _read_corner
 from multibody.integration.step_control import KINK_STEP_RATIO, StepControl
 
 TIME = np.arange(0.0, 1.0, 0.02)
@@ -41,6 +41,31 @@ def test_the_error_of_a_parabola_is_that_of_a_cubic_signal(shift: float) -> None
     peaks = read(1.0 - 30.0 * t**2 + 40.0 * t**3)
     missed = abs(peaks.value[0] - 1.0)
     assert 1e-7 < missed <= 1.2 * peaks.sampling_error[0] < 4.0 * missed
+
+
+def test_the_time_reversed_has_the_same_peak_and_error() -> None:
+    """A fourth sample on either side shows what a parabola misses."""
+    t = TIME - 0.493
+    size = 1.0 - 30.0 * t**2 + np.where(t > 0.0, 50.0, 5.0) * t**3
+    there, back = read(size), read(size[::-1])
+    assert back.value[0] == pytest.approx(there.value[0], abs=1e-12)
+    assert back.sampling_error[0] == pytest.approx(there.sampling_error[0], rel=1e-6)
+
+
+def test_a_stretch_ends_at_the_next_corner_or_bend() -> None:
+    """A corner lies behind its row, a bend on it: there a stretch ends and another begins."""
+    draw = np.random.default_rng(5)
+    for _ in range(60):
+        corners, bends = (sorted(draw.choice(12, size=draw.integers(0, 4), replace=False).tolist()) for _ in range(2))
+        row, count = int(draw.integers(13)), 13
+        found = list(_list_smooth_stretches(row, count, corners, bends))
+        begin, end = max([0, *(c + 1 for c in corners if c < row)]), min([12, *(c for c in corners if c >= row)])
+        left = max([begin, *(bend for bend in bends if bend < row)])
+        right = min([end, *(bend for bend in bends if bend > row)])
+        if row in bends:
+            assert found == [(left, row, (row - 1, row - 2)), (row, right, (row + 1, row + 2))]
+        else:
+            assert found == [(left, right, (row - 1, row + 1))]
 
 
 @CHUNKS

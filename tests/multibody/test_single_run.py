@@ -2,12 +2,17 @@
 
 import gc
 from dataclasses import replace
+from itertools import pairwise
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import multibody
+from multibody.integration.constant_step import EngineSolver, silence_engine
+from multibody.integration.engine_run import Budget
+from multibody.integration.one_run import PhasePair
 from multibody.models import assembly
 from multibody.models.engine import reset_when_unused
 from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
@@ -39,6 +44,12 @@ def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
         assert run.position[0, 0, 2] == pytest.approx(-1e-3 * scene.radius * 4.0 / GRAVITY, rel=1e-6)
 
 
+def test_a_run_that_cannot_end_takes_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(EngineSolver, "run", lambda *given: pytest.fail("a step was spent"))
+    run = multibody.single_run(SCENE, PHASE, level=replace(multibody.levels(SCENE)[0], step=1e-9))
+    assert (run.status, run.instant, len(run.time)) == (Outcome.STEP_LIMIT, 0.0, 0)
+
+
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 def test_all_bodies_start_as_fast_upwards_as_the_platform_slides(model: str) -> None:
     place, speed = np.array([[0.03, -0.04], [0.0, 0.0]]), np.array([[0.6, 0.2], [0.1, 0.3]])
@@ -67,6 +78,25 @@ def test_steps_are_small_at_stops_and_large_elsewhere() -> None:
     assert (change / np.maximum(slip, v_reg)).max() < 0.14
     assert step.min() < step.max() / 10.0
     assert np.median(step) > 0.9 * step.max()
+
+
+def test_contact_forces_settle_where_steps_become_smaller() -> None:
+    """And nowhere else: the forces of a long step are no start for a short one."""
+    settled: list[float] = []
+    scene = SCENE.with_values({"duration": 3.0})
+    built, level = assembly.assemble(scene, "translational", 1e-3), multibody.levels(scene)[0]
+
+    def noted(state: Any, gap_rate: Any, penetration: float) -> Any:
+        settled.append(state.coordinates[0])
+        return built.settle(state, gap_rate, penetration)
+
+    with silence_engine():
+        pair = PhasePair(scene, replace(built, settle=noted), np.array([2.0, 0.7]))
+        run = pair.run_level(level, Budget(1e5), keep=True)
+    steps = [chunk.time[-1] - chunk.time[-2] for chunk in run.chunks]
+    shorter = [after < 0.5 * before for before, after in pairwise(steps)]
+    assert settled == [chunk.coordinates[-1, 0] for chunk, less in zip(run.chunks, shorter) if less]
+    assert 0 < len(settled) < len(run.chunks) / 2
 
 
 def test_an_unstable_run_is_no_answer() -> None:

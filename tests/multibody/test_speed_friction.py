@@ -9,6 +9,7 @@ import reference
 from multibody.integration.constant_step import silence_engine
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
+from multibody.models.speed_friction import _compute_rate_of_length
 from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, DryFriction, State, load_scene
 from reference.problem.friction import Heat
@@ -49,15 +50,23 @@ def test_a_step_heats_for_the_share_in_which_it_covers_the_center(begin: float, 
     )
 
 
+def test_the_rate_of_a_speed_is_the_part_of_the_acceleration_along_it() -> None:
+    velocity, acceleration = np.array([3.0, 0.0, -4.0]), np.array([1.0, 2.0, 7.0, 9.0])
+    assert _compute_rate_of_length(velocity, acceleration) == pytest.approx(-5.0)
+    assert _compute_rate_of_length(0.0 * velocity, acceleration) == _compute_rate_of_length(velocity, None) == 0.0
+
+
 def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
     """The slope of mu by the slip speed times the weight over the platform's mass, in units of the model."""
     law = DryFriction(0.03, 0.1, 20.0)
     table = {"isolator.friction": {"slow": law.slow, "fast": law.fast, "rate": law.rate}}
     scene = load_scene("fig3-I").with_values({**table, "bodies.1.mass": 3.0})
     model = assemble(scene, "translational", V_REG)
-    slip, unit = np.array([[0.02], [0.1]]), model.units.velocity
+    slip, unit = np.array([[0.02], [0.1], [0.3 * V_REG]]), model.units.velocity
     slope = (law.at(slip[:, 0] + 1e-6) - law.at(slip[:, 0] - 1e-6)) / 2e-6 * unit
-    np.testing.assert_allclose(model.friction.friction_feedback_rate(slip / unit), 4.0 * slope, rtol=1e-6)
+    np.testing.assert_allclose(
+        model.friction.friction_feedback_rate(slip / unit), 4.0 * slope * [1.0, 1.0, 0.3], rtol=1e-6
+    )
 
 
 @pytest.mark.parametrize(
