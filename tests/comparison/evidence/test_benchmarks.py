@@ -71,6 +71,7 @@ def test_a_side_that_fails_costs_the_others_nothing():
     broken = replace(BY_NAME["pendulum"], start=((5.0, 0.0),))  # beyond the rim: both sides refuse
     chosen = [broken, *(BY_NAME[name] for name in CHEAP[:2])]
     first, *others = computed(BenchmarkTable(chosen)).benchmarks
+    assert [each.name for each in (first, *others)] == [case.scene.name for case in chosen]
     assert {number.verdict for number in first.rows[0].numbers.values()} == {NOT_COMPARED}
     assert "rim" in first.endings[EQUATIONS]
     _every_number_is_met_or_explained(Benchmarks(others, {}))

@@ -13,6 +13,7 @@ from known_results import FOUND, PLAIN, fake
 import multibody
 from comparison.evidence.extremes import analysis
 from comparison.evidence.extremes.causes import CAUSES
+from comparison.evidence.extremes.columns import COLUMNS
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import CellVerdict
@@ -39,9 +40,11 @@ class Ending(ThreadPoolExecutor):
 
 
 def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
-    columns = [replace(fake(model), key=model) for model in ("hangs", "crashes", "raises", "honest")]
-    extremes = analysis.Extremes([replace(PLAIN, columns=tuple(each.key for each in columns))], columns, 2.0)
-    (row,) = computed(extremes, Ending).rows
+    asked = "hangs", "crashes", "raises", "honest"
+    columns = [replace(fake(model), key=model) for model in (*asked, "no row of it")]
+    matrix = computed(analysis.Extremes([replace(PLAIN, columns=asked)], columns, 2.0), Ending)
+    assert matrix.columns == dict(zip(asked, asked))
+    (row,) = matrix.rows
     found = {key: (entry.verdict, entry.status, entry.reason) for key, entry in row.entries.items()}
     assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
     assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
@@ -83,6 +86,8 @@ def test_the_equations_fail_at_no_extreme():
     groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
     chosen = [row for row in analysis.select_quick(list(list_extreme_cases())) if row.group in groups]
     assert {row.group for row in chosen} == groups
+    by_engine = {cell.row.group for cell in analysis.list_cells(chosen) if cell.column.key == "translational"}
+    assert by_engine == {"outside the rules"}
     for cell in analysis.list_cells(chosen):
         entry = analysis.solve_cell(cell)
         assert entry.verdict != CellVerdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
@@ -92,14 +97,18 @@ def test_the_equations_fail_at_no_extreme():
 QUANTITIES = {
     "friction": lambda at: at.friction_coefficient,
     "lubrication, s/m": lambda at: at.friction_coefficient,
-    "amplitude, m/s^2": lambda at: at.amplitudes[0, 0],
+    "rate of friction, s/m": lambda at: (at.dry_friction.rate, at.dry_friction.slow, at.dry_friction.fast),
+    "amplitude, m/s^2": lambda at: (at.amplitudes[0, 0], at.friction_coefficient),
     "vertical loading, m/s^2": lambda at: at.amplitudes[2, 0],
-    "rho, m": lambda at: at.radius,
+    "rho, m": lambda at: (at.radius, np.abs(at.amplitudes).max()),
     "travel, m": lambda at: at.isolator.travel,
     "bodies N": lambda at: len(at.bodies),
     "total mass, kg": lambda at: at.total_mass,
     "platform's share of the mass": lambda at: at.masses[0] / at.total_mass,
     "link periods, s": lambda at: at.bodies[1].period[0],
+    "damping of the links, of critical": lambda at: (*np.unique(at.bodies[1].damping), at.bodies[1].period[0]),
+    "axial stiffness of the bars, N": lambda at: at.bodies[1].bars.axial_stiffness,
+    "harmonics": lambda at: 1.0 / np.array(at.excitation.periods),
     "load over the buckling load of bars": lambda at: 9.81 / (4.0 * np.pi**2 * at.bodies[1].bars.bending_stiffness),
     "decay, 1/s": lambda at: at.excitation.decay[1],
     "duration, s": lambda at: at.duration,
@@ -110,20 +119,23 @@ QUANTITIES = {
 
 
 def test_a_row_has_the_quantity_that_it_names():
-    seen = set()
-    for row in list_extreme_cases():
-        number = row.title.replace("-g exactly", "9.81").partition(",")[0]
-        if row.group in QUANTITIES and re.fullmatch(r"[-+.\de]+|inf", number) and not row.invalid:
-            found = QUANTITIES[row.group](analysis.make_extreme_scene(row.scene))
-            assert found == pytest.approx(float(number), rel=1e-2), row.name
+    every, seen = list(list_extreme_cases()), set()
+    for row in every:
+        title = row.title.replace("-g exactly", "9.81")
+        numbers = [float(each) for each in re.findall(r"(?<![\w.^])(?:\d[.\d]*(?:e[-+]?\d+)?|inf)", title)]
+        if row.group in QUANTITIES and numbers and not row.invalid:
+            found = np.ravel(QUANTITIES[row.group](analysis.make_extreme_scene(row.scene)))
+            assert found[: len(numbers)] == pytest.approx(numbers, rel=1e-2), row.name
             seen.add(row.group)
         for key in ("regularization", "cutoff", "contact_stiffness", "step", "tolerance"):
             if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
                 assert row.settings[key] == pytest.approx(float(row.title)), row.name
     assert seen == {*QUANTITIES}
-    asked = {
-        ((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(list(list_extreme_cases()))
-    }
+    cells = [((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(every)]
+    asked = {*cells}
+    assert (len(every), len(cells), len(asked)) == (171, 609, 609), "no two are called alike"
+    for column in COLUMNS:
+        assert all(finer <= 0.1 * column.tolerance * (1.0 + 1e-9) for _, _, finer in column.finer), column.key
     assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
@@ -149,7 +161,9 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
     assert counts.endswith(": 1 converged, 1 refused, 1 limit, 1 FAILED.")
     monkeypatch.setattr(analysis.Extremes, "collect", lambda *rest: FOUND)
     main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor)
-    assert "1.0 s of processor time: 1 converged, 0 refused, 1 limit, 1 FAILED" in capsys.readouterr().out
+    counts = "1 converged, 0 refused, 1 limit, 1 FAILED"
+    assert f"1.0 s of processor time: {counts}" in capsys.readouterr().out
+    assert FOUND.count_line == f"3 cells: {counts}"
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,7 +23,17 @@ from comparison.evidence.tradeoff.growth import (
     split_upper_body,
 )
 from comparison.evidence.tradeoff.settings import QUESTIONS, REFERENCE_RUN, Setting, TradeoffQuestion, list_settings
-from comparison.evidence.tradeoff.trade import find_error_quantile, is_pareto_optimal, load_trades, mark_pareto_fronts
+from comparison.evidence.tradeoff.trade import (
+    FILE,
+    SCHEMA,
+    TradeFile,
+    find_error_quantile,
+    is_pareto_optimal,
+    load_trades,
+    mark_pareto_fronts,
+)
+from comparison.evidence.tradeoff.trade import STORED as TRADES
+from comparison.runner.output import publish_files
 from comparison.study.batches import import_function
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
@@ -157,10 +167,12 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "list_questions", lambda scene: [question])
+    publish_files(tmp_path / "out", {FILE: TRADES.as_json(TradeFile(SCHEMA, [known_trade("fig3-II")]))}, "a test")
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
     assert f"{load_scene('fig3-I').title} (fig3-I)" in capsys.readouterr().out.splitlines()
-    (first,) = load_trades(tmp_path / "out")
+    before, first = load_trades(tmp_path / "out")
+    assert (before.scene, len(before.entries)) == ("fig3-II", 2), "other scenes keep theirs"
     assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
@@ -170,7 +182,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
     monkeypatch.setattr(analysis, "import_function", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
-    (again,) = load_trades(tmp_path / "out")
+    _, again = load_trades(tmp_path / "out")
     assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
 
 
@@ -207,17 +219,22 @@ def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureF
 
 
 def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    pairs_of_call = set()
+
     def measured(measurement: Measurement) -> SettingResult:
         """A second for every body of every phase pair."""
         mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
+        pairs_of_call.add((measurement.function[0], len(mu)))
         return SettingResult(mu, mu, float(mu.size), np.nan)
 
     monkeypatch.setattr(growth, "measure_setting", measured)
-    few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
+    few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 18))]
     monkeypatch.setattr(growth, "QUANTITIES", few)
     *bodies, pairs = computed(CostGrowth(SCENE))
     assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
-    assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
+    assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 36.0])
+    equations = [("reference:amplification", count) for count in (16, 4, 18)]
+    assert pairs_of_call == {*equations, ("multibody:amplification", 1)}
 
 
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
@@ -229,7 +246,9 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
     assert found.series == [bodies, workers]
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    *lines, last = capsys.readouterr().out.splitlines()
+    assert last == f"Growth: {tmp_path / growth.FILE}"
+    rows = [line.split() for line in lines]
     assert ["bodies", "exact", "2", "0.5"] in rows
     assert ["bodies", "exact", "8", "8", "2.00", "±", "0.00"] in rows, "the slope stands in the last row"
     assert ["workers", "exact", "2", "no", "answer"] in rows

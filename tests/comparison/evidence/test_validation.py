@@ -143,6 +143,18 @@ def test_the_numbers_of_a_motion_have_its_errors():
     assert np.isnan(np.concatenate(table.read_motion_values(ended, np.asarray, 2))).all()
 
 
+@pytest.mark.parametrize(("weights", "chosen"), [((0.45, 0.15, 0.25), 0.25), ((0.45, 0.15, 0.35), 0.15)])
+def test_the_ratio_is_fitted_to_the_disc_of_250_g_or_to_the_lightest(monkeypatch, weights, chosen):
+    monkeypatch.setattr(frame, "fold_run", lambda weight: SimpleNamespace(run=SimpleNamespace(weight=weight)))
+
+    def fit(cycles, start):
+        raise LookupError(cycles.run.weight)
+
+    monkeypatch.setattr(frame, "fit_run", fit)
+    with pytest.raises(LookupError, match=f"^{chosen}$"):
+        frame.compare_frame(weights)
+
+
 def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     """In place of the equations a cycle 10 scale cos - 8 ratio disc sin, mm; ratios as the power 0.15 of the weight."""
     turn = 2.0 * np.pi * np.arange(frame.CYCLE_SAMPLES) / frame.CYCLE_SAMPLES

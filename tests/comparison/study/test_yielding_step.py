@@ -67,6 +67,7 @@ def test_words_are_those_of_the_law() -> None:
     assert readings_of([RIGID, small], SOFT) == ["as integrated"]
     assert readings_of([small], SOFT) == []
     assert readings_of([SMALL], PLAIN) == ["literal supremum"]
+    assert readings_of([SMALL, RIGID, SMALL], PLAIN) == ["literal supremum", "as integrated"]
 
 
 @pytest.mark.parametrize(
