@@ -1,6 +1,7 @@
 """The measured trade and how the cost grows: fronts, errors along every parameter, checked solutions, known slopes."""
 
 import inspect
+import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -170,7 +171,10 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     publish_files(tmp_path / "out", {FILE: TRADES.as_json(TradeFile(SCHEMA, [known_trade("fig3-II")]))}, "a test")
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
-    assert f"{load_scene('fig3-I').title} (fig3-I)" in capsys.readouterr().out.splitlines()
+    lines = capsys.readouterr().out.splitlines()
+    begin = lines.index(f"{load_scene('fig3-I').title} (fig3-I)")
+    assert lines[begin + 1] == "Unless they are stored: about 908 s with 1 workers.", "nine phase pairs, and imports"
+    assert lines[-1] == f"Trade: {tmp_path / 'out' / FILE}, and SCENE-tradeoff.nc next to it."
     before, first = load_trades(tmp_path / "out")
     assert (before.scene, len(before.entries)) == ("fig3-II", 2), "other scenes keep theirs"
     assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
@@ -209,13 +213,24 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
 
 def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureFixture[str]) -> None:
     first, second = (trade := known_trade("fig3-I")).entries
-    entries = [replace(first, pareto_front=(True, False)), second]
-    command.print_trade(Console(width=200), replace(trade, entries=entries))
-    heads, row = (
-        line.split() for line in capsys.readouterr().out.splitlines() if "median" in line or "one run" in line
-    )
-    assert heads[-9:] == ["mu", "value", "s", "per", "point", "median", "error", "95", "%"]
-    assert row[-6:] == ["1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"]
+    first = replace(first, pareto_front=(True, False))
+    quicker = replace(first, method="other", value=0.5, unit="s", seconds=1e-3, pareto_front=(False, True))
+    (question,) = trade.questions
+    listed = [question, replace(question, key="none", title="nothing", points=7, checks=["it fails", "so does that"])]
+    entries = [first, replace(second, pareto_front=(False, False)), quicker]
+    command.print_trade(Console(width=200), replace(trade, questions=listed, entries=entries))
+    lines = [re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
+    heads = ["on the Pareto front of a mu", "value", "s per point", "median error", "95 %"]
+    assert [line for line in lines if not {*line[0]} <= {"─"}] == [
+        ["fig3-I, exact equations: 3 phase pairs"],
+        ["reference solution: the reference; it agrees <with itself>"],
+        heads,
+        ["other", "5e-01 s", "0.0010", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["reference, one run", "1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["fig3-I, nothing: 7 phase pairs"],
+        ["reference solution: the reference; it fails; so does that"],
+        heads,
+    ]
 
 
 def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -216,6 +216,10 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     lines = {line["name"]: line["y"] for line in plot["plot"]["series"]}
     assert lines["measured"] == pytest.approx(cycle(frame.Setup(ratio=RATIO)).tolist(), abs=1e-9)
     assert lines["equations"] == pytest.approx(lines["measured"], abs=1e-3)
+    for counts, marks in (((199, 9, 199), True), ((9, 200, 9), False)):
+        few = [replace(curve, x=[0.0] * count, y=[0.0] * count) for curve, count in zip(found.curves, counts)]
+        (panel,) = make_experiment_panels(Validation([], [], [], [], few, {}))
+        assert [line["marks"] for line in panel["plot"]["series"]] == [marks] * 3
     off = [8.0 * RATIO * (change**0.15 - 1.0) / math.sqrt(2.0) for change in (1.0, 1.4, 1.8)]
     for residual, expected, row in zip(found.residuals, off, (first, constant, rows["frame, 450 g", "half range"])):
         assert residual.share == pytest.approx(expected / row.measured, abs=1e-4), "rms over the half range"
