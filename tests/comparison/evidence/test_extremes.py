@@ -21,7 +21,7 @@ from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
 from comparison.runner.task import TaskResult
-from reference.problem import Outcome
+from reference.problem import Outcome, SceneError
 
 
 class Ending(ThreadPoolExecutor):
@@ -118,6 +118,21 @@ QUANTITIES = {
 }
 
 
+REFUSALS = {
+    "1.000001": "bodies.1.bars: weight on each bar in N = 2.4525: must be below pi^2 E J / l^2",
+    "1, under a body 6 m above": "the bodies topple under their weight",
+    "0.5": "the support at [-0.7071, -0.7071] would carry nothing",
+    "1": "the support at [-0.7071, -0.7071] would carry nothing",
+    "on one line": "isolator.supports = [[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]]: the supports are on one line",
+    "friction -0.1": "isolator.friction = -0.1: must be",
+    "mass 0": "bodies.0.mass = 0.0: must be",
+    "duration 0": "duration = 0.0: must be",
+    "travel beyond the radius": "isolator.travel = 0.3: must be below the radius",
+    "radius beyond double precision": "isolator.period = 1e+200: must be",
+    "amplitude not a number": "excitation.amplitudes.0.0 = nan: must be",
+}
+
+
 def test_a_row_has_the_quantity_that_it_names():
     every, seen = list(list_extreme_cases()), set()
     for row in every:
@@ -134,6 +149,11 @@ def test_a_row_has_the_quantity_that_it_names():
     cells = [((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(every)]
     asked = {*cells}
     assert (len(every), len(cells), len(asked)) == (171, 609, 609), "no two are called alike"
+    refused = {row.title: row.scene for row in every if row.invalid and not row.settings}
+    assert refused.keys() == REFUSALS.keys()
+    for title, stated in refused.items():
+        with pytest.raises(SceneError, match=re.escape(REFUSALS[title])):
+            analysis.make_extreme_scene(stated)
     for column in COLUMNS:
         assert all(finer <= 0.1 * column.tolerance * (1.0 + 1e-9) for _, _, finer in column.finer), column.key
     assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
