@@ -142,6 +142,10 @@ def test_a_row_has_the_quantity_that_it_names():
             found = np.ravel(QUANTITIES[row.group](analysis.make_extreme_scene(row.scene)))
             assert found[: len(numbers)] == pytest.approx(numbers, rel=1e-2), row.name
             seen.add(row.group)
+        if row.group == "rho, m" and not row.invalid:
+            at = analysis.make_extreme_scene(row.scene)
+            rise = 0.0 if at.flat else max(at.radius - 0.25, 0.0)
+            assert [body.height for body in at.bodies] == pytest.approx([0.2 + rise, 1.2 + rise]), row.name
         for key in ("regularization", "cutoff", "contact_stiffness", "step", "tolerance"):
             if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
                 assert row.settings[key] == pytest.approx(float(row.title)), row.name
@@ -149,6 +153,13 @@ def test_a_row_has_the_quantity_that_it_names():
     cells = [((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(every)]
     asked = {*cells}
     assert (len(every), len(cells), len(asked)) == (171, 609, 609), "no two are called alike"
+    tasks = analysis.Extremes(every, limit=7.0).tasks()
+    assert {(task.argument.row.quick, task.argument.column.key, task.seconds, task.timeout) for task in tasks} == {
+        *((True, column.key, column.seconds, 7.0) for column in COLUMNS),
+        *((False, column.key, 30.0, 7.0) for column in COLUMNS[:4]),
+    }
+    waiting = {(task.argument.column.key, task.needs_compiled_reference) for task in tasks}
+    assert waiting == {(column.key, column.key != "spatial") for column in COLUMNS}, "they ask no equations"
     refused = {row.title: row.scene for row in every if row.invalid and not row.settings}
     assert refused.keys() == REFUSALS.keys()
     for title, stated in refused.items():

@@ -94,6 +94,8 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
             ("v_reg", 0.1, (0.0, 0.0)),
         )
     ]
+    entries.append(replace(entries[0], method="SciPy DOP853", most=(1e-9, 1e-9), question="regularised"))
+    entries.append(replace(entries[0], method="SciPy DOP853", most=(1e-9, 1e-9), answered=0))
     found = analysis._make_solved_question(QUESTIONS[0], SettingResult(mu, share * mu, 6.0, np.nan), entries)
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
@@ -137,6 +139,9 @@ def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
 
 
 def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
+    pairs = sample_phases(48)
+    assert (pairs[:3] == sample_phases(3)).all(), "the points of a smaller sample are the first of a larger one"
+    assert 0.0 <= pairs.min() < 0.5 < 5.8 < pairs.max(axis=0).min() <= pairs.max() < 2.0 * np.pi
     every = list_settings(load_scene("fig3-I"))
     for question in QUESTIONS:
         of_question = [setting for setting in every if setting.question == question.key]
