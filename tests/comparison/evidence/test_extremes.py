@@ -16,7 +16,7 @@ from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.columns import COLUMNS
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
-from comparison.evidence.extremes.matrix import CellVerdict
+from comparison.evidence.extremes.matrix import STORED, CellVerdict
 from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
@@ -185,7 +185,8 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
     plain = replace(PLAIN, columns=tuple(each.key for each in columns))
     monkeypatch.setattr("comparison.evidence.extremes.command.COLUMNS", columns)
     monkeypatch.setattr("comparison.evidence.extremes.command.list_extreme_cases", lambda: iter([plain]))
-    assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
+    assert main(["--jobs", "1", "--limit", "7", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
+    assert STORED.load(tmp_path / "report").run["limit"] == 7.0
     limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
     assert limit == "limit: anything plain, unable: step limit"
     assert failed == "FAILED: anything plain, calls_nan_ok: ok, but no finite number"

@@ -30,6 +30,7 @@ from comparison.evidence.tradeoff.trade import (
     TradeFile,
     find_error_quantile,
     is_pareto_optimal,
+    label_values,
     load_trades,
     mark_pareto_fronts,
 )
@@ -186,6 +187,10 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
     assert np.stack([values["alpha1"], values["alpha2"]], axis=1).tolist() == sample_phases(3).tolist()
+    stated = {name: values[name].values.tolist() for name in ("value", "question", "method", "parameter", "unit")}
+    assert stated == {"value": list(gaps), "question": ["exact"] * 2, "method": ["one"] * 2, "parameter": ["gap"] * 2,
+                      "unit": [""] * 2}  # fmt: skip
+    assert values["seconds"].values.tolist() == [entry.seconds for entry in first.entries]
     assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
     assert (values["reference_solution"] == 1.0).all()
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
@@ -193,6 +198,13 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     assert command.main(words, ThreadPoolExecutor) == 0
     _, again = load_trades(tmp_path / "out")
     assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
+
+
+def test_a_question_with_fewer_points_leaves_the_rest_open() -> None:
+    entries, phases = known_trade("fig3-I").entries, sample_phases(3)
+    known = label_values(entries, {"mu": [np.full((3, 2), 1.5), np.full((2, 2), 2.5)]}, phases)
+    assert known["mu"][:, :, 1].values.tolist() == [[1.5] * 3, [2.5, 2.5, pytest.approx(np.nan, nan_ok=True)]]
+    assert known["alpha2"].values.tolist() == phases[:, 1].tolist()
 
 
 def test_a_known_slope_is_found_in_the_larger_half() -> None:
