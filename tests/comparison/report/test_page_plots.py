@@ -67,6 +67,10 @@ def test_a_method_is_a_curve_of_the_platform_and_of_the_last_body() -> None:
     )
     first, last = (panel["plot"] for panel in make_tradeoff_panels(trade))
     assert [line["name"] for line in first["series"]] == ["plain", "fast"]
+    assert (first["bands"], last["bands"]) == ([{"from": 1e-30, "to": 1e-9}],) * 2, "below the reference's own error"
+    many = [replace(good, method=f"method {number}") for number in range(9)]
+    panels = make_tradeoff_panels(replace(trade, entries=many))
+    assert [len(panel["plot"]["series"]) for panel in panels] == [MAX_CURVES] * 2, "more cannot be told apart"
     assert last["label"] == "fig3-I, exact equations, mu_3: relative error over processor time; fast, plain, model"
     assert (last["x"]["title"], last["y"]["title"]) == ("processor time per point, s", "relative error, 95 %")
     titles = [f"fast, tolerance {value}: 3.0e-04 in 10 ms" for value in ("0.001", "0.01")]
@@ -93,15 +97,6 @@ def test_the_cost_is_drawn_by_what_grows_with_its_slopes() -> None:
         ("duration", {"title": "duration, s", "log": True}, {"title": "processor time, s", "log": True}),
     ]
     assert workers["plot"]["series"][0]["color"] == 2, "that of its model"
-
-
-def test_no_panel_has_more_curves_than_can_be_told_apart() -> None:
-    many = [_entry(f"method {number}", 0.1, 1e-3) for number in range(9)]
-    panels = make_tradeoff_panels(replace(TRADE, entries=many))
-    assert [len(panel["plot"]["series"]) for panel in panels] == [MAX_CURVES] * 2, "the platform and the last body"
-    lines = [line for each in panels for line in each["plot"]["series"]]
-    assert all(line["y"] == [1e-3] for line in lines), "what 95 % of the points meet"
-    assert panels[1]["plot"]["bands"] == [{"from": 1e-30, "to": QUESTION.error}], "below the reference's own error"
 
 
 def test_trends_of_a_scene_and_parameter_share_a_panel() -> None:
