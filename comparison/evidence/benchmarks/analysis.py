@@ -143,7 +143,7 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
         if case.difference:
             return MODEL_EXPLANATION
         (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]
-        same = replace(row, published=smoothed, uncertainty=smoothed_error, numbers={})
+        same = replace(row, published=smoothed, uncertainty=smoothed_error)
         return FRICTION_EXPLANATION if code != EQUATIONS and same.judge(value, error) == MET else ""
 
     return replace(row, numbers={side: read_number(side) for side in numbers})

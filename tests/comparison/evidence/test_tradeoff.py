@@ -149,6 +149,11 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
         side = "multibody" if question.key == "spatial" else "reference"
         held = [setting.value for setting in of_question if setting.controlled and side in setting.function]
         assert question.reference_solution[1]["tolerance"] <= 1.0001e-2 * min(held)
+    quick: dict[str, set[float]] = {}
+    for each in list_settings(SCENE, quick=True):
+        quick.setdefault(each.method, set()).add(each.value)
+    names = "translational engine, one run: step", "SciPy LSODA", "SciPy Radau", "Exudyn, RK44"
+    assert [quick[name] for name in names] == [{8.0, 1.0}, {1e-4, 1e-10}, {1e-4, 1e-8}, {4e-4, 1e-4}]
     loosest = {each.method: each.value for each in reversed(every) if each.question == "exact"}
     assert [loosest[f"reference, {runs}"] for runs in ("two runs and an estimate", "one run")] == [1e-2, 1e-1]
     for each in every:
@@ -222,6 +227,8 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
     heights = [body.height for body in scene.bodies]
     assert (len(heights), heights) == (6, sorted(heights))
     assert scene.isolator.ring >= 6.0
+    bare = SCENE.with_values({"bodies.1.height": None})
+    assert [body.height for body in split_upper_body(bare, 3).bodies[1:]] == [1.0, 2.0]
     assert scene.masses[1:].tolist() == pytest.approx([SCENE.masses[1] / 5.0] * 5)
     assert scene.amplitudes.tolist() == (3.0 * SCENE.amplitudes).tolist(), "else friction holds it"
     assert [(each.name, each.unit) for each in QUANTITIES] == [("bodies", ""), ("duration", "s"), ("phase pairs", "")]
