@@ -104,6 +104,7 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[
     ]  # fmt: skip
     text = " ".join(run.out.split())
     assert "Analyses (tasks): held-out phases (0), pictures (chosen by the surfaces)." in text
+    assert "Not in the report: surfaces (not asked for), motions (not asked for)" in text
     levels = [f"equations 16 x 16 phases, translational engine {n} x {n} phases, spatial engine 4 x 4" for n in (8, 16)]
     assert f"Level 1 of 3: {levels[0]} phases. Level 2 of 3: {levels[1]} phases. Level 3 of 3: {levels[1]}" in text
     # 16 x 16 phase pairs at 0.06 s and 4 x 4 at 0.22 s of both scenes, the equations, two analyses, modules and report
@@ -128,7 +129,9 @@ def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[...
     run = command(*SMALL, "--plan", "--max-work", "1000", hierarchy=MODEL_HIERARCHY)
     assert "fig3-I, translational engine: refused before any step" in run.out
     assert "a phase pair may take 1e+03" in run.out
-    assert "refused" not in command(*SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
+    both = command("synthetic-pair", *SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
+    assert "refused" not in both
+    assert "A recorded motion has no phases: one point per model.\n" in both
 
 
 def test_a_scene_is_told_what_the_spatial_model_lacks(command: Callable[..., Run], tmp_path: Path) -> None:

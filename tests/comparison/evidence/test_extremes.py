@@ -200,15 +200,18 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
     brief, asked = analysis.make_extreme_scene(make_baseline_scene(duration=0.5)), {}
-    usual = multibody.levels(brief, "translational", 1e-2, 1e-3)[0]
-    monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(first=levels[0]))
+    usual, *more = multibody.levels(brief, "translational", 1e-2, 1e-3)
+    monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(levels=levels))
     amplification(brief, [(0.3, 1.1)], contact_stiffness=1e4)
-    assert asked["first"].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
+    assert asked["levels"][0].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
+    first, *found = (level.penetration for level in asked["levels"])
+    shares = zip(found, more, (1.0 / 3.0, 2.0 / 3.0, 1.0, 1.0, 1.0))
+    assert all(got == pytest.approx(first ** (1.0 - s) * level.penetration**s) for got, level, s in shares)
     amplification(brief, [(0.3, 1.1)], step=0.1)
-    assert asked["first"].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
-    longer = asked["first"].step / usual.step
-    assert asked["first"].error_floor / usual.error_floor == pytest.approx(longer**2)
-    assert asked["first"].max_divisions - usual.max_divisions == np.ceil(np.log(longer) / np.log(4.0))
+    assert asked["levels"][0].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
+    longer = asked["levels"][0].step / usual.step
+    assert asked["levels"][0].error_floor / usual.error_floor == pytest.approx(longer**2)
+    assert asked["levels"][0].max_divisions - usual.max_divisions == np.ceil(np.log(longer) / np.log(4.0))
 
 
 def test_the_engine_does_the_work_that_a_row_allows(monkeypatch: pytest.MonkeyPatch) -> None:
