@@ -160,7 +160,7 @@ def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path
 
 
 def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     usual = parse_options([])
@@ -168,6 +168,11 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
     assert (usual.grid, usual.tolerance, usual.out, usual.jobs) == (48, 1e-3, Path("report"), count_cores())
     assert (usual.budget, usual.max_work, usual.scheduler, usual.models) == (None, None, None, ())
     assert not any((usual.check, usual.plan, usual.fresh, usual.full))
+    with pytest.raises(SystemExit):
+        parse_options(["--help"])
+    text = " ".join(capsys.readouterr().out.split())
+    assert "exact, small-resolved, resolved, small-regularised, regularised (default regularised); repeatable" in text
+    assert "asked of every mu; the equations are asked for 1e-6 or better (default 0.001)" in text
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)  # as on macOS and Windows
     for count, cores in ((7, 7), (None, 1)):
         monkeypatch.setattr(os, "cpu_count", lambda count=count: count)

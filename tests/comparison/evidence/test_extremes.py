@@ -119,18 +119,14 @@ QUANTITIES = {
 
 
 REFUSALS = {
-    "1.000001": "bodies.1.bars: weight on each bar in N = 2.4525: must be below pi^2 E J / l^2",
-    "1, under a body 6 m above": "the bodies topple under their weight",
-    "0.5": "the support at [-0.7071, -0.7071] would carry nothing",
-    "1": "the support at [-0.7071, -0.7071] would carry nothing",
-    "on one line": "isolator.supports = [[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]]: the supports are on one line",
-    "friction -0.1": "isolator.friction = -0.1: must be",
-    "mass 0": "bodies.0.mass = 0.0: must be",
-    "duration 0": "duration = 0.0: must be",
+    "1.000001": "bodies.1.bars: weight on each bar in N", "1, under a body 6 m above": "topple under their weight",
+    "0.5": "[-0.7071, -0.7071] would carry nothing", "1": "[-0.7071, -0.7071] would carry nothing",
+    "on one line": "the supports are on one line", "friction -0.1": "isolator.friction = -0.1: must",
+    "mass 0": "bodies.0.mass = 0.0: must", "duration 0": "duration = 0.0: must",
     "travel beyond the radius": "isolator.travel = 0.3: must be below the radius",
-    "radius beyond double precision": "isolator.period = 1e+200: must be",
-    "amplitude not a number": "excitation.amplitudes.0.0 = nan: must be",
-}
+    "radius beyond double precision": "isolator.period = 1e+200: must",
+    "amplitude not a number": "excitation.amplitudes.0.0 = nan: must",
+}  # fmt: skip
 
 
 def test_a_row_has_the_quantity_that_it_names():

@@ -13,7 +13,7 @@ from known_results import known_trade
 from rich.console import Console
 from scipy.stats import linregress
 
-from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
+from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs, trade
 from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, join_results, make_entry, sample_phases
 from comparison.evidence.tradeoff.growth import (
     QUANTITIES,
@@ -24,17 +24,7 @@ from comparison.evidence.tradeoff.growth import (
     split_upper_body,
 )
 from comparison.evidence.tradeoff.settings import QUESTIONS, REFERENCE_RUN, Setting, TradeoffQuestion, list_settings
-from comparison.evidence.tradeoff.trade import (
-    FILE,
-    SCHEMA,
-    TradeFile,
-    find_error_quantile,
-    is_pareto_optimal,
-    label_values,
-    load_trades,
-    mark_pareto_fronts,
-)
-from comparison.evidence.tradeoff.trade import STORED as TRADES
+from comparison.evidence.tradeoff.trade import find_error_quantile, is_pareto_optimal, load_trades, mark_pareto_fronts
 from comparison.runner.output import publish_files
 from comparison.study.batches import import_function
 from reference import amplification
@@ -73,7 +63,9 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     )
     marked = mark_pareto_fronts([good, lost, uneven, replace(other, model_error=True)], 1)
     assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,), (False,)]
-    assert lost.answered == 2
+    partly = np.array([[1.0, np.nan], [1.0, 1.0]])
+    one = make_entry(SETTING, SettingResult(partly, 0.1 * partly, 1.0, np.nan), np.ones((2, 2)))
+    assert (lost.answered, one.answered) == (2, 1), "a value of every body is an answer"
     assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
     parts = [
         SettingResult(ones[:2], ones[:2], part, step, why) for part, step, why in ((2.0, 0.1, ""), (4.0, 0.3, "no"))
@@ -183,7 +175,8 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "list_questions", lambda scene: [question])
-    publish_files(tmp_path / "out", {FILE: TRADES.as_json(TradeFile(SCHEMA, [known_trade("fig3-II")]))}, "a test")
+    stored = trade.STORED.as_json(trade.TradeFile(trade.SCHEMA, [known_trade("fig3-II")]))
+    publish_files(tmp_path / "out", {trade.FILE: stored}, "a test")
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     monkeypatch.setattr(analysis, "_warmed_functions", set())
     LASTED.clear()
@@ -192,7 +185,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     lines = capsys.readouterr().out.splitlines()
     begin = lines.index(f"{load_scene('fig3-I').title} (fig3-I)")
     assert lines[begin + 1] == "Unless they are stored: about 908 s with 1 workers.", "nine phase pairs, and imports"
-    assert lines[-1] == f"Trade: {tmp_path / 'out' / FILE}, and SCENE-tradeoff.nc next to it."
+    assert lines[-1] == f"Trade: {tmp_path / 'out' / trade.FILE}, and SCENE-tradeoff.nc next to it."
     before, first = load_trades(tmp_path / "out")
     assert (before.scene, len(before.entries)) == ("fig3-II", 2), "other scenes keep theirs"
     assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
@@ -214,7 +207,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
 
 def test_a_question_with_fewer_points_leaves_the_rest_open() -> None:
     entries, phases = known_trade("fig3-I").entries, sample_phases(3)
-    known = label_values(entries, {"mu": [np.full((3, 2), 1.5), np.full((2, 2), 2.5)]}, phases)
+    known = trade.label_values(entries, {"mu": [np.full((3, 2), 1.5), np.full((2, 2), 2.5)]}, phases)
     assert known["mu"][:, :, 1].values.tolist() == [[1.5] * 3, [2.5, 2.5, pytest.approx(np.nan, nan_ok=True)]]
     assert known["alpha2"].values.tolist() == phases[:, 1].tolist()
 
@@ -243,13 +236,13 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
 
 
 def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureFixture[str]) -> None:
-    first, second = (trade := known_trade("fig3-I")).entries
+    first, second = (measured := known_trade("fig3-I")).entries
     first = replace(first, pareto_front=(True, False))
     quicker = replace(first, method="other", value=0.5, unit="s", seconds=1e-3, pareto_front=(False, True))
-    (question,) = trade.questions
+    (question,) = measured.questions
     listed = [question, replace(question, key="none", title="nothing", points=7, checks=["it fails", "so does that"])]
     entries = [first, replace(second, pareto_front=(False, False)), quicker]
-    command.print_trade(Console(width=200), replace(trade, questions=listed, entries=entries))
+    command.print_trade(Console(width=200), replace(measured, questions=listed, entries=entries))
     lines = [re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
     heads = ["on the Pareto front of a mu", "value", "s per point", "median error", "95 %"]
     assert [line for line in lines if not {*line[0]} <= {"─"}] == [

@@ -177,11 +177,9 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     ):
         monkeypatch.setattr(frame, name, known)
     monkeypatch.setattr(frame, "read_last_cycle", lambda motion, frequency: cycle(motion))
-    both = folded(FrameRun(0.25, *np.zeros((3, 1))))
-    wider = both._replace(motions=np.array([cycle(frame.Setup(ratio=0.25, scale=1.02))] * 3))
-    assert frame.fit_inputs(wider, frame.Setup(), "ratio", "scale")[0] == pytest.approx(
-        frame.Setup(ratio=0.25, scale=1.02), abs=1e-6
-    )
+    wide = frame.Setup(ratio=0.25, scale=1.02)
+    run = folded(FrameRun(0.25, *np.zeros((3, 1))))._replace(motions=np.array([cycle(wide)] * 3))
+    assert frame.fit_inputs(run, frame.Setup(), "ratio", "scale")[0] == pytest.approx(wide, abs=1e-6)
     found = frame.compare_frame([FrameRun(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
     rows = {(each.experiment, each.name): each for each in found.quantities}
     uses = {title: each.use for (title, name), each in rows.items() if name == "half range"}

@@ -4,12 +4,8 @@ from dataclasses import replace
 
 from known_results import known_growth
 
-from comparison.evidence.tradeoff.feature import (
-    make_growth_panels,
-    make_tradeoff_panels,
-    word_fastest_methods,
-    word_trades,
-)
+from comparison.evidence.tradeoff import feature
+from comparison.evidence.tradeoff.feature import make_tradeoff_panels, word_fastest_methods, word_trades
 from comparison.evidence.tradeoff.trade import MeasuredSetting, SceneTrade, SolvedQuestion
 from comparison.evidence.trend_feature import make_trend_panels
 from comparison.evidence.trends import Trend
@@ -34,9 +30,8 @@ def test_the_answer_is_the_cheapest_method_within_the_error() -> None:
     """One without an estimate is the last resort; one that lacks values or has a model's error is not named."""
     slow, fast = replace(SLOW, most=(1e-7, 5e-7)), replace(FAST, most=(5e-4, 5e-3))
     quick = replace(FAST, method="quick", seconds=1.234e-3, controlled=False, most=(2e-4, 1e-4), unit="m/s")
-    none, other = (
-        replace(SLOW, method="none", seconds=1e-4, **key) for key in ({"answered": 3}, {"model_error": True})
-    )
+    none = replace(SLOW, method="none", seconds=1e-4, answered=3)
+    other = replace(none, answered=4, model_error=True)
     unknown = replace(SLOW, seconds=1e-4, most=(1e-9, None))
     of_slow = "; ".join(f"for {error} ask slow, tolerance 1e-07 (200 ms)" for error in ("1e-03", "1e-04", "1e-06"))
     of_fast = "for 1e-02 ask fast, tolerance 0.001 (10 ms)"
@@ -62,9 +57,8 @@ def test_a_method_is_a_curve_of_the_platform_and_of_the_last_body() -> None:
     good, model, lost = (replace(each, **three, **front) for each in (FAST, SLOW, replace(FAST, answered=3)))
     model = replace(model, method="model", model_error=True, most=(None, 1e-3, 0.0))
     plain = replace(good, method="plain", seconds=0.5, unit="s", pareto_front=(True, False, False))
-    trade = replace(
-        TRADE, bodies=3, entries=[model, plain, good, replace(lost, method="lost"), replace(good, value=1e-2)]
-    )
+    entries = [model, plain, good, replace(lost, method="lost"), replace(good, value=1e-2)]
+    trade = replace(TRADE, bodies=3, entries=entries)
     first, last = (panel["plot"] for panel in make_tradeoff_panels(trade))
     assert [line["name"] for line in first["series"]] == ["plain", "fast"]
     assert (first["bands"], last["bands"]) == ([{"from": 1e-30, "to": 1e-9}],) * 2, "below the reference's own error"
@@ -85,7 +79,7 @@ def test_a_method_is_a_curve_of_the_platform_and_of_the_last_body() -> None:
 
 def test_the_cost_is_drawn_by_what_grows_with_its_slopes() -> None:
     series = [*known_growth().series, replace(known_growth().series[2], quantity="duration", unit="s")]
-    bodies, workers, duration = make_growth_panels(series)
+    bodies, workers, duration = feature.make_growth_panels(series)
     names = ["engine: slope 2.00 ± 0.00", "slow engine"]
     assert bodies["plot"]["label"] == f"processor time, s over bodies; {'; '.join(names)}"
     assert [(line["name"], line["x"], line["y"], line["color"]) for line in bodies["plot"]["series"]] == [
