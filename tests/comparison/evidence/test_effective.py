@@ -7,15 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy, sliding
+from known_analyses import collected
 
-from comparison.evidence.effective.analysis import (
-    PHASES,
-    EffectiveModelValues,
-    read_scene_values,
-    read_values_back,
-    word_effective,
-)
+from comparison.evidence.effective import analysis
+from comparison.evidence.effective.analysis import PHASES, read_scene_values, read_values_back, word_effective
 from comparison.study.models import EXACT, MODEL_HIERARCHY, RIGID, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
+from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
@@ -30,6 +27,9 @@ def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
     assert values.error_message == ""
     found = [values.radius, values.mass, values.contact, values.friction]
     assert found == pytest.approx([TRUE["radius"], TRUE["mass"], TRUE["mass"] * 9.81, TRUE["friction"]], rel=1e-9)
+    study = Study((load_scene("fig3-I"), load_scene("fig3-II")), 2, 1e-3, [_model(**TRUE)])
+    keys = [(each.scene, each.model) for each in collected(analysis.EffectiveValues(), study)]
+    assert keys == [(scene.name, model) for scene in study.scenes for model in ("scene", "spatial")]
 
 
 def jolted(scene: Scene, phase: Sequence[float], **values: float) -> Trajectory:
@@ -136,8 +136,8 @@ def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
 def test_the_largest_departure_of_any_model_and_scene_is_named() -> None:
     """A plane and a scene without friction state nothing that a departure could be a share of."""
 
-    def told(scene: str, model: str, radius: float, friction: float, mass: float) -> EffectiveModelValues:
-        return EffectiveModelValues(scene, model, radius, friction, mass=mass)
+    def told(scene: str, model: str, radius: float, friction: float, mass: float) -> analysis.EffectiveModelValues:
+        return analysis.EffectiveModelValues(scene, model, radius, friction, mass=mass)
 
     plane = [told("b", "scene", np.inf, 0.0, 3.0), told("b", "exact", 1e3, 0.01, 3.15)]
     listed = [told("a", "scene", 0.25, 0.1, 2.0), told("a", "small", 0.24, np.nan, 2.0),

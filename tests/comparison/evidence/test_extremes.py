@@ -108,6 +108,8 @@ QUANTITIES = {
     "link periods, s": lambda at: at.bodies[1].period[0],
     "damping of the links, of critical": lambda at: (*np.unique(at.bodies[1].damping), at.bodies[1].period[0]),
     "axial stiffness of the bars, N": lambda at: at.bodies[1].bars.axial_stiffness,
+    "positions of supports": lambda at: (
+        9 if len(at.isolator.supports) == 9 else -np.sort(-np.ptp(at.isolator.supports, axis=0))),
     "harmonics": lambda at: 1.0 / np.array(at.excitation.periods),
     "load over the buckling load of bars": lambda at: 9.81 / (4.0 * np.pi**2 * at.bodies[1].bars.bending_stiffness),
     "decay, 1/s": lambda at: at.excitation.decay[1],
@@ -115,7 +117,7 @@ QUANTITIES = {
     "three supports, ring in m": lambda at: at.isolator.ring,
     "offset over the ring": lambda at: np.hypot(*at.offsets[1]) / at.isolator.ring,
     "yaw, rad": lambda at: at.yaws[1],
-}
+}  # fmt: skip
 
 
 REFUSALS = {
