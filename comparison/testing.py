@@ -122,8 +122,8 @@ def _broken_limits(
         hierarchy.append(replace(make_user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
     alike = "like-for-like" if engine is None else ENGINE
-    asked = {name: pairs.get("total" if name.startswith("total") else alike) for name in stated}
-    needed = {model.key for pair in asked.values() if pair for model in (pair.first, pair.second)}
+    asked = {name: pairs["total" if name.startswith("total") else alike] for name in stated}
+    needed = {model.key for pair in asked.values() for model in (pair.first, pair.second)}
     study = Study((scene,), grid, tolerance, [model for model in hierarchy if model.key in needed])
     batches = study.batches()
     answers = [execute_batch(batch) for batch in batches]
@@ -228,12 +228,9 @@ def assert_demands(
 
 
 def _word_breaches(
-    surfaces: xr.Dataset, scene: Scene, pair: Pair | None, name: str, maximum: bool, limit: float
+    surfaces: xr.Dataset, scene: Scene, pair: Pair, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
     """Yield a line for each body beyond the limit, which is on the largest difference or on the median."""
-    if pair is None:
-        yield f"{scene.name}: {name}: the study has no pair of models for it"
-        return
     for body in range(1, len(scene.bodies) + 1):
         step = compute_difference(surfaces, scene.name, pair, body)
         if not step.known.any():

@@ -62,7 +62,7 @@ def compute_tasks(
     """
     Return the results of all tasks of a command, stored or computed. Raises SceneError, EndedEarlyError.
 
-    then: returns the tasks that follow from the results of the others.
+    add_tasks: returns the tasks that follow from the results of the others.
     """
     width = read_number_of_jobs(options)
     out = resolve_destination(options.out)

@@ -19,7 +19,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparison.runner.cache import locate_store
 from comparison.runner.manifest import (
     MANIFEST,
     OwnedFile,
@@ -130,7 +129,6 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
     try:
         existing = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
         tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY_PREFIX).cleanup()
-        locate_store(out.absolute()).exists()
     except OSError as error:
         raise SceneError("command line", option, str(out), f"cannot be written: {error.strerror}") from None
 

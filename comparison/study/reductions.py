@@ -52,8 +52,7 @@ def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, 
         concerned = [model for model, own in zip(models, shares) if own == share]
         yield f"mirrored phases, all but 1/{share:.3g}", _name_models(concerned, models), _word_mirror(scene)
     if has_no_friction_law(scene):
-        others = [model for model in study.hierarchy if model not in models]
-        laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
+        laws = [model for model in study.hierarchy if model.side == "reference" and model not in models]
         if laws:
             yield "laws of friction", _name_models(laws, study.hierarchy), has_no_friction_law(scene).reason
     for what, decided, setting, values in SKIPPED_COMPUTATIONS:

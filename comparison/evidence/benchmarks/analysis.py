@@ -56,11 +56,15 @@ class BenchmarkTable:
 
     def collect(self, results: TaskResults) -> Benchmarks:
         """Return the table of results without the facts of the run, which the command adds."""
-        answers = [
-            {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
-            for case in self.cases
-        ]
-        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
+        return Benchmarks(
+            [
+                _make_benchmark(
+                    case, {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
+                )
+                for case in self.cases
+            ],
+            {},
+        )
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
         seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
@@ -139,7 +143,7 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
         if case.difference:
             return MODEL_EXPLANATION
         (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]
-        same = replace(row, published=smoothed, uncertainty=smoothed_error, numbers={})
+        same = replace(row, published=smoothed, uncertainty=smoothed_error)
         return FRICTION_EXPLANATION if code != EQUATIONS and same.judge(value, error) == MET else ""
 
     return replace(row, numbers={side: read_number(side) for side in numbers})

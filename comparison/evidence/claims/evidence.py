@@ -94,7 +94,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
 
 def make_failed_evidence(question: CaseInReading, failed: TaskResult) -> Evidence:
     """Return evidence without values, for a task that ended without a result."""
-    return Evidence(error_message=failed.reason, case=question.case)
+    return Evidence(error_message=failed.reason)
 
 
 def _measure_motions(scene: Scene) -> tuple[tuple[float, ...], float]:

@@ -1,5 +1,6 @@
 """--check exits 1 when a stated limit is broken, --plan computes nothing, and the closing table has its rows."""
 
+import os
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -103,7 +104,9 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[
     ]  # fmt: skip
     text = " ".join(run.out.split())
     assert "Analyses (tasks): held-out phases (0), pictures (chosen by the surfaces)." in text
-    assert "Level 1 of 3: equations 16 x 16 phases, translational engine 8 x 8 phases, spatial engine 4 x 4" in text
+    assert "Not in the report: surfaces (not asked for), motions (not asked for)" in text
+    levels = [f"equations 16 x 16 phases, translational engine {n} x {n} phases, spatial engine 4 x 4" for n in (8, 16)]
+    assert f"Level 1 of 3: {levels[0]} phases. Level 2 of 3: {levels[1]} phases. Level 3 of 3: {levels[1]}" in text
     # 16 x 16 phase pairs at 0.06 s and 4 x 4 at 0.22 s of both scenes, the equations, two analyses, modules and report
     points = 256 * (2 * 0.06 + 2 * 2 * 0.0005 + 2 * 0.0005 + 2 * 0.001) + 16 * 2 * 0.22
     seconds = 4.0 + (points + 2 * 3.0 + 2 * 3.5) / 2 + 4.0
@@ -126,7 +129,9 @@ def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[...
     run = command(*SMALL, "--plan", "--max-work", "1000", hierarchy=MODEL_HIERARCHY)
     assert "fig3-I, translational engine: refused before any step" in run.out
     assert "a phase pair may take 1e+03" in run.out
-    assert "refused" not in command(*SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
+    both = command("synthetic-pair", *SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
+    assert "refused" not in both
+    assert "A recorded motion has no phases: one point per model.\n" in both
 
 
 def test_a_scene_is_told_what_the_spatial_model_lacks(command: Callable[..., Run], tmp_path: Path) -> None:
@@ -149,11 +154,13 @@ def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path
     out = command(str(tmp_path / "many.toml"), "--plan", hierarchy=MODEL_HIERARCHY).out.splitlines()
     assert len(out) <= 30
     (line,) = [line for line in out if "adding pi to either phase" in line]
-    assert "many[friction=0.052], many[friction=0.053] and 18 more)" in line
+    few = ", ".join(f"many[friction={value}]" for value in ("0.05", "0.051", "0.052", "0.053"))
+    why = "each harmonic has its own axis and none is vertical: adding pi to either phase mirrors the motion"
+    assert line == f"  mirrored phases, all but 1/4 (all models; {few} and 18 more): {why}"
 
 
 def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     usual = parse_options([])
@@ -161,6 +168,15 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
     assert (usual.grid, usual.tolerance, usual.out, usual.jobs) == (48, 1e-3, Path("report"), count_cores())
     assert (usual.budget, usual.max_work, usual.scheduler, usual.models) == (None, None, None, ())
     assert not any((usual.check, usual.plan, usual.fresh, usual.full))
+    with pytest.raises(SystemExit):
+        parse_options(["--help"])
+    text = " ".join(capsys.readouterr().out.split())
+    assert "exact, small-resolved, resolved, small-regularised, regularised (default regularised); repeatable" in text
+    assert "asked of every mu; the equations are asked for 1e-6 or better (default 0.001)" in text
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)  # as on macOS and Windows
+    for count, cores in ((7, 7), (None, 1)):
+        monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
+        assert parse_options([]).jobs == cores
     words = "--grid 3 --tolerance 1e-4 --out r --jobs 5 --budget 60 --max-work 7 --check --fresh --full --amplitude 2"
     asked = parse_options([*words.split(), "fig3-I"])
     assert (asked.grid, asked.tolerance, asked.out, asked.jobs) == (3, 1e-4, Path("r"), 5)

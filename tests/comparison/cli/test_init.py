@@ -82,7 +82,7 @@ def test_the_requirement_is_where_others_find_the_project(
 ) -> None:
     said = {"rev-parse": COMMIT, "branch": "origin/main" if origin else "", "remote": origin}
     monkeypatch.setattr(source, "ask_git", lambda folder, verb, *rest: said[verb])
-    text = json.dumps(recorded or {})
+    text = json.dumps(recorded) if recorded else None  # nothing is recorded of an index or a folder on the path
     monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
     monkeypatch.setattr(source, "CHECKOUT_FOLDER", tmp_path)
     if recorded is None:  # not installed: it runs from a checkout
@@ -141,6 +141,7 @@ REFUSED: dict[str, tuple[Callable[[Path], Path], str]] = {
     "below a file": (lambda file: file / "study", "cannot be written: Not a directory"),
     "a line break": (lambda file: file.with_name("my\nstudy"), "must be a name of printable characters"),
     "the root": (lambda file: Path("/"), "is the root directory: give a directory inside it"),
+    "too long a name": (lambda file: file.with_name("x" * 241), "has a name of more than 240 bytes: give a shorter"),
     "no such place": (lambda file: Path("/proc/no/such"), "cannot be written: "),
 }
 

@@ -15,7 +15,13 @@ from rich.console import Console
 
 import reference
 from comparison.evidence.benchmarks import analysis, readings
-from comparison.evidence.benchmarks.analysis import BenchmarkTable, SideNumbers, _make_benchmark, solve_side
+from comparison.evidence.benchmarks.analysis import (
+    BenchmarkTable,
+    SideNumbers,
+    _make_benchmark,
+    halve_samples,
+    solve_side,
+)
 from comparison.evidence.benchmarks.cases import (
     MASTODON_EXTREMES,
     BenchmarkCase,
@@ -39,6 +45,7 @@ from comparison.evidence.benchmarks.table import (
 )
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
+from reference.problem import Trajectory
 
 CASES = list_cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
@@ -71,6 +78,7 @@ def test_a_side_that_fails_costs_the_others_nothing():
     broken = replace(BY_NAME["pendulum"], start=((5.0, 0.0),))  # beyond the rim: both sides refuse
     chosen = [broken, *(BY_NAME[name] for name in CHEAP[:2])]
     first, *others = computed(BenchmarkTable(chosen)).benchmarks
+    assert [each.name for each in (first, *others)] == [case.scene.name for case in chosen]
     assert {number.verdict for number in first.rows[0].numbers.values()} == {NOT_COMPARED}
     assert "rim" in first.endings[EQUATIONS]
     _every_number_is_met_or_explained(Benchmarks(others, {}))
@@ -145,6 +153,7 @@ def test_a_number_is_met_within_both_errors():
         EQUATIONS: "not compared", SMOOTHED: f"not met (by +20 %): {FRICTION_EXPLANATION}", ENGINE: "not compared",
     }  # fmt: skip
     assert word_with_error(SideNumber(2.02423, 3e-4, "met")) == "2.0242 ± 3e-04"
+    assert word_with_error(SideNumber(math.pi, 1e-12, "met")) == "3.141593 ± 1e-12"
 
 
 def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
@@ -189,7 +198,8 @@ def test_the_page_in_docs_has_every_benchmark():
 def test_every_number_stands_under_its_side(capsys):
     table = known_benchmarks()
     print_benchmarks(Console(width=200), table)
-    heads, _, cells = (re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()[1:4])
+    *lines, _, about, counts, unexplained = capsys.readouterr().out.splitlines()
+    heads, _, cells = (re.split(r"\s{2,}", line.strip()) for line in lines[1:4])
     assert heads == ["scene", "quantity", "published", "equations", "verdict", "engine", "verdict"]
     numbers = "2.02423 ± 2e-08", "met", "none", "not compared"
     assert cells == ["frame", "isolation period, s", "2.0242", *numbers]
@@ -199,6 +209,38 @@ def test_every_number_stands_under_its_side(capsys):
         "| quantity | published | equations | verdict | equations with the engine's friction | engine | verdict |"
         in word_page(table)
     )
+    assert (about, counts) == ("frame: theirs is heated", "2 published numbers: 1 met, 0 not met, 1 not compared.")
+    assert unexplained == "0 not met and not explained."
+    (known,) = table.benchmarks
+    rows = [replace(known.rows[0], quantity=f"point {number}") for number in (1, 2, 3)]
+    short = "| a <frame>, point 3 | 2.0242 s ± 5e-05 | 2.02423 ± 2e-08, met | none, not compared |"
+    assert f"|---|---|---|---|\n{short}\n\n" in word_page(Benchmarks([replace(known, name="sdnd100", rows=rows)], {}))
+    assert STORED.word_field("numbers") == "numbers; null unless phase-resonance benchmarks left it next to the report"
+
+
+def test_a_known_motion_is_read_as_it_is() -> None:
+    """x = cos t and y = 0.3 sin 2t - 0.1 to 9 s, which is no turning point; the body above is elsewhere."""
+    time = np.linspace(0.0, 9.0, 182)
+    place = np.stack([np.cos(time), 0.3 * np.sin(2.0 * time) - 0.1], axis=1)
+    speed = np.stack([-np.sin(time), 0.6 * np.cos(2.0 * time)], axis=1)
+    position, velocity = (np.stack([part, 5.0 + part**2], axis=1) for part in (place, speed))
+    rest = {"contact_force": time, "stick": [], "status": "ok", "instant": math.nan, "scene": BY_NAME["frame"].scene}
+    motion = Trajectory(time, position, velocity, -position, **rest)
+    assert readings.interpolate_positions(motion, [0.33, 9.0, 9.1]) == pytest.approx(
+        [math.cos(0.33), math.cos(9.0), math.nan], abs=1e-7, nan_ok=True
+    )
+    assert readings.find_position_ranges(motion) == pytest.approx([-1.0, 1.0, -0.4, 0.2], abs=1e-5)
+    assert readings.compute_half_range(motion, 4.0) == pytest.approx(0.5 * (1.0 - math.cos(9.0)), abs=1e-5)
+    assert readings.find_turning_points(motion) == pytest.approx([-1.0, 1.0, math.cos(9.0)], abs=1e-5)
+    assert readings.compute_mean_period(motion) == pytest.approx(2.0 * math.pi, abs=1e-5)
+    dense = np.linspace(1.0, 5.0, 10001)
+    length = np.trapezoid(np.hypot(np.sin(dense), 0.6 * np.cos(2.0 * dense)), dense)
+    assert readings.compute_path_length(motion, 1.0, 5.0) == pytest.approx(length, rel=1e-4)
+    for count, kept in ((182, [*range(0, 181, 2), 181]), (181, [*range(0, 181, 2)])):
+        halved = halve_samples(Trajectory(*(part[:count] for part in (time, position, velocity, -position)), **rest))
+        for found, whole in ((halved.time, time), (halved.position, position), (halved.velocity, velocity)):
+            assert (found == whole[kept]).all()
+        assert (halved.absolute_acceleration == -position[kept]).all()
 
 
 def test_the_largest_error_names_its_side_and_is_the_largest_share_not_the_largest_number():

@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy, sliding
+from known_analyses import collected
 
-from comparison.evidence.effective.analysis import PHASES, read_scene_values, read_values_back
+from comparison.evidence.effective import analysis
+from comparison.evidence.effective.analysis import PHASES, read_scene_values, read_values_back, word_effective
 from comparison.study.models import EXACT, MODEL_HIERARCHY, RIGID, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
+from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
@@ -24,6 +27,9 @@ def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
     assert values.error_message == ""
     found = [values.radius, values.mass, values.contact, values.friction]
     assert found == pytest.approx([TRUE["radius"], TRUE["mass"], TRUE["mass"] * 9.81, TRUE["friction"]], rel=1e-9)
+    study = Study((load_scene("fig3-I"), load_scene("fig3-II")), 2, 1e-3, [_model(**TRUE)])
+    keys = [(each.scene, each.model) for each in collected(analysis.EffectiveValues(), study)]
+    assert keys == [(scene.name, model) for scene in study.scenes for model in ("scene", "spatial")]
 
 
 def jolted(scene: Scene, phase: Sequence[float], **values: float) -> Trajectory:
@@ -108,7 +114,7 @@ def test_a_motion_that_tells_nothing_has_no_value(model: Model, error_message: s
 
 def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
     platform, body = load_scene("fig3-I").model_dump(exclude_none=True)["bodies"]
-    bodies = [platform, {**body, "damping": 0.2}, {**body, "damping": [0.7, 0.3], "height": 2.0 * body["height"]}]
+    bodies = [platform, body, {**body, "damping": [0.7, 0.3], "height": 2.0 * body["height"]}]
     scene = load_scene("fig3-I").with_values({"bodies": bodies, "duration": 2.0})
     assert read_scene_values(scene).damping == 0.7
     models = {model.key: model for model in MODEL_HIERARCHY}
@@ -125,3 +131,17 @@ def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
         own = scene.softened() if "softened" in model.settings else scene
         assert read_values_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key
     assert np.isnan(read_scene_values(load_scene("fig3-I")).stiffness)
+
+
+def test_the_largest_departure_of_any_model_and_scene_is_named() -> None:
+    """A plane and a scene without friction state nothing that a departure could be a share of."""
+
+    def told(scene: str, model: str, radius: float, friction: float, mass: float) -> analysis.EffectiveModelValues:
+        return analysis.EffectiveModelValues(scene, model, radius, friction, mass=mass)
+
+    plane = [told("b", "scene", np.inf, 0.0, 3.0), told("b", "exact", 1e3, 0.01, 3.15)]
+    listed = [told("a", "scene", 0.25, 0.1, 2.0), told("a", "small", 0.24, np.nan, 2.0),
+              told("a", "exact", 0.25, 0.08, 2.02), told("a", "spatial", 0.25, 0.11, 2.0)]  # fmt: skip
+    begin = "largest departures from what the scenes state: "
+    assert word_effective([*listed, *plane]) == f"{begin}radius 4 %, friction 20 %, total mass 5 %"
+    assert word_effective(plane) == f"{begin}radius not compared, friction not compared, total mass 5 %"

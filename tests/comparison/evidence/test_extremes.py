@@ -13,14 +13,15 @@ from known_results import FOUND, PLAIN, fake
 import multibody
 from comparison.evidence.extremes import analysis
 from comparison.evidence.extremes.causes import CAUSES
+from comparison.evidence.extremes.columns import COLUMNS
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
-from comparison.evidence.extremes.matrix import CellVerdict
+from comparison.evidence.extremes.matrix import STORED, CellVerdict
 from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
 from comparison.runner.task import TaskResult
-from reference.problem import Outcome, ground_acceleration
+from reference.problem import Outcome, SceneError, ground_acceleration
 
 
 class Ending(ThreadPoolExecutor):
@@ -39,9 +40,11 @@ class Ending(ThreadPoolExecutor):
 
 
 def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
-    columns = [replace(fake(model), key=model) for model in ("hangs", "crashes", "raises", "honest")]
-    extremes = analysis.Extremes([replace(PLAIN, columns=tuple(each.key for each in columns))], columns, 2.0)
-    (row,) = computed(extremes, Ending).rows
+    asked = "hangs", "crashes", "raises", "honest"
+    columns = [replace(fake(model), key=model) for model in (*asked, "no row of it")]
+    matrix = computed(analysis.Extremes([replace(PLAIN, columns=asked)], columns, 2.0), Ending)
+    assert matrix.columns == dict(zip(asked, asked))
+    (row,) = matrix.rows
     found = {key: (entry.verdict, entry.status, entry.reason) for key, entry in row.entries.items()}
     assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
     assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
@@ -97,6 +100,8 @@ def test_the_equations_fail_at_no_extreme():
     groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
     chosen = [row for row in analysis.select_quick(list(list_extreme_cases())) if row.group in groups]
     assert {row.group for row in chosen} == groups
+    by_engine = {cell.row.group for cell in analysis.list_cells(chosen) if cell.column.key == "translational"}
+    assert by_engine == {"outside the rules"}
     for cell in analysis.list_cells(chosen):
         entry = analysis.solve_cell(cell)
         assert entry.verdict != CellVerdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
@@ -106,38 +111,74 @@ def test_the_equations_fail_at_no_extreme():
 QUANTITIES = {
     "friction": lambda at: at.friction_coefficient,
     "lubrication, s/m": lambda at: at.friction_coefficient,
-    "amplitude, m/s^2": lambda at: at.amplitudes[0, 0],
+    "rate of friction, s/m": lambda at: (at.dry_friction.rate, at.dry_friction.slow, at.dry_friction.fast),
+    "amplitude, m/s^2": lambda at: (at.amplitudes[0, 0], at.friction_coefficient),
     "vertical loading, m/s^2": lambda at: at.amplitudes[2, 0],
-    "rho, m": lambda at: at.radius,
+    "rho, m": lambda at: (at.radius, np.abs(at.amplitudes).max()),
     "travel, m": lambda at: at.isolator.travel,
     "bodies N": lambda at: len(at.bodies),
     "total mass, kg": lambda at: at.total_mass,
     "platform's share of the mass": lambda at: at.masses[0] / at.total_mass,
     "link periods, s": lambda at: at.bodies[1].period[0],
+    "damping of the links, of critical": lambda at: (*np.unique(at.bodies[1].damping), at.bodies[1].period[0]),
+    "axial stiffness of the bars, N": lambda at: at.bodies[1].bars.axial_stiffness,
+    "positions of supports": lambda at: (
+        9 if len(at.isolator.supports) == 9 else -np.sort(-np.ptp(at.isolator.supports, axis=0))),
+    "harmonics": lambda at: 1.0 / np.array(at.excitation.periods),
     "load over the buckling load of bars": lambda at: 9.81 / (4.0 * np.pi**2 * at.bodies[1].bars.bending_stiffness),
     "decay, 1/s": lambda at: at.excitation.decay[1],
     "duration, s": lambda at: at.duration,
     "three supports, ring in m": lambda at: at.isolator.ring,
     "offset over the ring": lambda at: np.hypot(*at.offsets[1]) / at.isolator.ring,
     "yaw, rad": lambda at: at.yaws[1],
-}
+}  # fmt: skip
+
+
+REFUSALS = {
+    "1.000001": "bodies.1.bars: weight on each bar in N", "1, under a body 6 m above": "topple under their weight",
+    "0.5": "[-0.7071, -0.7071] would carry nothing", "1": "[-0.7071, -0.7071] would carry nothing",
+    "on one line": "the supports are on one line", "friction -0.1": "isolator.friction = -0.1: must",
+    "mass 0": "bodies.0.mass = 0.0: must", "duration 0": "duration = 0.0: must",
+    "travel beyond the radius": "isolator.travel = 0.3: must be below the radius",
+    "radius beyond double precision": "isolator.period = 1e+200: must",
+    "amplitude not a number": "excitation.amplitudes.0.0 = nan: must",
+}  # fmt: skip
 
 
 def test_a_row_has_the_quantity_that_it_names():
-    seen = set()
-    for row in list_extreme_cases():
-        number = row.title.replace("-g exactly", "9.81").partition(",")[0]
-        if row.group in QUANTITIES and re.fullmatch(r"[-+.\de]+|inf", number) and not row.invalid:
-            found = QUANTITIES[row.group](analysis.make_extreme_scene(row.scene))
-            assert found == pytest.approx(float(number), rel=1e-2), row.name
+    every, seen = list(list_extreme_cases()), set()
+    for row in every:
+        title = row.title.replace("-g exactly", "9.81")
+        numbers = [float(each) for each in re.findall(r"(?<![\w.^])(?:\d[.\d]*(?:e[-+]?\d+)?|inf)", title)]
+        if row.group in QUANTITIES and numbers and not row.invalid:
+            found = np.ravel(QUANTITIES[row.group](analysis.make_extreme_scene(row.scene)))
+            assert found[: len(numbers)] == pytest.approx(numbers, rel=1e-2), row.name
             seen.add(row.group)
+        if row.group == "rho, m" and not row.invalid:
+            at = analysis.make_extreme_scene(row.scene)
+            rise = 0.0 if at.flat else max(at.radius - 0.25, 0.0)
+            assert [body.height for body in at.bodies] == pytest.approx([0.2 + rise, 1.2 + rise]), row.name
         for key in ("regularization", "cutoff", "contact_stiffness", "step", "tolerance"):
             if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
                 assert row.settings[key] == pytest.approx(float(row.title)), row.name
     assert seen == {*QUANTITIES}
-    asked = {
-        ((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(list(list_extreme_cases()))
+    cells = [((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.list_cells(every)]
+    asked = {*cells}
+    assert (len(every), len(cells), len(asked)) == (171, 609, 609), "no two are called alike"
+    tasks = analysis.Extremes(every, limit=7.0).tasks()
+    assert {(task.argument.row.quick, task.argument.column.key, task.seconds, task.timeout) for task in tasks} == {
+        *((True, column.key, column.seconds, 7.0) for column in COLUMNS),
+        *((False, column.key, 30.0, 7.0) for column in COLUMNS[:4]),
     }
+    waiting = {(task.argument.column.key, task.needs_compiled_reference) for task in tasks}
+    assert waiting == {(column.key, column.key != "spatial") for column in COLUMNS}, "they ask no equations"
+    refused = {row.title: row.scene for row in every if row.invalid and not row.settings}
+    assert refused.keys() == REFUSALS.keys()
+    for title, stated in refused.items():
+        with pytest.raises(SceneError, match=re.escape(REFUSALS[title])):
+            analysis.make_extreme_scene(stated)
+    for column in COLUMNS:
+        assert all(finer <= 0.1 * column.tolerance * (1.0 + 1e-9) for _, _, finer in column.finer), column.key
     assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
@@ -156,27 +197,33 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
     plain = replace(PLAIN, columns=tuple(each.key for each in columns))
     monkeypatch.setattr("comparison.evidence.extremes.command.COLUMNS", columns)
     monkeypatch.setattr("comparison.evidence.extremes.command.list_extreme_cases", lambda: iter([plain]))
-    assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
+    assert main(["--jobs", "1", "--limit", "7", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
+    assert STORED.load(tmp_path / "report").run["limit"] == 7.0
     limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
     assert limit == "limit: anything plain, unable: step limit"
     assert failed == "FAILED: anything plain, calls_nan_ok: ok, but no finite number"
     assert counts.endswith(": 1 converged, 1 refused, 1 limit, 1 FAILED.")
     monkeypatch.setattr(analysis.Extremes, "collect", lambda *rest: FOUND)
     main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor)
-    assert "1.0 s of processor time: 1 converged, 0 refused, 1 limit, 1 FAILED" in capsys.readouterr().out
+    counts = "1 converged, 0 refused, 1 limit, 1 FAILED"
+    assert f"1.0 s of processor time: {counts}" in capsys.readouterr().out
+    assert FOUND.count_line == f"3 cells: {counts}"
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
     brief, asked = analysis.make_extreme_scene(make_baseline_scene(duration=0.5)), {}
-    usual = multibody.levels(brief, "translational", 1e-2, 1e-3)[0]
-    monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(first=levels[0]))
+    usual, *more = multibody.levels(brief, "translational", 1e-2, 1e-3)
+    monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(levels=levels))
     amplification(brief, [(0.3, 1.1)], contact_stiffness=1e4)
-    assert asked["first"].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
+    assert asked["levels"][0].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
+    first, *found = (level.penetration for level in asked["levels"])
+    shares = zip(found, more, (1.0 / 3.0, 2.0 / 3.0, 1.0, 1.0, 1.0))
+    assert all(got == pytest.approx(first ** (1.0 - s) * level.penetration**s) for got, level, s in shares)
     amplification(brief, [(0.3, 1.1)], step=0.1)
-    assert asked["first"].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
-    longer = asked["first"].step / usual.step
-    assert asked["first"].error_floor / usual.error_floor == pytest.approx(longer**2)
-    assert asked["first"].max_divisions - usual.max_divisions == np.ceil(np.log(longer) / np.log(4.0))
+    assert asked["levels"][0].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
+    longer = asked["levels"][0].step / usual.step
+    assert asked["levels"][0].error_floor / usual.error_floor == pytest.approx(longer**2)
+    assert asked["levels"][0].max_divisions - usual.max_divisions == np.ceil(np.log(longer) / np.log(4.0))
 
 
 def test_the_engine_does_the_work_that_a_row_allows(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,7 @@
 """The measured trade and how the cost grows: fronts, errors along every parameter, checked solutions, known slopes."""
 
 import inspect
+import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -12,7 +13,7 @@ from known_results import known_trade
 from rich.console import Console
 from scipy.stats import linregress
 
-from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
+from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs, trade
 from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, join_results, make_entry, sample_phases
 from comparison.evidence.tradeoff.growth import (
     QUANTITIES,
@@ -24,6 +25,7 @@ from comparison.evidence.tradeoff.growth import (
 )
 from comparison.evidence.tradeoff.settings import QUESTIONS, REFERENCE_RUN, Setting, TradeoffQuestion, list_settings
 from comparison.evidence.tradeoff.trade import find_error_quantile, is_pareto_optimal, load_trades, mark_pareto_fronts
+from comparison.runner.output import publish_files
 from comparison.study.batches import import_function
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
@@ -61,7 +63,9 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     )
     marked = mark_pareto_fronts([good, lost, uneven, replace(other, model_error=True)], 1)
     assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,), (False,)]
-    assert lost.answered == 2
+    partly = np.array([[1.0, np.nan], [1.0, 1.0]])
+    one = make_entry(SETTING, SettingResult(partly, 0.1 * partly, 1.0, np.nan), np.ones((2, 2)))
+    assert (lost.answered, one.answered) == (2, 1), "a value of every body is an answer"
     assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
     parts = [
         SettingResult(ones[:2], ones[:2], part, step, why) for part, step, why in ((2.0, 0.1, ""), (4.0, 0.3, "no"))
@@ -83,6 +87,8 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
             ("v_reg", 0.1, (0.0, 0.0)),
         )
     ]
+    entries.append(replace(entries[0], method="SciPy DOP853", most=(1e-9, 1e-9), question="regularised"))
+    entries.append(replace(entries[0], method="SciPy DOP853", most=(1e-9, 1e-9), answered=0))
     found = analysis._make_solved_question(QUESTIONS[0], SettingResult(mu, share * mu, 6.0, np.nan), entries)
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
@@ -126,12 +132,20 @@ def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
 
 
 def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
+    pairs = sample_phases(48)
+    assert (pairs[:3] == sample_phases(3)).all(), "the points of a smaller sample are the first of a larger one"
+    assert 0.0 <= pairs.min() < 0.5 < 5.8 < pairs.max(axis=0).min() <= pairs.max() < 2.0 * np.pi
     every = list_settings(load_scene("fig3-I"))
     for question in QUESTIONS:
         of_question = [setting for setting in every if setting.question == question.key]
         side = "multibody" if question.key == "spatial" else "reference"
         held = [setting.value for setting in of_question if setting.controlled and side in setting.function]
         assert question.reference_solution[1]["tolerance"] <= 1.0001e-2 * min(held)
+    quick: dict[str, set[float]] = {}
+    for each in list_settings(SCENE, quick=True):
+        quick.setdefault(each.method, set()).add(each.value)
+    names = "translational engine, one run: step", "SciPy LSODA", "SciPy Radau", "Exudyn, RK44"
+    assert [quick[name] for name in names] == [{8.0, 1.0}, {1e-4, 1e-10}, {1e-4, 1e-8}, {4e-4, 1e-4}]
     loosest = {each.method: each.value for each in reversed(every) if each.question == "exact"}
     assert [loosest[f"reference, {runs}"] for runs in ("two runs and an estimate", "one run")] == [1e-2, 1e-1]
     for each in every:
@@ -144,8 +158,12 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
     assert len(model_errors) == 2 * 6
 
 
+LASTED: list[float] = []  # durations of the scenes that `_known` was asked for
+
+
 def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6) -> Amplification:
     """mu = 1 + gap at every phase pair."""
+    LASTED.append(scene.duration)
     mu = np.full((len(phases), 2), 1.0 + gap)
     nothing = np.full(len(phases), np.nan)
     return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
@@ -157,21 +175,41 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "list_questions", lambda scene: [question])
+    stored = trade.STORED.as_json(trade.TradeFile(trade.SCHEMA, [known_trade("fig3-II")]))
+    publish_files(tmp_path / "out", {trade.FILE: stored}, "a test")
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
+    monkeypatch.setattr(analysis, "_warmed_functions", set())
+    LASTED.clear()
     assert command.main(words, ThreadPoolExecutor) == 0
-    assert f"{load_scene('fig3-I').title} (fig3-I)" in capsys.readouterr().out.splitlines()
-    (first,) = load_trades(tmp_path / "out")
+    assert [0.2, *[20.0] * 9] == LASTED, "what is compiled on first use is called before it is timed"
+    lines = capsys.readouterr().out.splitlines()
+    begin = lines.index(f"{load_scene('fig3-I').title} (fig3-I)")
+    assert lines[begin + 1] == "Unless they are stored: about 908 s with 1 workers.", "nine phase pairs, and imports"
+    assert lines[-1] == f"Trade: {tmp_path / 'out' / trade.FILE}, and SCENE-tradeoff.nc next to it."
+    before, first = load_trades(tmp_path / "out")
+    assert (before.scene, len(before.entries)) == ("fig3-II", 2), "other scenes keep theirs"
     assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
     assert np.stack([values["alpha1"], values["alpha2"]], axis=1).tolist() == sample_phases(3).tolist()
+    stated = {name: values[name].values.tolist() for name in ("value", "question", "method", "parameter", "unit")}
+    assert stated == {"value": list(gaps), "question": ["exact"] * 2, "method": ["one"] * 2, "parameter": ["gap"] * 2,
+                      "unit": [""] * 2}  # fmt: skip
+    assert values["seconds"].values.tolist() == [entry.seconds for entry in first.entries]
     assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
     assert (values["reference_solution"] == 1.0).all()
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
     monkeypatch.setattr(analysis, "import_function", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
-    (again,) = load_trades(tmp_path / "out")
+    _, again = load_trades(tmp_path / "out")
     assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
+
+
+def test_a_question_with_fewer_points_leaves_the_rest_open() -> None:
+    entries, phases = known_trade("fig3-I").entries, sample_phases(3)
+    known = trade.label_values(entries, {"mu": [np.full((3, 2), 1.5), np.full((2, 2), 2.5)]}, phases)
+    assert known["mu"][:, :, 1].values.tolist() == [[1.5] * 3, [2.5, 2.5, pytest.approx(np.nan, nan_ok=True)]]
+    assert known["alpha2"].values.tolist() == phases[:, 1].tolist()
 
 
 def test_a_known_slope_is_found_in_the_larger_half() -> None:
@@ -189,6 +227,8 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
     heights = [body.height for body in scene.bodies]
     assert (len(heights), heights) == (6, sorted(heights))
     assert scene.isolator.ring >= 6.0
+    bare = SCENE.with_values({"bodies.1.height": None})
+    assert [body.height for body in split_upper_body(bare, 3).bodies[1:]] == [1.0, 2.0]
     assert scene.masses[1:].tolist() == pytest.approx([SCENE.masses[1] / 5.0] * 5)
     assert scene.amplitudes.tolist() == (3.0 * SCENE.amplitudes).tolist(), "else friction holds it"
     assert [(each.name, each.unit) for each in QUANTITIES] == [("bodies", ""), ("duration", "s"), ("phase pairs", "")]
@@ -196,28 +236,44 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
 
 
 def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureFixture[str]) -> None:
-    first, second = (trade := known_trade("fig3-I")).entries
-    entries = [replace(first, pareto_front=(True, False)), second]
-    command.print_trade(Console(width=200), replace(trade, entries=entries))
-    heads, row = (
-        line.split() for line in capsys.readouterr().out.splitlines() if "median" in line or "one run" in line
-    )
-    assert heads[-9:] == ["mu", "value", "s", "per", "point", "median", "error", "95", "%"]
-    assert row[-6:] == ["1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"]
+    first, second = (measured := known_trade("fig3-I")).entries
+    first = replace(first, pareto_front=(True, False))
+    quicker = replace(first, method="other", value=0.5, unit="s", seconds=1e-3, pareto_front=(False, True))
+    (question,) = measured.questions
+    listed = [question, replace(question, key="none", title="nothing", points=7, checks=["it fails", "so does that"])]
+    entries = [first, replace(second, pareto_front=(False, False)), quicker]
+    command.print_trade(Console(width=200), replace(measured, questions=listed, entries=entries))
+    lines = [re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
+    heads = ["on the Pareto front of a mu", "value", "s per point", "median error", "95 %"]
+    assert [line for line in lines if not {*line[0]} <= {"─"}] == [
+        ["fig3-I, exact equations: 3 phase pairs"],
+        ["reference solution: the reference; it agrees <with itself>"],
+        heads,
+        ["other", "5e-01 s", "0.0010", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["reference, one run", "1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["fig3-I, nothing: 7 phase pairs"],
+        ["reference solution: the reference; it fails; so does that"],
+        heads,
+    ]
 
 
 def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    pairs_of_call = set()
+
     def measured(measurement: Measurement) -> SettingResult:
         """A second for every body of every phase pair."""
         mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
+        pairs_of_call.add((measurement.function[0], len(mu)))
         return SettingResult(mu, mu, float(mu.size), np.nan)
 
     monkeypatch.setattr(growth, "measure_setting", measured)
-    few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
+    few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 18))]
     monkeypatch.setattr(growth, "QUANTITIES", few)
     *bodies, pairs = computed(CostGrowth(SCENE))
     assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
-    assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
+    assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 36.0])
+    equations = [("reference:amplification", count) for count in (16, 4, 18)]
+    assert pairs_of_call == {*equations, ("multibody:amplification", 1)}
 
 
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
@@ -229,7 +285,9 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
     assert found.series == [bodies, workers]
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    *lines, last = capsys.readouterr().out.splitlines()
+    assert last == f"Growth: {tmp_path / growth.FILE}"
+    rows = [line.split() for line in lines]
     assert ["bodies", "exact", "2", "0.5"] in rows
     assert ["bodies", "exact", "8", "8", "2.00", "±", "0.00"] in rows, "the slope stands in the last row"
     assert ["workers", "exact", "2", "no", "answer"] in rows

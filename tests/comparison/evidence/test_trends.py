@@ -192,6 +192,7 @@ def test_the_scaled_scene_moves_as_the_scene_scaled(name: str, friction: object)
     scene = load_scene(name).with_values({"duration": 2.0, **({"isolator.friction": friction} if friction else {})})
     larger, smaller = (trajectory(scale_scene(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
     np.testing.assert_allclose(larger, 2.0 * smaller, atol=1e-2 * np.abs(larger).max())
+    assert scale_scene(scene, 1.0).dry_friction == scene.dry_friction
     assert scale_scene(scene.with_values({"isolator.travel": 0.2}), 0.25).isolator.travel == 0.05
 
 

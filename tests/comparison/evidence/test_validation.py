@@ -143,6 +143,18 @@ def test_the_numbers_of_a_motion_have_its_errors():
     assert np.isnan(np.concatenate(table.read_motion_values(ended, np.asarray, 2))).all()
 
 
+@pytest.mark.parametrize(("weights", "chosen"), [((0.45, 0.15, 0.25), 0.25), ((0.45, 0.15, 0.35), 0.15)])
+def test_the_ratio_is_fitted_to_the_disc_of_250_g_or_to_the_lightest(monkeypatch, weights, chosen):
+    monkeypatch.setattr(frame, "fold_run", lambda weight: SimpleNamespace(run=SimpleNamespace(weight=weight)))
+
+    def fit(cycles, start):
+        raise LookupError(cycles.run.weight)
+
+    monkeypatch.setattr(frame, "fit_run", fit)
+    with pytest.raises(LookupError, match=f"^{chosen}$"):
+        frame.compare_frame(weights)
+
+
 def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     """In place of the equations a cycle 10 scale cos - 8 ratio disc sin, mm; ratios as the power 0.15 of the weight."""
     turn = 2.0 * np.pi * np.arange(frame.CYCLE_SAMPLES) / frame.CYCLE_SAMPLES
@@ -165,6 +177,9 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     ):
         monkeypatch.setattr(frame, name, known)
     monkeypatch.setattr(frame, "read_last_cycle", lambda motion, frequency: cycle(motion))
+    wide = frame.Setup(ratio=0.25, scale=1.02)
+    run = folded(FrameRun(0.25, *np.zeros((3, 1))))._replace(motions=np.array([cycle(wide)] * 3))
+    assert frame.fit_inputs(run, frame.Setup(), "ratio", "scale")[0] == pytest.approx(wide, abs=1e-6)
     found = frame.compare_frame([FrameRun(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
     rows = {(each.experiment, each.name): each for each in found.quantities}
     uses = {title: each.use for (title, name), each in rows.items() if name == "half range"}
@@ -204,6 +219,10 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     lines = {line["name"]: line["y"] for line in plot["plot"]["series"]}
     assert lines["measured"] == pytest.approx(cycle(frame.Setup(ratio=RATIO)).tolist(), abs=1e-9)
     assert lines["equations"] == pytest.approx(lines["measured"], abs=1e-3)
+    for counts, marks in (((199, 9, 199), True), ((9, 200, 9), False)):
+        few = [replace(curve, x=[0.0] * count, y=[0.0] * count) for curve, count in zip(found.curves, counts)]
+        (panel,) = make_experiment_panels(Validation([], [], [], [], few, {}))
+        assert [line["marks"] for line in panel["plot"]["series"]] == [marks] * 3
     off = [8.0 * RATIO * (change**0.15 - 1.0) / math.sqrt(2.0) for change in (1.0, 1.4, 1.8)]
     for residual, expected, row in zip(found.residuals, off, (first, constant, rows["frame, 450 g", "half range"])):
         assert residual.share == pytest.approx(expected / row.measured, abs=1e-4), "rms over the half range"

@@ -39,11 +39,13 @@ def test_brackets_in_names_and_titles_are_printed(command: Callable[..., Run], t
     plan = command(scene, "--plan", "--out", str(tmp_path / "[x] y")).out
     assert ("fam" in plan, "[x] y" in plan) == (True, True)
     assert "fam[friction=0.04]" in command(scene, "--grid", "2").out.split("Relative differences")[1]
-    member = tmp_path / "fam[friction=0.04].toml"
-    member.write_text(scene_text(), encoding="utf-8")
-    twice = command(scene, str(member), hierarchy=fake_hierarchy("forbidden"))
-    assert (twice.code, twice.err.count("\n")) == (2, 1)
-    assert twice.err.startswith(f"{member}: scene = 'fam[friction=0.04]': same name as {scene}")
+    for place in ("fam[friction=0.04].toml", "other/fam.toml"):  # of a scene, and of the family alone
+        member = tmp_path / place
+        member.parent.mkdir(exist_ok=True)
+        member.write_text(scene_text(), encoding="utf-8")
+        twice = command(scene, str(member), hierarchy=fake_hierarchy("forbidden"))
+        assert (twice.code, twice.err.count("\n")) == (2, 1)
+        assert twice.err.startswith(f"{member}: scene = {member.stem!r}: same name as {scene}")
 
 
 def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) -> None:

@@ -20,6 +20,7 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
+import xarray as xr
 from fake_models import fake_hierarchy
 from light_tasks import doubled, raises
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ import multibody.models.engine
 from comparison.analyses.motions.analysis import MotionPlace, StoredMotion
 from comparison.evidence.claims.table import has_every_paper_scene
 from comparison.registry import ANALYSES, EVERYTHING, list_first_tasks
+from comparison.runner import environment
 from comparison.runner.cache import FILE_SIGNATURE, Cache, CacheKey
 from comparison.runner.environment import (
     describe_provenance,
@@ -68,6 +70,8 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
         "last bit": _task(SCENE, 1, np.nextafter(0.5, 1.0), array),
         "array": _task(SCENE, 1, 0.5, array + 1e-16 * (array == 0.0)),
         "shape": _task(SCENE, 1, 0.5, array[None]),
+        "data": _task(SCENE, 1, 0.5, xr.Dataset({"one": ("x", array), "other": ("x", array)})),
+        "the last of the data": _task(SCENE, 1, 0.5, xr.Dataset({"one": ("x", array), "other": ("x", array[::-1])})),
         "kind": _task(SCENE, 1, 0.5, array.view(int)),
         "model": replace(task, argument=model),
         "settings of a model": replace(task, argument=replace(model, settings={"gap": 2.0})),
@@ -117,6 +121,10 @@ def test_a_key_names_versions_and_sources_and_a_report_the_commit(monkeypatch: p
         )
         about = describe_provenance()
         assert (about["commit"], about["processors"]) == (commit, str(os.cpu_count()))
+    names = {"processor : 0\nmodel name : A: 1\nmodel name : B": "A: 1", "Features : fp": platform.machine()}
+    for text, name in names.items():
+        monkeypatch.setattr(Path, "read_text", lambda *rest, text=text, **more: text)
+        assert environment._read_processor_name() == name
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,6 +165,12 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path, mon
     trim(2 * sum(sizes))
     assert (aside.exists(), young.exists()) == (False, True), "what a killed run left long ago goes"
     young.unlink()
+    for content, stays in ((b"mine", True), (b"", False)):
+        aside.write_bytes(content)
+        os.utime(aside, (time.time() - 4000.0,) * 2)
+        trim(2 * sum(sizes))
+        assert aside.exists() == stays, "another's file stays, one into which nothing was written is of this program"
+        aside.unlink(missing_ok=True)
     trim(sum(sizes))
     assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing else goes"
     trim(sizes[0] + sizes[2])

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import signal
 import threading
 import time
 from collections.abc import Callable
@@ -77,16 +78,20 @@ def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
 def test_each_level_has_a_whole_report_that_names_it(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write, seen = reports.ReportWriter.write, []
+    write, seen, kept_free, longest = reports.ReportWriter.write, [], [], [0.0]
+    monkeypatch.setattr(Deadline, "keep_free", lambda self, seconds: kept_free.append(seconds))
 
     def noting(self: reports.ReportWriter, complete: reports.CompleteLevel, *rest: Any, **more: Any) -> Any:
+        begin = time.monotonic()
         said = write(self, complete, *rest, **more)
+        longest.append(max(time.monotonic() - begin, *longest))
         seen.append((summary_of(self.place), xr.load_dataset(self.place / "surfaces.nc"), page_of(self.place)))
         return said
 
     monkeypatch.setattr(reports.ReportWriter, "write", noting)
     run = command(*WORDS)
     assert run.code == 0
+    assert [0.0 < seconds <= most for seconds, most in zip(kept_free, longest[1:], strict=True)] == [True] * 3
     for number, grid, (summary, surfaces, page) in zip((1, 2, 3), (8, 24, 24), seen, strict=True):
         assert (summary["run"]["level"], summary["run"]["levels"]) == (number, 3)
         assert surfaces.sizes["alpha1"] == summary["grid"] == grid
@@ -142,6 +147,14 @@ def test_an_end_before_the_first_level_is_one_line(
     run = ended(lambda: command(*WORDS, "--budget", "1000"), 3, error)
     assert (run.code, run.err.count("\n"), run.report.exists()) == (code, 1, False)
     assert said in run.err
+
+
+def test_an_interrupt_before_the_study_is_one_line(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command_module, "parse_options", lambda words: signal.raise_signal(signal.SIGINT))
+    run = command(*WORDS)
+    assert (run.code, run.out, run.err) == (130, "", "interrupted before anything was computed\n")
 
 
 def test_finished_analyses_are_in_the_report_of_a_stopped_run(

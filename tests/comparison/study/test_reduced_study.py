@@ -110,12 +110,15 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     platform = {**load_scene("fig3-I").model_dump(exclude_none=True)["bodies"][0], "height": 0.0}
     scene = short(isolator={"friction": 0.0}).with_values({"bodies": [platform]})
-    assert [(row.what, row.models) for row in list_skipped_computations(Study((scene,), GRID, 1e-3))] == [
+    expected = [
         ("mirrored phases, all but 1/4", "all models"),
         ("laws of friction", "small-resolved, resolved, small-regularised, regularised"),
         ("every run but one per harmonic", "small"),
         ("rotations, all supports but one", "spatial"),
     ]
+    for supports, rows in ((4, expected), (None, expected[:-1])):  # without supports there is no spatial model
+        study = Study((scene.with_values({"isolator.supports": supports}),), GRID, 1e-3)
+        assert [(row.what, row.models) for row in list_skipped_computations(study)] == rows
     assert list_skipped_computations(Study((scene,), GRID, 1e-3, full=True)) == []
     (_, *plane) = list_skipped_computations(Study((load_scene("fig4-dry"),), GRID, 1e-3))
     assert [(row.what, row.models) for row in plane] == [

@@ -1,6 +1,7 @@
 """An engine of the user joins a study, is never more than its numbers allow, and spoils nothing for the others."""
 
 import json
+import os
 import re
 import sys
 from collections.abc import Callable
@@ -32,9 +33,9 @@ from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
 from comparison.runner.environment import fingerprint_engine, hash_source
 from comparison.runner.processes import make_process_pool
 from comparison.study.batches import drop_unusable, execute_batch
-from comparison.study.models import MODEL_HIERARCHY, Model, pairs_of
+from comparison.study.models import MODEL_HIERARCHY, REGULARIZED, RESOLVED, Model, pairs_of
 from comparison.study.study import Study
-from comparison.study.user_models import REFERENCE_MODEL_KEYS, amplification, make_user_model
+from comparison.study.user_models import REFERENCE_MODEL_KEYS, amplification, make_user_model, silence_output
 from comparison.surfaces.budget import list_budget_entries
 from comparison.surfaces.headline import make_headline
 from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
@@ -487,18 +488,27 @@ def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]
 
 def test_extremes_of_its_law_concern_a_user_engine() -> None:
     every = list(list_extreme_cases())
-    met = {cell.row.name for cell in list_cells(every, [make_user_column(supplied("plain"))])}
+    column = make_user_column(supplied("plain"))
+    assert column.finer == tuple(("reference:amplification", REGULARIZED.settings, each) for each in (1e-8, 1e-6))
+    met = {cell.row.name for cell in list_cells(every, [column])}
     alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
     assert met == alike
 
 
-def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
-    def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
-        model = make_user_model("mine", {"function": "user_engines:plain", "names": names}, like)
-        return [(one.question, one.value, one.against is None) for one in list_user_settings([model])]
+def test_outside_a_worker_process_nothing_is_dropped(capfd: pytest.CaptureFixture[str]) -> None:
+    with silence_output():
+        os.write(1, b"said\n")
+    assert capfd.readouterr().out == "said\n"
 
-    assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
-    assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
+
+def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
+    def curve(names: str, like: str = "regularised") -> list[tuple[str, float, object]]:
+        model = make_user_model("mine", {"function": "user_engines:plain", "names": names}, like)
+        return [(one.question, one.value, one.against) for one in list_user_settings([model])]
+
+    assert curve("tolerance") == [("regularised", value, None) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
+    resolved = "reference:amplification", {**RESOLVED.settings, "tolerance": 1e-10}
+    assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, None)], [("exact", 1e-3, resolved)])
     models = (make_user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
     tasks = TradeOff([SCENE], True, models).tasks()
     mine = [task.timeout / len(task.argument.phases) for task in tasks if task.group]

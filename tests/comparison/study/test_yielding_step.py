@@ -36,6 +36,50 @@ def test_the_law_is_a_step_of_its_own() -> None:
     assert (total.first.key, total.second.key, total.base.key) == ("rigid", "spatial", "rigid")
 
 
+def test_a_pair_says_which_models_it_compares() -> None:
+    hierarchy = [*MODEL_HIERARCHY, make_user_model("mine", {"function": "user_engines:plain"}, "regularised")]
+    every = [
+        *pairs_of(PLAIN, hierarchy),
+        *effect_pairs_of(PLAIN, hierarchy),
+        *pairs_of(PLAIN, hierarchy, {"spatial"}),
+        *pairs_of(PLAIN, hierarchy, {"small-resolved", "spatial"}),
+        *pairs_of(PLAIN, hierarchy, {"regularised"}),
+    ]
+    found = [(pair.first.key, pair.second.key, pair.base.key, pair.sentence) for pair in every]
+    small, same = "small-resolved", "same geometry and same friction law on both sides: this gap must close"
+    mine = (
+        "regularised",
+        "mine",
+        "regularised",
+        "the exact equations, v_reg against an engine of yours, which is said to solve the same",
+    )
+    total = (small, "spatial", small, "the paper's printed equations against the most complete model of Exudyn")
+    planar = (
+        small,
+        "translational",
+        small,
+        "the paper's printed equations against Exudyn under the paper's own assumption that no body turns",
+    )
+    alike = ("regularised", "translational", "regularised", same)
+    assert found == [
+        mine, total, planar, alike,
+        (small, "resolved", small, "what geometry adds to the small equations, as integrated"),
+        ("resolved", "regularised", small, "what regularized friction adds to the exact equations, as integrated"),
+        ("regularised", "translational", small, "what elastic contact adds to the exact equations, v_reg"),
+        ("translational", "spatial", small, "what turning of the bodies adds to the translational engine"),
+        ("small", "exact", "small", "what geometry adds to the small equations, literal supremum"),
+        ("small-regularised", "regularised", small, "what geometry adds to the small equations, v_reg"),
+        (small, "small-regularised", small, "what regularized friction adds to the small equations, as integrated"),
+        (small, "small", small, "what the limits at stops add to the small equations as integrated"),
+        ("small", small, "small", "what an integration of the small equations misses of the literal supremum"),
+        ("small", "spatial", "small", "the literal supremum of the printed equations against the spatial engine"),
+        mine, (small, "translational", small, "the paper's printed equations against the translational engine"), alike,
+        mine, ("resolved", "translational", "resolved",
+               "the exact equations, as integrated against the translational engine"), alike,
+        total, planar,
+    ]  # fmt: skip
+
+
 def test_scenes_without_the_key_have_the_models_they_had() -> None:
     assert with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN]) == MODEL_HIERARCHY
     both = with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, SOFT])
@@ -67,6 +111,7 @@ def test_words_are_those_of_the_law() -> None:
     assert readings_of([RIGID, small], SOFT) == ["as integrated"]
     assert readings_of([small], SOFT) == []
     assert readings_of([SMALL], PLAIN) == ["literal supremum"]
+    assert readings_of([SMALL, RIGID, SMALL], PLAIN) == ["literal supremum", "as integrated"]
 
 
 @pytest.mark.parametrize(

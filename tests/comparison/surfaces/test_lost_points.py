@@ -99,6 +99,10 @@ def test_a_study_without_limits_holds_none(command: Callable[..., Run], tmp_path
     [
         ("[acceptance]\nmaximun = 1.0\n", "acceptance.maximun = 1.0: unknown key; did you mean maximum?"),
         ("[acceptance.totals]\nmedian = 1.0\n", "this study has no engine of this name; did you mean total?"),
+        (
+            "[acceptance.mine]\nmedian = 1.0\n[acceptance.zzz]\nmedian = 2.0\n",
+            "this study has no engine of this name; --model zzz=module:function enters it",
+        ),
         ("[acceptance.total]\nclosure = 1.0\n", "total.closure = 1.0: unknown key; the keys here are median, "),
         ("[acceptance]\nmedian = 1.0\n[acceptance.like_for_like]\nmedian = 2.0\n", "here or in like_for_like"),
     ],
@@ -107,7 +111,7 @@ def test_a_wrong_limit_is_one_line_with_the_nearest_key(
     command: Callable[..., Run], tmp_path: Path, limits: str, said: str
 ) -> None:
     scenes = "fig3-I", limited_scene(tmp_path, limits, "mine.toml")
-    run = command(*scenes, "--check", hierarchy=fake_hierarchy("forbidden"))
+    run = command(*scenes, "--check", "--model", "mine=user_engines:plain", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert said in run.err
     assert run.err.count("\n") == 1
