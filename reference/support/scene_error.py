@@ -9,6 +9,7 @@ from typing import Any
 from reference.support.arguments import quote
 
 MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
+MAX_ERRORS = 50  # a line has at most so many errors of one file, and the number of the others
 # Spellings of one word share at least this ratio of their letters; words of other meanings share less
 MIN_SPELLING_SIMILARITY = 0.7
 # Beginnings of rules about a missing key and a missing table
@@ -78,7 +79,9 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
-        super().__init__(f"{one_line(file)}: {'; also '.join(error._sentence for error in (self, *self.others))}")
+        said = "; also ".join(error._sentence for error in (self, *self.others[: MAX_ERRORS - 1]))
+        more = len(self.others) + 1 - MAX_ERRORS
+        super().__init__(f"{one_line(file)}: {said}{f'; and {more} more' if more > 0 else ''}")
 
     @property
     def _sentence(self) -> str:
