@@ -241,7 +241,9 @@ def _find_running_keys(
 
     Errors of keys with several values are added to `wrong`, and these keys are left out of the list.
     """
-    tables, bounds, running = {key: value for key, value in data.items() if key != "combine"}, [], []
+    tables = {key: value for key, value in data.items() if key != "combine"}
+    bounds: list[_VariedParameter] = []
+    running: list[_VariedParameter] = []
     with _collect_errors(wrong):
         tables = _expand_motions(tables, label)
     with _collect_errors(wrong):

@@ -60,7 +60,7 @@ def test_bounds_of_the_caller_take_the_place_of_those_in_the_file(tmp_path: Path
         (
             '"much"',
             "[0.8, 1.5]",
-            "isolator.friction = 'much': must be a valid number; also isolator.bounds = [0.8, 1.5]: multiplies one",
+            "isolator.friction = 'much': must be a valid number; also isolator.bounds",
         ),
         (
             "-1.0",
