@@ -23,7 +23,7 @@ from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
 from reference.records.formats.plain_text import Proposal, propose_options, word_guesses
 from reference.records.motion_lists import FILE_NAME, Motion, MotionList, motion_list_text, read_motion_list
-from reference.records.numerals import WRITE_RECORD, decode_text
+from reference.records.numerals import decode_text
 from reference.records.pairing import SuiteError, find_motion, find_vertical_components, pair_files
 from reference.records.samples import (
     AXES,
@@ -104,10 +104,8 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
         try:
             readings[axis] = read_record(read_file(file, MAX_FILE_BYTES), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
-            reason = str(getattr(error, "strerror", None) or error)
-            raise _refuse_motion(
-                motion, f"{_word_file(axis, file)}: {_with_listed_line(reason, motion, file)}"
-            ) from None
+            reason = _with_listed_line(error, motion, file)
+            raise _refuse_motion(motion, f"{_word_file(axis, file)}: {reason}") from None
     try:
         samples = join_directions(readings)
     except RecordError as error:
@@ -128,12 +126,13 @@ def _refuse_motion(motion: Motion, rule: str) -> SceneError:
     return SceneError(*place, motion.name, rule)
 
 
-def _with_listed_line(reason: str, motion: Motion, file: Path) -> str:
-    """Return a reason with the line of motions.csv in place of that of a scene, where it proposes one."""
-    said, mark, _ = reason.partition(f"{WRITE_RECORD}{{")
-    proposal = _propose_file_options(file) if mark else None
+def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
+    """Return what an error says with the line of motions.csv in place of that of a scene, where it proposes one."""
+    if isinstance(error, OSError):
+        return str(error.strerror or error)
+    said, proposal = error.said, _propose_file_options(file) if error.proposal else None
     if proposal is None:
-        return reason
+        return str(error)
     others = filter(None, map(_propose_file_options, motion.files.values()))
     if len({each.unit.lower() for each in others if "unit" not in each.missing}) > 1:
         return f"{said}bring the files of this motion into one unit: a line of {FILE_NAME} states one"

@@ -225,6 +225,12 @@ M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0
             ("suite/motions.csv", "line 2, name", "B"),
             "bring the files of this motion into one unit: a line of motions.csv states one",
         ),
+        (
+            "",
+            {name: M_S2.replace("M/S2", "M/S2 write record = {a}") for name in ("A_H1.AT2", "A_H2.AT2")},
+            ("suite", "motion", "A"),
+            "write record = {a}': must say 'IN UNITS OF G'; in another unit write \"A,A_H1.AT2,A_H2.AT2,,1",
+        ),
     ],
 )
 def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, files, place, words):
