@@ -235,7 +235,7 @@ def _collect_errors(wrong: list[SceneError]) -> Iterator[None]:
 
 def _find_running_keys(
     data: dict[str, Any], label: str, wrong: list[SceneError]
-) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter], dict[str, dict[str, Any]]]:
+) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter], dict[str, Any]]:
     """
     Return the tables of the scenes, the bounds of friction if given, the keys with several values, and their tables.
 
@@ -244,12 +244,15 @@ def _find_running_keys(
     tables = {key: value for key, value in data.items() if key != "combine"}
     bounds: list[_VariedParameter] = []
     running: list[_VariedParameter] = []
+    named: dict[str, Any] = {}
     with _collect_errors(wrong):
+        named[".".join(MOTION_KEY)] = ALL_MOTIONS  # runs, even if the motions cannot be listed
         tables = _expand_motions(tables, label)
+        named.clear()
     with _collect_errors(wrong):
         tables, bounds = _separate_bounds(tables, label)
     places = list(islice(find_varied_keys((), tables), MAX_KEYS + 1))
-    named = {".".join(map(str, path)): table for path, table in places}
+    named |= {".".join(map(str, path)): table for path, table in places}
     if len(places) > MAX_KEYS:
         key, table = [*named.items()][-1]
         wrong.append(SceneError(label, key, table, f"at most {MAX_KEYS} keys may run"))
@@ -360,9 +363,7 @@ def _scale_friction(friction: Any, factor: float) -> Any:
     return {**friction, **{key: _scale_friction(value, factor) for key, value in coefficients.items()}}
 
 
-def _check_combine(
-    label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, dict[str, Any]]
-) -> None:
+def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, Any]) -> None:
     """Check that `combine` fits the number of keys that run, in their `places`, and of values. Raises SceneError."""
     if combine is not None and combine not in COMBINATIONS:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -95,7 +96,7 @@ class MotionList:
 def read_motion_list(folder: Path) -> MotionList | None:
     """Return the motions that motions.csv of a folder lists; None without it. Raises RecordError with all faults."""
     file = folder / FILE_NAME
-    if not file.is_file():
+    if not os.path.isfile(file):
         return None
     try:
         text = decode_text(read_file(file, MAX_BYTES))
@@ -169,7 +170,7 @@ def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) ->
         rule = f"must be one column, or one for each of {', '.join(files)}"
         raise RecordError(f"column = {quote(row['column'])}: {rule}")
     for file in files.values():
-        if not _is_file(file):
+        if not os.path.isfile(file):
             raise RecordError(f"{quote(file.name)}: no such file in the folder")
     return files
 
@@ -179,14 +180,6 @@ def _whole_number(name: str, text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
         raise RecordError(f"{name} = {quote(text)}: must be a whole number up to {MAX_NUMBER}")
     return int(text)
-
-
-def _is_file(file: Path) -> bool:
-    """Return whether a path names a file; False where the system refuses the path."""
-    try:
-        return file.is_file()
-    except (OSError, ValueError):  # the name is too long, or is no path
-        return False
 
 
 def _number(row: Mapping[str, str], name: str, most: float) -> float | None:

@@ -326,9 +326,10 @@ def make_suite_family(options: argparse.Namespace, source: str) -> Family:
     try:
         return make_family(bounded, source)
     except SceneError as error:
-        if options.suite is None or error.key != f"{RECORD_KEY}.suite":
+        wrong = [each for each in (error, *error.others) if each.key == f"{RECORD_KEY}.suite"]
+        if options.suite is None or not wrong:
             raise
-        rule = error.rule.removesuffix(", relative to the scene file")
+        rule = wrong[0].rule.removesuffix(", relative to the scene file")
         raise SceneError("command line", "--suite", options.suite, rule) from None
 
 

@@ -31,7 +31,7 @@ def read_target(file: str) -> tuple[Array, Array]:
         period, acceleration = values[values[:, 0] != 0.0].T
         factor = ACCELERATION_HEADS[second]
     except OSError as error:
-        raise SceneError("command line", "--target", file, str(error.strerror or error)) from None
+        raise SceneError("command line", "--target", file, f"{error.strerror or error}; {FILE_RULE}") from None
     except (ValueError, LookupError, csv.Error):
         raise SceneError("command line", "--target", file, FILE_RULE) from None
     rising = len(period) > 1 and period[0] > 0.0 and (np.diff(period) > 0.0).all()

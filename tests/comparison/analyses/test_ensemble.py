@@ -344,6 +344,8 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
     [
         ((), "", "excitation.record = None: an ensemble needs recorded motions: give --suite"),
         (("--suite", "none"), "", "command line: --suite = 'none': No such file or directory"),
+        ((*SUITE, "--against", "x" * 300), "", "x...: has no summary.json"),
+        ((*SUITE, "--target", "none"), "", "--target = 'none': No such file or directory; must be CSV with"),
         ((*SUITE, "--normalized"), "", "remove this key"),
         ((*SUITE, "--scales", "2", "1", "2"), "", "the smaller first"),
         ((*SUITE, "--scales", "1", "x", "2"), "", "--scales"),

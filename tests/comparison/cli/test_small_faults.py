@@ -107,6 +107,15 @@ def test_what_cannot_be_shown_is_written_all_the_same(tmp_path: Path, capsys: py
     assert capsys.readouterr().err.startswith("results could not be shown: AttributeError: ")
 
 
+@pytest.mark.parametrize("words", [("claims", "\x1b[31m\n"), ("ensemble", "fig3-I", "--model", "x" * 5000)])
+def test_a_wrong_word_is_one_printable_line_of_moderate_length(words: tuple[str, ...], capsys: Any) -> None:
+    command, *options = words
+    assert import_module(list_commands()[command].module).main(options) == 2
+    line, end, rest = capsys.readouterr().err.partition("\n")
+    assert (line.isprintable(), len(line) < 700, end, rest) == (True, True, "\n", "")
+    assert line.endswith("(--help lists the options)")
+
+
 @pytest.mark.parametrize("words", [("run", "--grid=--"), ("ensemble", "fig3-I", "--against=--"), ("init", "--ci=--")])
 def test_two_dashes_are_the_value_of_no_option(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     command, *options = words
