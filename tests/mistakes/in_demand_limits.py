@@ -119,7 +119,7 @@ MISTAKES = (
     Mistake(PANELS, "for scale in sorted(curve.scales, reverse=True)\n", "for scale in ()\n",
             "A motion at the travel is not drawn.",
             (REPORT + "the_median_the_travel_and_the_limit_are_told_apart_from_the_motions",)),
-    Mistake(COMMAND, "if options.suite is None or error.key != f\"{RECORD_KEY}.suite\":", "if True:",
+    Mistake(COMMAND, "if options.suite is None or not wrong:", "if True:",
             "A misspelt --suite is blamed on a key of the scene.",
             ("tests/comparison/analyses/test_ensemble.py::test_wrong_input_is_one_line_at_the_start",)),
     Mistake(PANELS, 'if is_mean_limited(ensemble, quantity):', 'if False:', "A limit on a mean has no mean beside it.",
