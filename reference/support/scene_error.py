@@ -79,7 +79,10 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
-        said = "; also ".join(error._sentence for error in (self, *self.others[: MAX_ERRORS - 1]))
+        shown = (self, *self.others[: MAX_ERRORS - 1])
+        said = "; also ".join(
+            f"{'' if error.file == file else f'{one_line(error.file)}: '}{error._sentence}" for error in shown
+        )
         more = len(self.others) + 1 - MAX_ERRORS
         super().__init__(f"{one_line(file)}: {said}{f'; and {more} more' if more > 0 else ''}")
 
@@ -88,7 +91,7 @@ class SceneError(ValueError):
         """Return key, value and rule as one sentence."""
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
         value = "" if absent else f" = {quote(self.value)}"
-        return f"{one_line(self.key)}{value}: {self.rule}"
+        return f"{one_line(self.key)}{value}: {printable(self.rule)}"
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
         # Worker processes send the error to the main process

@@ -81,6 +81,7 @@ from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.motion_lists import FILE_NAME as MOTIONS
 from reference.records.motion_lists import Motion, motion_list_text
+from reference.records.samples import RecordError
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
@@ -303,8 +304,12 @@ def print_suite(console: Console, options: argparse.Namespace) -> None:
     listed = list_motions(options.suite, Path(), options.components)
     console.print(listed.sentence, soft_wrap=True, markup=False)
     if options.write_motions:
+        try:
+            text = motion_list_text(listed.motions)
+        except RecordError as error:
+            raise SceneError("command line", "--write-motions", options.suite, str(error)) from None
         with report_write_errors(Path(options.suite)):
-            place = write_new(Path(options.suite) / MOTIONS, motion_list_text(listed.motions).encode())
+            place = write_new(Path(options.suite) / MOTIONS, text.encode())
         console.print(f"Motions: {place}", soft_wrap=True, markup=False)
 
 

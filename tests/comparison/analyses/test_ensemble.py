@@ -360,6 +360,8 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[yd/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}1, 1\n0.1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 0", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 1e308", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}1e-300, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv", "--periods", "0.05", "1"), f"{HEAD}0.1, 1\n1, 1", "--periods = "),
         ((*SUITE, "--target", "code.csv", "--periods", "0.5", "0.2"), f"{HEAD}0.1, 1\n1, 1", "the shorter first"),
     ],
