@@ -132,6 +132,8 @@ class Family:
             raise ValueError(
                 f"results: {len(results)}: must be as many as the scenes of the family, {len(self.scenes)}"
             )
+        if not all(hasattr(result, "to_xarray") for result in results):
+            raise TypeError(f"results = {quote(results)}: must be what amplification or peak_demands return")
         data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
         data.attrs = {}  # the results differ in their cost, so no common one is left
         shorts = [key.rpartition(".")[2] for key in self.columns]
