@@ -43,7 +43,7 @@ from reference.records.pairing import SuiteError
 from reference.records.samples import file_name, files_by_axis
 from reference.records.suites import motion_names, suite_motions
 from reference.support.arguments import Range, as_float, quote, require_type
-from reference.support.scene_error import SceneError, printable
+from reference.support.scene_error import IS_UNKNOWN, SceneError, printable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -299,7 +299,12 @@ def _add_other_errors(
         _make_member_scene(tables, label, "", [(key, 0) for key in keys])
     said = {".".join(map(str, path)) for path, _ in find_varied_keys((), tables)} - {key.name for key in keys}
     said |= {"excitation.record" for error in wrong if error.key.startswith("excitation.record.")}
-    own = [error for error in others if not any(f"{error.key}.".startswith(f"{key}.") for key in said)]
+    own = [
+        error
+        for error in others
+        if (error.key in said and error.rule.startswith(IS_UNKNOWN))
+        or not any(f"{error.key}.".startswith(f"{key}.") for key in said)
+    ]
     return join_errors([*wrong, *own], data)
 
 

@@ -12,8 +12,8 @@ MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
 MAX_ERRORS = 50  # a line has at most so many errors of one file, and the number of the others
 # Spellings of one word share at least this ratio of their letters; words of other meanings share less
 MIN_SPELLING_SIMILARITY = 0.7
-# Beginnings of rules about a missing key and a missing table
-IS_REQUIRED, IS_MISSING = "this key is required", "the table ["
+# Beginnings of rules about a missing key, a missing table and an unknown key
+IS_REQUIRED, IS_MISSING, IS_UNKNOWN = "this key is required", "the table [", "unknown key; "
 YIELDING_HINT = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
     "or yield_displacement = 0.001, m"
@@ -128,7 +128,7 @@ def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneE
     *table, last = [part for part in key.split(".") if not part.isdecimal()] or [""]
     letters = "".join(filter(str.isalnum, last[:MAX_LETTERS].lower()))
     if hint := HINTS.get(f"{'.'.join(table)}.{letters}", HINTS.get(letters)):
-        return SceneError(file, key, value, f"unknown key; {hint}")
+        return SceneError(file, key, value, f"{IS_UNKNOWN}{hint}")
     nearest = get_close_matches(last[:MAX_LETTERS].lower(), valid, n=2, cutoff=MIN_SPELLING_SIMILARITY)
     suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
-    return SceneError(file, key, value, f"unknown key; {suggestion}")
+    return SceneError(file, key, value, f"{IS_UNKNOWN}{suggestion}")

@@ -91,14 +91,17 @@ def test_what_is_no_range_is_one_line(tmp_path: Path, table: str, line: str) -> 
 def test_all_keys_that_run_wrongly_are_in_one_line_with_all_other_errors_and_nothing_that_follows(
     tmp_path: Path,
 ) -> None:
-    file = _file(tmp_path, "friction = 0.1", "friction = {values = []}\nbounds = [2, 1]\nbound = 1\ntravel = -1.0")
+    file = _file(
+        tmp_path, "friction = 0.1", "friction = {values = []}\nbounds = [2, 1]\nbound = {values = 3}\ntravel = -1.0"
+    )
     top, loading = "duration = -1.0", "scale = {range = [3.0, 1.0], steps = 2}"
     text = file.read_text(encoding="utf-8").replace("[excitation]", f"[excitation]\n{loading}")
     file.write_text("combine = 7\nnam = 1\n" + re.sub("duration = .*", top, text), encoding="utf-8")
     said = str(refusal(load_family, file)).removeprefix(f"{file}: ").split("; also ")
     assert [line.partition(": ")[0] for line in said] == [
         "combine = 7", "nam = 1", "duration = -1.0", "isolator.friction.values = []", "isolator.bounds = [2, 1]",
-        "isolator.bound = 1", "isolator.travel = -1.0", "excitation.scale.range = [3.0, 1.0]",
+        "isolator.bound = {'values'",
+        "isolator.bound.values = 3", "isolator.travel = -1.0", "excitation.scale.range = [3.0, 1.0]",
     ]  # fmt: skip
     assert "the keys here are combine, title" in said[1], "a scene file has no name"
     assert "did you mean bounds?" in said[5]
