@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
@@ -76,7 +77,7 @@ class StoredFile(Generic[T]):
         Raises ValueError, one line, for anything else.
         """
         file = folder / self.name
-        if not file.exists():
+        if not os.path.exists(file):  # False, too, where the system refuses the name
             return None
         try:
             return self.read(read_file(file, MAX_FILE_BYTES))

@@ -36,6 +36,7 @@ from reference.problem import (
     ground_acceleration,
     load_scene,
 )
+from reference.support.arguments import quote
 from reference.support.command import OneLineParser, run_command
 from reference.support.files import write_new
 
@@ -86,13 +87,13 @@ def check_film_options(scene: Scene, out: Path, settings: FilmSettings) -> None:
             f"--speed: {settings.speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
             f"{settings.rate} per second: give {slowest:.2g} to {fastest:.2g}"
         )
-    if out.is_dir():
+    if os.path.isdir(out):
         raise ValueError(f"--out: {out}: is a folder: give the name of a {' or '.join(FILE_SUFFIXES)} file")
     if out.suffix.lower() not in FILE_SUFFIXES:
         raise ValueError(f"--out: {out}: must end in {' or '.join(FILE_SUFFIXES)}")
-    if not out.parent.is_dir():
+    if not os.path.isdir(out.parent):
         raise ValueError(f"--out: {out}: its folder does not exist")
-    if not os.access(out if out.exists() else out.parent, os.W_OK):
+    if not os.access(out if os.path.exists(out) else out.parent, os.W_OK):
         raise ValueError(f"--out: {out}: cannot be written")
 
 
@@ -143,7 +144,7 @@ def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
 
 
 def main(words: list[str] | None = None) -> int:
-    """Return exit code 0, or 2 after one line for a wrong scene or option."""
+    """Return exit code 0; after one line 2 for a wrong scene or option, 3 for a film that cannot be written."""
     try:
         options = _parse_arguments(words)
         phase = np.array(options.phases)
@@ -162,7 +163,11 @@ def main(words: list[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     count = count_frames(float(motion.time[-1]), settings)
-    written = write_new(options.out, draw_film(scene, motion, options.model, settings, count))
+    try:
+        written = write_new(options.out, draw_film(scene, motion, options.model, settings, count))
+    except OSError as error:
+        print(f"command line: --out = {quote(str(options.out))}: could not be written: {error}", file=sys.stderr)
+        return 3
     if written != options.out:
         print(f"{options.out} exists and stays: the film is in {written}", file=sys.stderr)
     print(f"{written}: {motion.time[-1]:.2f} s of motion, status {motion.status}")

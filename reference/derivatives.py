@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -152,6 +152,8 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     if isinstance(keys, str):
         raise TypeError(f"keys = {quote(keys)}: must be a list of keys, [{keys!r}]")
     tables, values = scene.model_dump(exclude_none=True), {}
+    if isinstance(keys, str) or not (isinstance(keys, Iterable) and all(isinstance(key, str) for key in keys)):
+        raise TypeError(f"keys = {quote(keys)}: must be a list of keys, as ['isolator.friction', 'bodies.1.mass']")
     for key in keys:
         value = value_at(tables, key)
         if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:

@@ -24,11 +24,12 @@ from reference.measures.local_search import (
 )
 from reference.problem import Scene
 from reference.problem.phases import check_phases
+from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import require_scene
 from reference.problem.symmetry import distinct_pairs, find_half_turns
-from reference.support.arguments import check_choice
+from reference.support.arguments import check_choice, check_number
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")
@@ -131,6 +132,7 @@ def worst_phases(
     (3.06, 'kink')
     """
     check_choice("quantity", quantity, QUANTITIES)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     if body not in range(1, len(scene.bodies) + 1):
         raise ValueError(f"body = {body!r}: must be an integer from 1 to {len(scene.bodies)}, the number of bodies")
     if scene.recorded:

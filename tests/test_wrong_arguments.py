@@ -43,6 +43,29 @@ def test_a_wrong_object_is_one_line_that_says_what_to_pass(
 
 SHORT, START = SCENE.with_values({"isolator.travel": 0.1}), reference.State(np.full((2, 2), 0.08), np.zeros((2, 2)))
 TOO_FAR = "initial: the platform must start within isolator.travel = 0.1 m"
+LOOP: list[Any] = []
+LOOP.append(LOOP)
+
+
+class Endless:
+    """A sequence that claims more entries than memory holds."""
+
+    def __len__(self) -> int:
+        return 10**9
+
+    def __getitem__(self, place: int) -> float:
+        return 0.0
+
+
+class Unshowable:
+    """An object that raises when it is shown or taken as an array."""
+
+    def __repr__(self) -> str:
+        raise RuntimeError("no text")
+
+    __array__ = __repr__
+
+
 MASKED = np.ma.masked_array([0.0, 1.0], mask=[True, False])
 WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "max_work as text": (lambda: multibody.refusal(SCENE, max_work="1"), "max_work = '1': must be finite and positive"),
@@ -63,6 +86,20 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "start of the equations": (lambda: reference.trajectory(SHORT, (0.0, 0.0), initial=START), TOO_FAR),
     "start of the engine": (lambda: multibody.trajectory(SHORT, (0.0, 0.0), initial=START), TOO_FAR),
     "start of a single run": (lambda: multibody.single_run(SHORT, (0.0, 0.0), step=1e-3, initial=START), TOO_FAR),
+    "phases in themselves": (lambda: reference.trajectory(SCENE, LOOP), "phases = [[...]]: must be numbers"),
+    "phases without end": (
+        lambda: reference.trajectory(SCENE, Endless()),
+        "phases: takes more memory than there is: must be",
+    ),
+    "phases that are no array": (lambda: reference.trajectory(SCENE, Unshowable()), "phases = <Unshowable>: must be"),
+    "equations that cannot be shown": (
+        lambda: reference.trajectory(SCENE, (0.0, 0.0), equations=Unshowable()),
+        "equations = <Unshowable>: must be one",
+    ),
+    "displacement in a table": (
+        lambda: reference.effective_isolator(SCENE, {"a": 1}),
+        "displacement = {'a': 1}: must be numbers: must be length",
+    ),
     "masked grid": (
         lambda: reference.phase_distribution(np.ma.masked_array(np.ones((2, 2)), [[1, 0], [0, 0]]), np.zeros((2, 2))),
         "mu: has masked entries",
@@ -75,6 +112,23 @@ def test_a_wrong_value_is_one_line_with_the_rule(call: Callable[[], Any], line: 
     with pytest.raises(ValueError, match=f"^{re.escape(line)}") as failure:
         call()
     assert "\n" not in str(failure.value)
+
+
+@pytest.mark.parametrize(
+    ("call", "line"),
+    [
+        (lambda: SCENE.with_values([1.0]), "values = [1.0]: must be a table of values by key"),
+        (lambda: reference.sensitivity(SCENE, "duration", len), "keys = 'duration': must be a list of keys"),
+        (lambda: reference.sensitivity(SCENE, [3], len), "keys = [3]: must be a list of keys"),
+        (
+            lambda: reference.problem.load_family("fig3-I").to_xarray(["x"]),
+            "results = ['x']: must be what amplification",
+        ),
+    ],
+)
+def test_an_object_of_another_kind_is_one_line(call: Callable[[], Any], line: str) -> None:
+    with pytest.raises(TypeError, match=f"^{re.escape(line)}"):
+        call()
 
 
 def test_numbers_of_other_kinds_are_numbers() -> None:

@@ -26,6 +26,9 @@ SCRIPT_NAME = "phase-resonance"
 # that only reads stored results.
 COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
+# Whole numbers that Numba, NumPy and Matplotlib read from the environment, with their range; seconds up to year 9999
+ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402_300_799)}
+
 PACKAGE_FOLDER = Path(__file__).parents[1]  # the folder comparison/
 
 
@@ -96,7 +99,7 @@ def run_command(module: str) -> NoReturn:
     """Import a command by its full name, run its `main` and end the process with its exit code."""
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTOR_THRESHOLDS)
-    _refuse_threads()
+    _refuse_environment()
     if not sys.warnoptions:  # Hide warnings of libraries: this program reports what a user must know itself.
         warnings.simplefilter("ignore")
         os.environ.setdefault("PYTHONWARNINGS", "ignore")  # hide them in worker processes as well
@@ -105,19 +108,22 @@ def run_command(module: str) -> NoReturn:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         main = import_module(module).main
-    except ImportError as error:
-        print(f"{SCRIPT_NAME} cannot start: {' '.join(str(error).split())}", file=sys.stderr)
+    except Exception as error:  # A library may fail in any way while it loads.
+        what = "" if isinstance(error, ImportError) else f"{type(error).__name__}: "
+        print(f"{SCRIPT_NAME} cannot start: {what}{' '.join(str(error).split())}", file=sys.stderr)
         raise SystemExit(3) from None
     import_module("reference.support.command").run_command(main)
     raise AssertionError("run_command ends the process")
 
 
-def _refuse_threads() -> None:
-    """End the process with one line where Numba would fail while it loads."""
-    threads = os.environ.get("NUMBA_NUM_THREADS")
-    if threads is not None and not (threads.isascii() and threads.isdigit() and int(threads) > 0):
-        rule = "must be a whole number from 1: correct this environment variable, or remove it"
-        print(f"environment: NUMBA_NUM_THREADS = {threads!r}: {rule}", file=sys.stderr)
+def _refuse_environment() -> None:
+    """End the process with one line where a library would fail while it loads, for each variable that it reads."""
+    for name, (least, most) in ENVIRONMENT.items():
+        text = os.environ.get(name)
+        if text is None or (text.isascii() and text.isdigit() and len(text) < 20 and least <= int(text) <= most):
+            continue
+        rule = f"must be a whole number from {least} to {most}: correct this environment variable, or remove it"
+        print(f"environment: {name} = {text[:80]!r}: {rule}", file=sys.stderr)
         raise SystemExit(2)
 
 

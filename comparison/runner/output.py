@@ -91,7 +91,8 @@ def refuse_foreign_report(out: Path) -> None:
     refuse_other_page(out, REPORT_COMMAND)
     if place.exists():
         if Path.cwd().resolve().is_relative_to(place):
-            raise refusal("is the directory you work in: give one inside it")
+            verb = "is" if Path.cwd().resolve() == place else "holds"
+            raise refusal(f"{verb} the directory you work in: give one inside it")
         if os.path.ismount(place):
             raise refusal("is a mount point, which cannot be replaced: give a directory inside it")
         try:

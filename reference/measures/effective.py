@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from reference.problem.result import Array
 from reference.problem.scene import Scene, require_scene
+from reference.support.arguments import check_array, quote
 from reference.support.constants import GRAVITY
 
 
@@ -70,11 +71,13 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     >>> isolator.period.round(3).item(), isolator.damping.round(3).item(), isolator.restoring.round(3).item()
     (2.316, 0.212, 2.0)
     """
-    amplitude = np.asarray(displacement, dtype=float)
+    amplitude = check_array("displacement", displacement, "must be lengths in m above 0").reshape(
+        np.shape(displacement)
+    )
     if scene.lubricated:
         raise ValueError("effective_isolator: a lubricated scene has no dry friction; take one that has")
     if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
-        raise ValueError(f"effective_isolator: displacement is {displacement!r}: pass lengths in m above 0")
+        raise ValueError(f"displacement = {quote(displacement)}: must be lengths in m above 0")
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
     friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # less where friction is elastic
     dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)

@@ -18,7 +18,8 @@ from __future__ import annotations
 import copy
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice, product
 from pathlib import Path
@@ -37,11 +38,12 @@ from reference.problem.scene_file import (
     scene_tables,
     scene_text,
 )
+from reference.problem.validation import join_errors
 from reference.records.pairing import SuiteError
 from reference.records.samples import file_name, files_by_axis
 from reference.records.suites import motion_names, suite_motions
 from reference.support.arguments import Range, as_float, quote, require_type
-from reference.support.scene_error import SceneError, printable
+from reference.support.scene_error import IS_UNKNOWN, SceneError, printable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -130,6 +132,8 @@ class Family:
             raise ValueError(
                 f"results: {len(results)}: must be as many as the scenes of the family, {len(self.scenes)}"
             )
+        if not all(hasattr(result, "to_xarray") for result in results):
+            raise TypeError(f"results = {quote(results)}: must be what amplification or peak_demands return")
         data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
         data.attrs = {}  # the results differ in their cost, so no common one is left
         shorts = [key.rpartition(".")[2] for key in self.columns]
@@ -191,16 +195,25 @@ def with_bounds(data: dict[str, Any], bounds: tuple[float, float] | None) -> dic
 def make_family(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
     """Return the family that a file's tables define; `label` names the file in errors. Raises as `load_family`."""
     name, combine = Path(label).stem, data.get("combine")
-    tables, bounds, running = _find_running_keys(data, label)
-    _check_combine(label, combine, running)
+    wrong: list[SceneError] = []
+    tables, bounds, running, places = _find_running_keys(data, label, wrong)
+    with _collect_errors(wrong):
+        _check_combine(label, combine, running, places)
     keys = [*bounds, *running]
+    if wrong:
+        raise _add_other_errors(wrong, data, tables, label, keys)
     if not keys:
         return Family(name, (scale_loading(make_scene(tables, label, name), amplitude),))
     steps = [range(len(key.values)) for key in running]
     inner = list(zip(*steps) if combine == "zip" else product(*steps))
     rows = [(*outer, *row) for outer in product(*(range(len(key.values)) for key in bounds)) for row in inner]
     _check_bodies(label, tables.get("bodies"), len(rows))
-    scenes = [scale_loading(_make_member_scene(tables, label, name, list(zip(keys, row))), amplitude) for row in rows]
+    scenes = []
+    for row in rows:
+        with _collect_errors(wrong):
+            scenes.append(scale_loading(_make_member_scene(tables, label, name, list(zip(keys, row))), amplitude))
+    if wrong:
+        raise join_errors(wrong, data)
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(keys)}
     values = [", ".join(key.texts[step] for key, step in zip(keys, row)) for row in rows]
     return Family(
@@ -213,21 +226,44 @@ def make_family(data: dict[str, Any], label: str, amplitude: float | None = None
     )
 
 
-def _find_running_keys(
-    data: dict[str, Any], label: str
-) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter]]:
-    """Return the tables of the scenes, the bounds of friction if given, and all keys with several values."""
-    tables = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
+@contextmanager
+def _collect_errors(wrong: list[SceneError]) -> Iterator[None]:
+    """Add an error of a file that the block raises, and all that it carries, to a list."""
     try:
+        yield
+    except SceneError as error:
+        wrong += [error, *error.others]
+
+
+def _find_running_keys(
+    data: dict[str, Any], label: str, wrong: list[SceneError]
+) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter], dict[str, Any]]:
+    """
+    Return the tables of the scenes, the bounds of friction if given, the keys with several values, and their tables.
+
+    Errors of keys with several values are added to `wrong`, and these keys are left out of the list.
+    """
+    tables = {key: value for key, value in data.items() if key != "combine"}
+    bounds: list[_VariedParameter] = []
+    running: list[_VariedParameter] = []
+    named: dict[str, Any] = {}
+    with _collect_errors(wrong):
+        named[".".join(MOTION_KEY)] = ALL_MOTIONS  # runs, even if the motions cannot be listed
+        tables = _expand_motions(tables, label)
+        named.clear()
+    with _collect_errors(wrong):
         tables, bounds = _separate_bounds(tables, label)
-    except SceneError as wrong:
-        raise _add_other_errors(wrong, data, label) from None
     places = list(islice(find_varied_keys((), tables), MAX_KEYS + 1))
+    named |= {".".join(map(str, path)): table for path, table in places}
     if len(places) > MAX_KEYS:
-        path, table = places[-1]
-        raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
-    motions = _motion_names(tables, label)
-    return tables, bounds, [_VariedParameter(label, path, table, motions) for path, table in places]
+        key, table = [*named.items()][-1]
+        wrong.append(SceneError(label, key, table, f"at most {MAX_KEYS} keys may run"))
+    else:
+        motions = _motion_names(tables, label)
+        for path, table in places:
+            with _collect_errors(wrong):
+                running.append(_VariedParameter(label, path, table, motions))
+    return tables, bounds, running, named
 
 
 def _make_member_scene(
@@ -241,20 +277,35 @@ def _make_member_scene(
     try:
         return make_scene(changed, label, f"{name}[{texts}]")
     except SceneError as error:
-        first, _ = chosen[0]
+        first = chosen[0][0] if chosen else None
         if isinstance(first, _FrictionBoundsKey) and error.key.startswith("isolator.friction"):
             raise _locate_bound_error(error, changed, tables, label, first.values) from None
         raise
 
 
-def _add_other_errors(wrong: SceneError, data: dict[str, Any], label: str) -> SceneError:
-    """Return the error of wrong bounds together with all other errors of the file."""
-    own = {key: value for key, value in data["isolator"].items() if key != "bounds"}
-    try:
-        make_family({**data, "isolator": own}, label)
-    except SceneError as error:
-        return SceneError(label, wrong.key, wrong.value, wrong.rule, (error, *error.others))
-    return wrong
+def _add_other_errors(
+    wrong: Sequence[SceneError],
+    data: dict[str, Any],
+    tables: dict[str, Any],
+    label: str,
+    keys: Sequence[_VariedParameter],
+) -> SceneError:
+    """Return the errors of keys with several values together with all others of the file, without those that follow."""
+    isolator = tables.get("isolator")
+    if isinstance(isolator, dict):
+        tables = {**tables, "isolator": {key: value for key, value in isolator.items() if key != "bounds"}}
+    others: list[SceneError] = []
+    with _collect_errors(others):
+        _make_member_scene(tables, label, "", [(key, 0) for key in keys])
+    said = {".".join(map(str, path)) for path, _ in find_varied_keys((), tables)} - {key.name for key in keys}
+    said |= {"excitation.record" for error in wrong if error.key.startswith("excitation.record.")}
+    own = [
+        error
+        for error in others
+        if (error.key in said and error.rule.startswith(IS_UNKNOWN))
+        or not any(f"{error.key}.".startswith(f"{key}.") for key in said)
+    ]
+    return join_errors([*wrong, *own], data)
 
 
 def _locate_bound_error(
@@ -274,7 +325,7 @@ class _VariedParameter:
     def __init__(
         self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Mapping[Any, str]
     ) -> None:
-        self.path, self.table = path, table
+        self.path = path
         self.name = ".".join(map(str, path))
         self.short = short_key(self.name)
         self.listed = _list_values_of_key(label, self.name, table)
@@ -319,16 +370,18 @@ def _scale_friction(friction: Any, factor: float) -> Any:
     return {**friction, **{key: _scale_friction(value, factor) for key, value in coefficients.items()}}
 
 
-def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter]) -> None:
-    """Check that the key `combine` fits the number of varied keys and of their values. Raises SceneError."""
+def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, Any]) -> None:
+    """Check that `combine` fits the number of keys that run, in their `places`, and of values. Raises SceneError."""
     if combine is not None and combine not in COMBINATIONS:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")
-    if combine is not None and len(running) < 2:
+    if combine is not None and len(places) < 2:
         raise SceneError(label, "combine", combine, "two or more keys must run: remove this key")
-    if combine is None and len(running) > 1:
-        first, second = running[:2]
-        rule = f'{first.name} runs, too: add combine = "product" or combine = "zip" at the top of the file'
-        raise SceneError(label, second.name, second.table, rule)
+    if combine is None and len(places) > 1:
+        first, second = islice(places, 2)
+        rule = f'{first} runs, too: add combine = "product" or combine = "zip" at the top of the file'
+        raise SceneError(label, second, places[second], rule)
+    if len(running) < len(places):  # the number of values of a wrong key is unknown
+        return
     counts = [len(key.values) for key in running]
     if combine == "zip" and len(set(counts)) > 1:
         listed = ", ".join(f"{key.name} {count}" for key, count in zip(running, counts))
@@ -431,7 +484,7 @@ def _word_values(label: str, key: str, values: Sequence[Value | FilesByDirection
         if len(set(texts)) == len(texts):
             return texts
     twice = next(value for value, text in zip(values, texts) if texts.count(text) > 1)
-    raise SceneError(label, key, twice, "is there twice, and the scenes are named by it: leave one away")
+    raise SceneError(label, f"{key}.values", twice, "is there twice, and the scenes are named by it: leave one away")
 
 
 def _replace_value(data: dict[str, Any], path: tuple[str | int, ...], value: Any) -> dict[str, Any]:

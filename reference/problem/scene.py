@@ -28,7 +28,7 @@ from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Re
 from reference.problem.validation import EXCITATION_FORMS, FRICTION_FORMS, first_scene_error
 from reference.records.loading import load_record_samples
 from reference.records.samples import subtract_zero_line
-from reference.support.arguments import Range, as_float, require_type
+from reference.support.arguments import Range, as_float, quote, require_type
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
@@ -294,6 +294,9 @@ class Scene(Table):
         >>> scene.with_values({**lubricated, "bodies.1.height": 0.4}).friction_coefficient
         0.5
         """
+        if not isinstance(values, Mapping):
+            rule = "must be a table of values by key, as {'isolator.friction': 0.1}"
+            raise TypeError(f"values = {quote(values)}: {rule}")
         data = self.model_dump(exclude_none=True)
         changes = []
         for name, value in values.items():

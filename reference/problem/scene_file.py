@@ -18,6 +18,12 @@ from reference.support.arguments import require_type
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
 
+# Keys of every table of a file, as errors list them: a file names no scene, and may state several
+FILE_KEYS = {
+    **KEYS,
+    "": ("combine", *(key for key in KEYS[""] if key != "name")),
+    "isolator": (*KEYS["isolator"], "bounds"),
+}
 RANGE_KEYS, VALUES_KEYS = {"range", "steps"}, {"values"}  # keys of an inline table that gives a key several values
 MAX_BYTES = 2**22  # a scene file has at most so many bytes
 MAX_NESTING = 10  # a scene file nests at most so many tables and lists in one another
@@ -167,8 +173,10 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
         raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
     if data is None or _is_deeper(data, MAX_NESTING):
         raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
-    if data and data.keys().isdisjoint((*KEYS[""], "combine")):  # an error shows nothing of a file that may be anything
-        raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(KEYS[''])}")
+    if data and data.keys().isdisjoint(
+        (*FILE_KEYS[""], "name")
+    ):  # an error shows nothing of a file that may be anything
+        raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(FILE_KEYS[''])}")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
     return data
@@ -186,7 +194,7 @@ def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
     try:
         scene = Scene.model_validate({**tables, "name": name})
     except ValidationError as error:
-        raise first_scene_error(label, error, KEYS, data, unread) from None
+        raise first_scene_error(label, error, FILE_KEYS, data, unread) from None
     if unread is not None:
         raise unread
     return scene

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from reference.support.arguments import quote
 from reference.support.scene_error import (
     IS_REQUIRED,
     ONE_SURFACE_HINT,
@@ -64,11 +65,16 @@ def first_scene_error(
     if without_loading:  # a record would give the duration as well
         said = [error for error in said if error["type"] != "missing" or error["loc"] != ("duration",)]
     errors = [_word_error(file, error, keys) for error in said] + ([unread] if unread else [])
-    errors = list({(error.key, error.rule): error for error in errors}.values())
+    return join_errors(errors, tables)
+
+
+def join_errors(errors: Sequence[SceneError], tables: Mapping[str, Any] | None = None) -> SceneError:
+    """Return the first error of a file, which carries the others, each once; tables: of the file, for the order."""
+    errors = list({(error.key, quote(error.value), error.rule): error for error in errors}.values())
     if tables is not None:
         errors.sort(key=lambda error: _position_in_file(tables, error.key))
     first, *others = errors
-    return SceneError(file, first.key, first.value, first.rule, others)
+    return SceneError(first.file, first.key, first.value, first.rule, others)
 
 
 def _position_in_file(tables: Any, key: str) -> list[int]:

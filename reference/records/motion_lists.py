@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -35,7 +36,7 @@ class Motion:
     One motion of a suite: its name, its files by axis ("" for one file with all directions), and its factor.
 
     magnitude: of the earthquake, None where the list does not state it. options: what the list states of the plain
-    texts, by axis. line: its number in the list, 0 of a motion that is not listed.
+    texts, by axis. line: its number in the list, 0 of a motion that is not listed. folder: that of the list.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Motion:
     magnitude: float | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     line: int = field(default=0, compare=False)
+    folder: Path | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ class MotionList:
 def read_motion_list(folder: Path) -> MotionList | None:
     """Return the motions that motions.csv of a folder lists; None without it. Raises RecordError with all faults."""
     file = folder / FILE_NAME
-    if not file.is_file():
+    if not os.path.isfile(file):
         return None
     try:
         text = decode_text(read_file(file, MAX_BYTES))
@@ -108,7 +110,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
         try:
             if any(row[len(heads) :]):
                 raise RecordError(f"{len(row)} cells, and {len(heads)} columns: a decimal comma needs quotes")
-            motion = replace(_read_motion(dict(zip(heads, row)), folder), line=number)
+            motion = replace(_read_motion(dict(zip(heads, row)), folder), line=number, folder=folder)
             if motion.name in motions:
                 raise RecordError(f"{quote(motion.name)}: two motions have one name")
             motions[motion.name] = motion
@@ -169,7 +171,7 @@ def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) ->
         rule = f"must be one column, or one for each of {', '.join(files)}"
         raise RecordError(f"column = {quote(row['column'])}: {rule}")
     for file in files.values():
-        if not _is_file(file):
+        if not os.path.isfile(file):
             raise RecordError(f"{quote(file.name)}: no such file in the folder")
     return files
 
@@ -179,14 +181,6 @@ def _whole_number(name: str, text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
         raise RecordError(f"{name} = {quote(text)}: must be a whole number up to {MAX_NUMBER}")
     return int(text)
-
-
-def _is_file(file: Path) -> bool:
-    """Return whether a path names a file; False where the system refuses the path."""
-    try:
-        return file.is_file()
-    except (OSError, ValueError):  # the name is too long, or is no path
-        return False
 
 
 def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
@@ -203,15 +197,30 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
     return value
 
 
+def _name_in_list(file: Path, folder: Path | None) -> str:
+    """Return the name of a file as a list in a folder states it; None for the file's own folder."""
+    if folder is None:
+        return file.name
+    return str(file.relative_to(folder) if file.is_relative_to(folder) else file)
+
+
 def motion_list_text(motions: Iterable[Motion]) -> str:
-    """Return the text of motions.csv with these motions; a file with all directions is listed under x."""
+    """
+    Return the text of motions.csv with these motions; a file with all directions is listed under x.
+
+    Raises RecordError for a name that a line of the list cannot hold.
+    """
     motions = list(motions)
     stating = any(motion.options for motion in motions)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([*COLUMNS, *(OPTION_COLUMNS if stating else ())])
     for motion in motions:
-        names = {axis or "x": file.name for axis, file in motion.files.items()}
+        names = {axis or "x": _name_in_list(file, motion.folder) for axis, file in motion.files.items()}
+        for name in (motion.name, *names.values()):
+            if not name.isprintable() or name != name.strip():
+                rule = f"{FILE_NAME} lists printable names without blanks at their ends: rename the file"
+                raise RecordError(f"{quote(name)}: {rule}")
         row = [motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:g}"]
         stated = next(iter(motion.options.values()), {})
         columns = [str(each["column"]) for each in motion.options.values() if "column" in each]

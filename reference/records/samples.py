@@ -31,7 +31,15 @@ TIME_MISMATCH = 0.01  # instants of two files may differ by this share of a step
 
 
 class RecordError(ValueError):
-    """Error for a file that is no record: one line with the place in it, the text there, and the rule."""
+    """
+    Error for a file that is no record: one line with the place in it, the text there, and the rule.
+
+    proposal: end of the line that says what to write in a scene instead; `said`: the line before it.
+    """
+
+    def __init__(self, said: str, proposal: str = "") -> None:
+        super().__init__(f"{said}{proposal}")
+        self.said, self.proposal = said, proposal
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
 from reference.records.formats.plain_text import Proposal, propose_options, word_guesses
 from reference.records.motion_lists import FILE_NAME, Motion, MotionList, motion_list_text, read_motion_list
-from reference.records.numerals import WRITE_RECORD, decode_text
+from reference.records.numerals import decode_text
 from reference.records.pairing import SuiteError, find_motion, find_vertical_components, pair_files
 from reference.records.samples import (
     AXES,
@@ -104,10 +104,8 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
         try:
             readings[axis] = read_record(read_file(file, MAX_FILE_BYTES), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
-            reason = str(getattr(error, "strerror", None) or error)
-            raise _refuse_motion(
-                motion, f"{_word_file(axis, file)}: {_with_listed_line(reason, motion, file)}"
-            ) from None
+            reason = _with_listed_line(error, motion, file)
+            raise _refuse_motion(motion, f"{_word_file(axis, file)}: {reason}") from None
     try:
         samples = join_directions(readings)
     except RecordError as error:
@@ -123,27 +121,35 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
     """Return the error of a motion that cannot be read, which names its line of the list or its folder."""
-    folder = next(iter(motion.files.values())).parent
+    folder = motion.folder or next(iter(motion.files.values())).parent
     place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
 
 
-def _with_listed_line(reason: str, motion: Motion, file: Path) -> str:
-    """Return a reason with the line of motions.csv in place of that of a scene, where it proposes one."""
-    said, mark, _ = reason.partition(f"{WRITE_RECORD}{{")
-    proposal = _propose_file_options(file) if mark else None
+def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
+    """Return what an error says with the line of motions.csv in place of that of a scene, where it proposes one."""
+    if isinstance(error, OSError):
+        return str(error.strerror or error)
+    said, proposal = error.said, _propose_file_options(file) if error.proposal else None
     if proposal is None:
-        return reason
+        return str(error)
     others = filter(None, map(_propose_file_options, motion.files.values()))
     if len({each.unit.lower() for each in others if "unit" not in each.missing}) > 1:
         return f"{said}bring the files of this motion into one unit: a line of {FILE_NAME} states one"
-    head, line = _propose_lines(motion, proposal)
+    try:
+        head, line, guesses = _propose_lines(motion, proposal)
+    except RecordError as unlisted:
+        return f"{said}{unlisted}"
     place = f"in place of this line of {FILE_NAME}" if motion.line else f"into a file {FILE_NAME} in this folder"
-    return f'{said}write {line} {place}, below the first line "{head}"'
+    return f'{said}write {line} {place}, below the first line "{head}"{guesses}'
 
 
-def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str]:
-    """Return the first line of motions.csv, and in quotes that of a motion, with what proposal and motion state."""
+def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
+    """
+    Return the first line of motions.csv, in quotes that of a motion with what both state, and words on guesses.
+
+    Raises RecordError for a name that no line can hold.
+    """
     columns = proposal.columns or (0,)
     axes = [*motion.files] if len(motion.files) > 1 else AXES[: len(columns)]
     columns = columns[:1] * len(axes) if len(motion.files) > 1 else columns
@@ -152,7 +158,7 @@ def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str]:
     stated |= {key: given[key] for key in ("step", "unit") if key in given}
     options = {axis: {**stated, "column": column} for axis, column in zip(axes, columns)}
     head, line = motion_list_text([replace(motion, options=options)]).splitlines()
-    return head, f'"{line}"{word_guesses([key for key in proposal.missing if key not in given])}'
+    return head, f'"{line}"', word_guesses([key for key in proposal.missing if key not in given])
 
 
 def _word_file(axis: str, file: Path) -> str:
@@ -216,18 +222,21 @@ def _pair_records(records: Sequence[Path]) -> list[Motion]:
 def propose_motion(files: Sequence[Path]) -> str:
     """Return the lines of motions.csv for the first file that is a plain text of numbers; "" without such a file."""
     for file in files:
-        proposal = _propose_file_options(file)
-        if proposal is not None:
-            motion = find_motion(file, files)
-            head, line = _propose_lines(motion, proposal)
-            these = "these files" if len(motion.files) > 1 else "this file"
-            names = " and ".join(one_line(each.name) for each in motion.files.values())
-            have = "have" if len(motion.files) > 1 else "has"
-            return (
-                f"{names} {have} numbers whose step and unit must be stated: write {FILE_NAME} into the folder, first "
-                f'line "{head}", and for {these} {line}; --write-motions writes the lines of motions that are read '
-                "without it."
-            )
+        if (proposal := _propose_file_options(file)) is None:
+            continue
+        motion = find_motion(file, files)
+        try:
+            head, line, guesses = _propose_lines(motion, proposal)
+        except RecordError:  # the line cannot hold the file's name
+            continue
+        these = "these files" if len(motion.files) > 1 else "this file"
+        names = " and ".join(one_line(each.name) for each in motion.files.values())
+        have = "have" if len(motion.files) > 1 else "has"
+        return (
+            f"{names} {have} numbers whose step and unit must be stated: write {FILE_NAME} into the folder, first "
+            f'line "{head}", and for {these} {line}{guesses}; --write-motions writes the lines of motions that are '
+            "read without it."
+        )
     return ""
 
 

@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 MAX_QUOTED_LETTERS = 80  # an error quotes at most so many letters of a value
+MAX_LENGTH = 10**8  # an object that is no array has at most so many entries
 MISSING = object()  # stands for an argument that the caller has not given
 
 
@@ -108,20 +109,29 @@ def check_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
 
 def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
     """Return `values` as a contiguous array of numbers. Raises ValueError, one line that ends with `rule`."""
-    if _is_masked(values):
-        raise ValueError(f"{name}: has masked entries: {rule}")
     try:
-        array = np.asarray(values)
-    except ValueError:  # the rows have different lengths
-        array = np.empty(0, dtype=object)
+        if _claims_too_many(values):
+            raise MemoryError
+        masked = _is_masked(values)
+        array = np.empty(0) if masked else np.asarray(values)
     except MemoryError:  # the values claim to be longer than the memory
         raise ValueError(f"{name}: takes more memory than there is: {rule}") from None
+    except Exception:  # the rows have different lengths, a list contains itself, or an object is no array
+        masked, array = False, np.empty(0, dtype=object)
+    if masked:
+        raise ValueError(f"{name}: has masked entries: {rule}")
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name} = {quote(values)}: must be numbers: {rule}")
     array = np.ascontiguousarray(array, dtype=float)
     if finite and not np.isfinite(array).all():
         raise ValueError(f"{name}: must be finite: {rule}")
     return array
+
+
+def _claims_too_many(values: Any) -> bool:
+    """Return True if an object that is no array claims more entries than memory holds."""
+    counted = hasattr(values, "__len__") and not hasattr(values, "__array__")
+    return counted and len(values) > MAX_LENGTH
 
 
 def _is_masked(values: Any) -> bool:
@@ -141,8 +151,8 @@ def quote(value: Any) -> str:
     """Return the `repr` of a value in one line of at most MAX_QUOTED_LETTERS letters."""
     try:
         text = repr(value[: 2 * MAX_QUOTED_LETTERS] if isinstance(value, str) else value)
-    # An integer has more digits than Python prints, or tables are nested thousands deep
-    except (ValueError, RecursionError):
+    # An integer has more digits than Python prints, tables are nested thousands deep, or an object cannot be shown
+    except Exception:
         text = f"<{type(value).__name__}>"
     text = " ".join(text.split())
     return text if len(text) <= MAX_QUOTED_LETTERS else text[: MAX_QUOTED_LETTERS - 3] + "..."

@@ -21,7 +21,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any, NoReturn, TextIO, cast
 
-from reference.support.scene_error import SceneError
+from reference.support.scene_error import MAX_LETTERS, SceneError
 from reference.support.version import __version__
 
 # Exit codes: after an error that no rule foresees, and after the reader of standard output has closed it
@@ -66,8 +66,11 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError with one line."""
-        raise UsageError(f"command line: {message} (--help lists the options)")
+        """Raise UsageError with one line, without the middle of a long one."""
+        text = message if message.isprintable() else repr(message)
+        if len(text) > 2 * MAX_LETTERS:
+            text = f"{text[:MAX_LETTERS]}...{text[-MAX_LETTERS:]}"
+        raise UsageError(f"command line: {text} (--help lists the options)")
 
 
 def run_command(main: Callable[[], int]) -> NoReturn:

@@ -9,10 +9,11 @@ from typing import Any
 from reference.support.arguments import quote
 
 MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
+MAX_ERRORS = 50  # a line has at most so many errors of one file, and the number of the others
 # Spellings of one word share at least this ratio of their letters; words of other meanings share less
 MIN_SPELLING_SIMILARITY = 0.7
-# Beginnings of rules about a missing key and a missing table
-IS_REQUIRED, IS_MISSING = "this key is required", "the table ["
+# Beginnings of rules about a missing key, a missing table and an unknown key
+IS_REQUIRED, IS_MISSING, IS_UNKNOWN = "this key is required", "the table [", "unknown key; "
 YIELDING_HINT = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
     "or yield_displacement = 0.001, m"
@@ -78,14 +79,19 @@ class SceneError(ValueError):
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
-        super().__init__(f"{one_line(file)}: {'; also '.join(error._sentence for error in (self, *self.others))}")
+        shown = (self, *self.others[: MAX_ERRORS - 1])
+        said = "; also ".join(
+            f"{'' if error.file == file else f'{one_line(error.file)}: '}{error._sentence}" for error in shown
+        )
+        more = len(self.others) + 1 - MAX_ERRORS
+        super().__init__(f"{one_line(file)}: {said}{f'; and {more} more' if more > 0 else ''}")
 
     @property
     def _sentence(self) -> str:
         """Return key, value and rule as one sentence."""
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
         value = "" if absent else f" = {quote(self.value)}"
-        return f"{one_line(self.key)}{value}: {self.rule}"
+        return f"{one_line(self.key)}{value}: {printable(self.rule)}"
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
         # Worker processes send the error to the main process
@@ -122,7 +128,7 @@ def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneE
     *table, last = [part for part in key.split(".") if not part.isdecimal()] or [""]
     letters = "".join(filter(str.isalnum, last[:MAX_LETTERS].lower()))
     if hint := HINTS.get(f"{'.'.join(table)}.{letters}", HINTS.get(letters)):
-        return SceneError(file, key, value, f"unknown key; {hint}")
+        return SceneError(file, key, value, f"{IS_UNKNOWN}{hint}")
     nearest = get_close_matches(last[:MAX_LETTERS].lower(), valid, n=2, cutoff=MIN_SPELLING_SIMILARITY)
     suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
-    return SceneError(file, key, value, f"unknown key; {suggestion}")
+    return SceneError(file, key, value, f"{IS_UNKNOWN}{suggestion}")

@@ -82,6 +82,12 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
     assert not Path(words[-1]).exists()
 
 
+def test_a_film_that_cannot_be_written_is_one_line(words: list[str], capsys: Any) -> None:
+    assert main([*words[:-1], str(Path(words[-1]).with_name(f"{'x' * 300}.gif"))]) == 3
+    said = capsys.readouterr().err
+    assert ("could not be written: [Errno 36]" in said, said.count("\n")) == (True, 1)
+
+
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 def test_the_viewer_shows_the_whole_run_of_the_model_asked_for(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[Any] = []
@@ -126,6 +132,7 @@ NAMED = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen
         (["fig3-I", "--out", "/dev/null/run.gif"], "--out"),
         (["fig3-I", "--out", "run.mp4"], "must end in .gif"),
         (["fig3-I", "--out", "/"], "is a folder"),
+        (["fig3-I", "--out", f"{'x' * 300}/run.gif"], "its folder does not exist"),
         pytest.param(["fig3-I", "--view"], "--view: no screen", marks=NAMED),
     ],
 )  # fmt: skip

@@ -81,6 +81,7 @@ from reference.problem.families import make_family, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.motion_lists import FILE_NAME as MOTIONS
 from reference.records.motion_lists import Motion, motion_list_text
+from reference.records.samples import RecordError
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
@@ -315,8 +316,12 @@ def print_suite(console: Console, options: argparse.Namespace) -> None:
     listed = list_motions(options.suite, Path(), options.components)
     console.print(listed.sentence, soft_wrap=True)
     if options.write_motions:
+        try:
+            text = motion_list_text(listed.motions)
+        except RecordError as error:
+            raise SceneError("command line", "--write-motions", options.suite, str(error)) from None
         with report_write_errors(Path(options.suite)):
-            place = write_new(Path(options.suite) / MOTIONS, motion_list_text(listed.motions).encode())
+            place = write_new(Path(options.suite) / MOTIONS, text.encode())
         console.print(f"Motions: {place}", soft_wrap=True)
 
 
@@ -338,9 +343,10 @@ def make_suite_family(options: argparse.Namespace, source: str) -> Family:
     try:
         return make_family(bounded, source)
     except SceneError as error:
-        if options.suite is None or error.key != f"{RECORD_KEY}.suite":
+        wrong = [each for each in (error, *error.others) if each.key == f"{RECORD_KEY}.suite"]
+        if options.suite is None or not wrong:
             raise
-        rule = error.rule.removesuffix(", relative to the scene file")
+        rule = wrong[0].rule.removesuffix(", relative to the scene file")
         raise SceneError("command line", "--suite", options.suite, rule) from None
 
 

@@ -13,13 +13,18 @@ from comparison.result_types import Array
 from reference.measures import factor_for_spectrum, response_spectrum
 from reference.problem import SceneError
 from reference.records.numerals import UNITS
+from reference.support.arguments import Range
 from reference.support.files import read_file
 
 # Number of periods, evenly spaced in their logarithm: in the least squares, in the plot
 FITTED_PERIODS, DRAWN_PERIODS = 40, 60
 MAX_FILE_BYTES = 2**20  # largest size of a file in bytes
 ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
-FILE_RULE = "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods"
+PERIODS, LARGEST = Range(1e-3, 1e3, "s"), 1e6  # admissible periods besides zero; largest acceleration, m/s^2
+FILE_RULE = (
+    "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods, "
+    f"{PERIODS.text} s, with accelerations above 0 and at most {LARGEST:g} m/s^2"
+)
 
 
 def read_target(file: str) -> tuple[Array, Array]:
@@ -31,11 +36,11 @@ def read_target(file: str) -> tuple[Array, Array]:
         period, acceleration = values[values[:, 0] != 0.0].T
         factor = ACCELERATION_HEADS[second]
     except OSError as error:
-        raise SceneError("command line", "--target", file, str(error.strerror or error)) from None
+        raise SceneError("command line", "--target", file, f"{error.strerror or error}; {FILE_RULE}") from None
     except (ValueError, LookupError, csv.Error):
         raise SceneError("command line", "--target", file, FILE_RULE) from None
-    rising = len(period) > 1 and period[0] > 0.0 and (np.diff(period) > 0.0).all()
-    if first != "period[s]" or not (rising and acceleration.min() > 0.0 and np.isfinite(values).all()):
+    rising = len(period) > 1 and all(end in PERIODS for end in period[[0, -1]]) and (np.diff(period) > 0.0).all()
+    if first != "period[s]" or not (rising and acceleration.min() > 0.0 and acceleration.max() <= LARGEST / factor):
         raise SceneError("command line", "--target", file, FILE_RULE)
     return period, factor * acceleration
 

@@ -226,6 +226,7 @@ def _linear_cases() -> list[BenchmarkCase]:
 
 
 MASTODON_OPTION = "--mastodon"
+MASTODON_RULE = "must be the CSV file with the input of MASTODON's friction pendulum test: time [s], ax, ay, az"
 READING_ERROR = 3.0  # mm, error of reading the published loops
 MASTODON_RADIUS = 2.2352  # m, radius of the friction pendulum
 MASTODON_WEIGHT = 6285710.0  # N, weight on the friction pendulum
@@ -252,7 +253,7 @@ def load_mastodon_case(path: Path) -> BenchmarkCase:
         samples = read_csv_samples(read_file(path, MAX_FILE_BYTES).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "must be text in UTF-8"
-        raise SceneError("command line", MASTODON_OPTION, str(path), reason) from None
+        raise SceneError("command line", MASTODON_OPTION, str(path), f"{reason}; {MASTODON_RULE}") from None
     except RecordError as error:
         raise SceneError("command line", MASTODON_OPTION, str(path), str(error)) from None
     _refuse_other_input(path, samples)

@@ -6,6 +6,7 @@ the process that reads it costs one line.
 """
 
 import io
+import os
 import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -80,7 +81,7 @@ class MeasuredFiles(NamedTuple):
 
 def read_folder(folder: Path) -> MeasuredFiles:
     """Return the measured files in a folder and its direct subfolders. Raises SceneError, one line."""
-    if not folder.is_dir():
+    if not os.path.isdir(folder):
         raise make_file_error(folder, "must be a folder with the measured files")
     files: dict[str, Path] = {}
     for file in sorted([*folder.glob("*.mat"), *folder.glob("*/*.mat")]):

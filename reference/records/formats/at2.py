@@ -47,7 +47,8 @@ def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
     spacing = parse_number(counts[0] + 1, SECONDS_SUFFIX.sub("", step))
     if spacing <= 0.0:
         raise RecordError(f"line {counts[0] + 1}: DT = {step} s: must be greater than 0")
-    _check_unit(head[: last + 1], f'{{file = {quote_name(name)}, step = {spacing:g}, unit = "...", skip = {last + 1}}}')
+    table = f'{{file = {quote_name(name)}, step = {spacing:g}, unit = "...", skip = {last + 1}}}'
+    _check_unit(head[: last + 1], f"{WRITE_RECORD}{table}")
     values, notes = read_values(lines[last + 1 :], last + 2, int(count), f"NPTS = {count}")
     return make_even_samples(FORMAT, spacing, GRAVITY * np.array(values), notes=notes)
 
@@ -60,20 +61,20 @@ def _shorten_lines(lines: Sequence[str]) -> list[str]:
 def _check_unit(header: list[str], proposal: str) -> None:
     """Raise RecordError unless the header names g as the unit, and no other unit."""
     found = [(number, line) for number, line in enumerate(header, 1) if UNIT_LINE.search(line)]
-    rule = f"must say 'IN UNITS OF G'; in another unit {WRITE_RECORD}{proposal}"
+    rule = "must say 'IN UNITS OF G'; in another unit "
     for number, line in found:
         at = UNIT_LINE.search(line)
         if NO_ACCELERATION.search(line):
             raise RecordError(f"line {number}: {quote(line)}: is no acceleration: take the .AT2 file of the same name")
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
-            raise RecordError(f"line {number}: the header names no unit that is known: {quote(line)}: {rule}")
+            raise RecordError(f"line {number}: the header names no unit that is known: {quote(line)}: {rule}", proposal)
     named = [(number, line) for number, line in enumerate(header, 1) if ACCELERATION_LINE.search(line)]
     if found or any(
         (at := ACCELERATION_LINE.search(line)) and ACCELERATION_IN_G.fullmatch(line[at.start() :]) for _, line in named
     ):
         return
     quoted = f"line {named[-1][0]}: {quote(named[-1][1])}: " if named else ""
-    raise RecordError(f"{quoted}the header names no unit that is known: {rule}")
+    raise RecordError(f"{quoted}the header names no unit that is known: {rule}", proposal)
 
 
 def _read_sizes(line: str) -> tuple[str, str] | None:

@@ -164,7 +164,8 @@ def _header_columns(line: int, cells: list[str], unit: str | None, name: str) ->
     if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
         raise RecordError(
             f"line {line}: {quote(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
-            f'column of the time {WRITE_RECORD}{{file = "...", step = 0.01, unit = "g", skip = 1, column = 1}}'
+            "column of the time ",
+            f'{WRITE_RECORD}{{file = "...", step = 0.01, unit = "g", skip = 1, column = 1}}',
         )
     if not times or not usable:
         raise RecordError(f"line {line}: must be {HEADER_EXAMPLE}")

@@ -63,7 +63,7 @@ def read_plain_text(
     step: s. unit: one of `UNIT_NAMES`. Raises RecordError, with the line to write where one of them is missing.
     """
     if step is None or unit is None:
-        raise RecordError(f"plain text needs step and unit: {propose_line(text, name)}")
+        raise RecordError("plain text needs step and unit: ", propose_line(text, name))
     spacing, factor = as_float(step), unit_factor(unit) if isinstance(unit, str) else None
     if not MIN_INTERVAL <= spacing < np.inf:
         raise RecordError(f"step = {quote(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
@@ -81,7 +81,7 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
     """Return the values of a text; spacing: step, s; factor: of its unit to m/s^2. Raises RecordError."""
     lines, propose = text.splitlines(), partial(propose_line, text, name)
     if skip >= len(lines):
-        raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose()}")
+        raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: ", propose())
     rows, notes = _read_rows(lines, skip, propose)
     values = _column_values(rows, column, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])), propose)
     _check_stated_count(lines[:skip], len(values))
@@ -202,7 +202,7 @@ def _read_rows(
         values = parse_plain_lines([plain])
         if values is None:
             if number == skip + 1 and not holds_numbers(line):
-                raise RecordError(f"line {number}: {quote(line.strip())}: must be numbers: {propose()}")
+                raise RecordError(f"line {number}: {quote(line.strip())}: must be numbers: ", propose())
             values = parse_fields(number, plain)
             glued = glued or len(values) > len(plain.split())
         rows.append((number, values))
@@ -231,15 +231,15 @@ def _check_widths(
     alike = len(set(widths)) == 1 and widths[0] > 1
     if column_unstated and alike and _even_step([row for _, row in rows]) is not None:
         rule = "the first of them rises evenly as a time does: state the column"
-        raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose()}")
+        raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: ", propose())
     if column_unstated and alike and not counted and len(rows) > 1 and widths[0] <= MAX_RECORD_COLUMNS:
         rule = f"{widths[0]} values a line: state column, from 1; column = 0 takes all of them in their order"
-        raise RecordError(f"line {rows[0][0]}: {rule}: {propose()}")
+        raise RecordError(f"line {rows[0][0]}: {rule}: ", propose())
     other = widths[min(1, len(widths) - 1)] if widths else 0
     for (number, _), width in zip(rows[:-1], widths):
         if width != other:
             rule = f"{width} values, {other} in other lines: a header, or a broken line"
-            raise RecordError(f"line {number}: {rule}: {propose()}")
+            raise RecordError(f"line {number}: {rule}: ", propose())
 
 
 def _check_stated_count(header: Sequence[str], count: int) -> None:

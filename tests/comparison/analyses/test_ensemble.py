@@ -367,6 +367,8 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
     [
         ((), "", "excitation.record = None: an ensemble needs recorded motions: give --suite"),
         (("--suite", "none"), "", "command line: --suite = 'none': No such file or directory"),
+        ((*SUITE, "--against", "x" * 300), "", "x...: has no summary.json"),
+        ((*SUITE, "--target", "none"), "", "--target = 'none': No such file or directory; must be CSV with"),
         ((*SUITE, "--normalized"), "", "remove this key"),
         ((*SUITE, "--scales", "2", "1", "2"), "", "the smaller first"),
         ((*SUITE, "--scales", "1", "x", "2"), "", "--scales"),
@@ -381,6 +383,8 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[yd/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}1, 1\n0.1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 0", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 1e308", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}1e-300, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv", "--periods", "0.05", "1"), f"{HEAD}0.1, 1\n1, 1", "--periods = "),
         ((*SUITE, "--target", "code.csv", "--periods", "0.5", "0.2"), f"{HEAD}0.1, 1\n1, 1", "the shorter first"),
     ],

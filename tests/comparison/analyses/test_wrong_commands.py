@@ -20,7 +20,11 @@ PAIR = "excitation.record = 'synthetic-pair': "
         (assumptions, ["synthetic-pair"], f"{PAIR}rings and heights are varied at phases"),
         (assumptions, ["bare.toml"], "isolator, bodies = 'bare': the spatial model needs supports, ring"),
         (benchmarks, ["--only", "nothing"], "--only = 'nothing': no benchmark is left"),
-        (benchmarks, ["--mastodon", "nowhere.csv"], "--mastodon = 'nowhere.csv': No such file or directory"),
+        (
+            benchmarks,
+            ["--mastodon", "nowhere.csv"],
+            "--mastodon = 'nowhere.csv': No such file or directory; must be the CSV",
+        ),
         (benchmarks, ["--mastodon", "flat.csv"], "must have accelerations along x, y and z: columns ax, ay and az"),
         (extremes, ["--limit", "-1"], "--limit = "),
         (extremes, ["--rows", "no such extreme"], "no cell is left: take part of a row's name"),

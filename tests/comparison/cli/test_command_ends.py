@@ -131,15 +131,16 @@ def test_every_command_refuses_words_that_are_no_text(
 
 
 @pytest.mark.usefixtures("as_before")
+@pytest.mark.parametrize(("error", "kind"), [("ImportError", ""), ("ValueError", "ValueError: ")])
 def test_an_engine_that_cannot_be_loaded_is_one_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: str, kind: str
 ) -> None:
-    (tmp_path / "command_without_engine.py").write_text("raise ImportError('Tried:\\n  libGL.so.1')\n", "utf-8")
+    (tmp_path / "command_without_engine.py").write_text(f"raise {error}('Tried:\\n  libGL.so.1')\n", "utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
     with pytest.raises(SystemExit) as end:
         run_command("command_without_engine")
-    assert (end.value.code, *capsys.readouterr()) == (3, "", "phase-resonance cannot start: Tried: libGL.so.1\n")
+    assert (end.value.code, *capsys.readouterr()) == (3, "", f"phase-resonance cannot start: {kind}Tried: libGL.so.1\n")
 
 
 def test_workers_of_a_program_elsewhere_import_nothing_there(tmp_path: Path) -> None:

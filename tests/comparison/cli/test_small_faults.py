@@ -62,34 +62,23 @@ def test_no_cell_of_the_table_begins_like_a_formula(monkeypatch: pytest.MonkeyPa
     assert ("\r" in name or "\n" in name) == (f'"\'{name}"' in text), "in quotation marks"
 
 
-class Endless:
-    """Claims to be long."""
-
-    def __len__(self) -> int:
-        return 10**15
-
-    def __getitem__(self, place: int) -> float:
-        return 1.0
-
-
-def test_phases_that_claim_to_be_endless_are_refused() -> None:
-    with pytest.raises(ValueError, match="phases: takes more memory than there is: must be"):
-        reference.amplification(reference.load_scene("fig3-I"), Endless())
-
-
 def test_a_scene_is_parsed_from_bytes_alone() -> None:
     text: Any = "x"
     with pytest.raises(TypeError, match="text = 'x': must be the text of a scene file as bytes"):
         parse_scene(text, "x")
 
 
-@pytest.mark.parametrize("threads", ["0", "-1", "many", ""])
-def test_a_wrong_number_of_threads_is_one_line(tmp_path: Path, threads: str) -> None:
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_NUM_THREADS": threads}
+@pytest.mark.parametrize(
+    ("name", "value", "least"),
+    [("NUMBA_NUM_THREADS", value, 1) for value in ("0", "-1", "many", "", "9" * 5000)]
+    + [("SOURCE_DATE_EPOCH", "x", 0)],
+)
+def test_a_wrong_number_in_the_environment_is_one_line(tmp_path: Path, name: str, value: str, least: int) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), name: value}
     words = [sys.executable, "-P", "-m", "comparison.run", "--plan"]
     ended = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert (ended.returncode, ended.stderr.count("\n")) == (2, 1)
-    assert ended.stderr.startswith(f"environment: NUMBA_NUM_THREADS = {threads!r}: must be a whole number from 1")
+    assert ended.stderr.startswith(f"environment: {name} = {value[:80]!r}: must be a whole number from {least}")
 
 
 def test_what_cannot_be_written_is_shown_all_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -105,6 +94,15 @@ def test_what_cannot_be_shown_is_written_all_the_same(tmp_path: Path, capsys: py
     file = tmp_path / "table"
     assert write_and_show(tmp_path, lambda: [file], lambda: print(SimpleNamespace().nothing)) == [file]
     assert capsys.readouterr().err.startswith("results could not be shown: AttributeError: ")
+
+
+@pytest.mark.parametrize("words", [("claims", "\x1b[31m\n"), ("ensemble", "fig3-I", "--model", "x" * 5000)])
+def test_a_wrong_word_is_one_printable_line_of_moderate_length(words: tuple[str, ...], capsys: Any) -> None:
+    command, *options = words
+    assert import_module(list_commands()[command].module).main(options) == 2
+    line, end, rest = capsys.readouterr().err.partition("\n")
+    assert (line.isprintable(), len(line) < 700, end, rest) == (True, True, "\n", "")
+    assert line.endswith("(--help lists the options)")
 
 
 @pytest.mark.parametrize("words", [("run", "--grid=--"), ("ensemble", "fig3-I", "--against=--"), ("init", "--ci=--")])

@@ -224,7 +224,7 @@ PLACES = {  # others are refused by phase-resonance init, too
     "a mount point": ("mount", "is a mount point, which cannot be replaced"),
     "files of others": ("elsewhere.tiles", "is not a report of this study: give another directory, or empty this one"),
     "the directory of the work": ("here", "is the directory you work in"),
-    "one above it": ("", "is the directory you work in"),
+    "one above it": ("", "holds the directory you work in"),
 }
 
 

@@ -40,5 +40,5 @@ def test_platform_left_below_restoring_one_stays():
 
 def test_effective_isolator_refuses_no_displacement_and_lubrication():
     for wrong in (0.0, -0.1, float("nan"), [0.1, float("inf")]):
-        assert "pass lengths in m above 0" in str(refusal(reference.effective_isolator, SCENE, wrong))
+        assert "must be lengths in m above 0" in str(refusal(reference.effective_isolator, SCENE, wrong))
     assert "no dry friction" in str(refusal(reference.effective_isolator, reference.load_scene("fig4-viscous"), 0.1))

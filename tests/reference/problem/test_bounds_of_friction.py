@@ -57,8 +57,16 @@ def test_bounds_of_the_caller_take_the_place_of_those_in_the_file(tmp_path: Path
         (TABLE, "[0.0, 1.5]", "must be two factors"),
         ("{values = [0.03, 0.05]}", "[0.8, 1.5]", "multiplies one friction: isolator.friction is {'values'"),
         ("{slow = {values = [0.03, 0.04]}, fast = 0.05, rate = 50.0}", "[0.8, 1.5]", "multiplies one friction"),
-        ('"much"', "[0.8, 1.5]", "slow, fast and rate; also isolator.friction = 'much': must be"),
-        ("-1.0", "[1.5, 0.8]", "as [0.8, 1.5]; also isolator.friction = -1.0: must be"),
+        (
+            '"much"',
+            "[0.8, 1.5]",
+            "isolator.friction = 'much': must be a valid number; also isolator.bounds",
+        ),
+        (
+            "-1.0",
+            "[1.5, 0.8]",
+            "-1.0: must be greater than or equal to 0; also isolator.bounds = [1.5, 0.8]: must be two",
+        ),
         ("900.0", "[0.8, 1.5]", "= [0.8, 1.5]: makes isolator.friction = 1350.0, which must be finite, from 0 to 1000"),
     ],
 )

@@ -1,5 +1,6 @@
 """Values of a scene that run make a scene of each, or of every combination; what is no range is one line."""
 
+import re
 from itertools import product
 from pathlib import Path
 
@@ -73,7 +74,11 @@ WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
     ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
-    ("{values = [0.1, 0.1]}", " = 0.1: is there twice"),
+    ("{values = [0.1, 0.1]}", ".values = 0.1: is there twice"),
+    (
+        "{values = [0.1, -2.0, -1.0]}",
+        " = -2.0: must be greater than or equal to 0; also isolator.friction = -1.0",
+    ),
 ]
 
 
@@ -83,6 +88,32 @@ def test_what_is_no_range_is_one_line(tmp_path: Path, table: str, line: str) -> 
     assert str(refusal(load_family, file)).startswith(f"{file}: isolator.friction{line}")
     said = refusal(load_scene, _file(tmp_path, "friction = 0.1", "friction = {values = [0.02, 0.2]}"))
     assert (said.key, said.rule[:32]) == ("isolator.friction", "makes a family of scenes, and on")
+
+
+def test_all_keys_that_run_wrongly_are_in_one_line_with_all_other_errors_and_nothing_that_follows(
+    tmp_path: Path,
+) -> None:
+    file = _file(
+        tmp_path, "friction = 0.1", "friction = {values = []}\nbounds = [2, 1]\nbound = {values = 3}\ntravel = -1.0"
+    )
+    top, loading = "duration = -1.0", "scale = {range = [3.0, 1.0], steps = 2}"
+    text = file.read_text(encoding="utf-8").replace("[excitation]", f"[excitation]\n{loading}")
+    file.write_text("combine = 7\nnam = 1\n" + re.sub("duration = .*", top, text), encoding="utf-8")
+    said = str(refusal(load_family, file)).removeprefix(f"{file}: ").split("; also ")
+    assert [line.partition(": ")[0] for line in said] == [
+        "combine = 7", "nam = 1", "duration = -1.0", "isolator.friction.values = []", "isolator.bounds = [2, 1]",
+        "isolator.bound = {'values'",
+        "isolator.bound.values = 3", "isolator.travel = -1.0", "excitation.scale.range = [3.0, 1.0]",
+    ]  # fmt: skip
+    assert "the keys here are combine, title" in said[1], "a scene file has no name"
+    assert "did you mean bounds?" in said[5]
+
+
+def test_a_line_has_fifty_errors_and_the_number_of_the_others(tmp_path: Path) -> None:
+    values = ", ".join(f"-{number}.0" for number in range(1, 61))
+    said = str(refusal(load_family, _file(tmp_path, "friction = 0.1", f"friction = {{values = [{values}]}}")))
+    assert said.count("; also ") == 49
+    assert said.endswith("; and 10 more")
 
 
 def test_the_value_that_runs_is_a_coordinate_of_results(tmp_path: Path) -> None:

@@ -234,11 +234,31 @@ M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0
             ("suite/motions.csv", "line 2, name", "B"),
             "bring the files of this motion into one unit: a line of motions.csv states one",
         ),
+        (
+            "B,sub/A_X.txt,,,2,0.02,,,\n",
+            {"sub/A_X.txt": "0 1\n0.02 2\n0.04 1\n"},
+            ("suite/motions.csv", "line 2, name", "B"),
+            'write "B,sub/A_X.txt,,,2,0.02,g,0,2" in place of this line of motions.csv, below the first line '
+            '"name,x,y,z,factor,step,unit,skip,column", with the unit of your source',
+        ),
+        (
+            "",
+            {f"\x1b\n_{axis}.csv": "0 1\n0.02 2\n0.04 1\n" for axis in "XY"},
+            ("suite", "motion", "\x1b\n_X"),
+            "step and unit: '\\x1b\\n_X': motions.csv lists printable names without blanks at their ends: rename the",
+        ),
+        (
+            "",
+            {name: M_S2.replace("M/S2", "M/S2 write record = {a}") for name in ("A_H1.AT2", "A_H2.AT2")},
+            ("suite", "motion", "A"),
+            "write record = {a}': must say 'IN UNITS OF G'; in another unit write \"A,A_H1.AT2,A_H2.AT2,,1",
+        ),
     ],
 )
 def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, files, place, words):
     folder = make_folder(tmp_path / "suite")
     for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text)
     if listed:
         (folder / FILE_NAME).write_text(f"name,x,y,z,factor,step,unit,skip,column\n{listed}")
