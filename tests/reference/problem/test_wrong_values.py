@@ -108,6 +108,12 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"isolator.support_stiffness": 1e4, "isolator.restitution": 0.5}, "isolator.restitution", "rebound by it: remove"),
     # 19.62 N on four supports: each sinks by 0.0249 m, just above a tenth of the radius
     ({"isolator.support_stiffness": 197.0}, "isolator.support_stiffness", "gives way by 0.1 of the radius under the"),
+    # one support in place of an unknown number
+    (
+        {"isolator.supports": None, "isolator.support_stiffness": 400.0},
+        "isolator.support_stiffness",
+        "gives way by 0.197 of the radius under the weight: must be at most 0.1",
+    ),
     # bodies and links
     ({"bodies.0.mass": 1e308, "bodies.1.mass": 1e308}, "bodies.0.mass", "finite and positive"),
     ({"bodies.1.yaw": 45.0}, "bodies.1.yaw", "rad"),

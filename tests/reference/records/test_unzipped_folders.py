@@ -116,6 +116,9 @@ def test_all_names_that_make_no_pair_come_in_one_message(tmp_path, names, said):
     assert "Tried H1 H2 V, azimuths as 090, E N Z" in line
     assert "components = 1" in line
     assert "\n" not in line
+    for file in place.iterdir():
+        file.write_text("broken")
+    assert str(refusal(list_motions, str(place), place, kind=SuiteError)) == line, "names alone decide"
 
 
 def test_single_components_are_plane_motions_where_asked_for(tmp_path):
@@ -236,6 +239,7 @@ def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, f
     error = refusal(load_scene, scene_file(tmp_path, 'record = {suite = "suite", motion = 1}'), kind=SceneError)
     assert (error.file, error.key, error.value) == (str(tmp_path / place[0]), *place[1:])
     assert words in error.rule
+    assert error.rule.startswith("x = A_")
 
 
 def test_a_written_list_says_what_was_paired(tmp_path):
@@ -246,6 +250,9 @@ def test_a_written_list_says_what_was_paired(tmp_path):
     after = list_motions(str(place), place)
     assert after.motions == before.motions
     assert "as motions.csv lists them" in after.sentence
+    (place / FILE_NAME).write_text("name,x\nonly,B000.AT2\nother,B090.AT2\n")
+    listed = list_motions(str(place), place).sentence
+    assert listed == "2 motions, as motions.csv lists them."
 
 
 @pytest.mark.parametrize(
