@@ -52,8 +52,8 @@ def test_any_key_of_one_value_may_run(tmp_path: Path, old: str, new: str, key: s
 
 
 def test_names_have_as_many_digits_as_it_takes(tmp_path: Path) -> None:
-    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.10001], steps = 3}"), 3.0)
-    assert [scene.name for scene in family.scenes] == [f"mine[friction={n}]" for n in (0.1, 0.100005, 0.10001)]
+    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.100000001], steps = 3}"), 3.0)
+    assert [scene.name for scene in family.scenes] == [f"mine[friction={n}]" for n in (0.1, 0.1000000005, 0.100000001)]
     assert [scene.amplitudes.max() for scene in family.scenes] == [3.0] * 3, "every member is scaled"
 
 

@@ -5,6 +5,7 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, SceneError, load_family, load_scene
+from reference.records.directions import parse_direction
 from reference.records.motion_lists import FILE_NAME, motion_list_text
 from reference.records.pairing import SuiteError
 from reference.records.suites import list_motions
@@ -58,6 +59,23 @@ def test_directions_are_told_by_every_spelling(tmp_path, spelling):
     assert list(found.values()) == list(stations.values())
     if "ends like" not in spelling:
         assert list(found) == list(stations)
+
+
+def test_angles_of_names_count_from_north_to_the_east():
+    angles = {
+        "000": 0,
+        "007": 7,
+        "360": 360,
+        "361": None,
+        "12": None,
+        "N18E": 18,
+        "N18W": 342,
+        "S18E": 162,
+        "S18W": 198,
+    }
+    for word, angle in {**angles, "N90E": 90, "N91E": None}.items():
+        direction = parse_direction(word)
+        assert (None if direction is None else direction.azimuth) == angle, word
 
 
 def test_files_of_networks_are_paired_by_suffix_and_by_channel(tmp_path):
