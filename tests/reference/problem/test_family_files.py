@@ -71,6 +71,7 @@ WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
     ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
+    ("{values = [{}]}", ".values = [{}]: must be a list of 1 to 1000 finite numbers, or of texts, or of tables of f"),
     ("{values = [0.1, 0.1]}", " = 0.1: is there twice"),
 ]
 
