@@ -139,6 +139,7 @@ PLAIN = [  # text, what is proposed, values at 0.01 s in g
     ("a motion\n" + rows(" "), 'step = 0.01, unit = "g", skip = 1, column = 2}, with the unit of', FOUR),
     ("Acceleration (g)\n100 Hz\n" + ONE, '{file = "a.txt", step = 0.01, unit = "g", skip = 2}', FOUR),
     ("x\ny\n4 values at a time step of 0.01 s in units of g\n" + ONE, 'step = 0.01, unit = "g", skip = 3}', FOUR),
+    ("3 0.5\n1 0.25\n4 -0.5\n", '{file = "a.txt", step = 0.01, unit = "g", column = 1}', [3.0, 1.0, 4.0]),
     (ONE.replace(".", ","), '{file = "a.txt", step = 0.01, unit = "g"}', FOUR),
 ]
 

@@ -220,6 +220,11 @@ def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
     said = str(refusal(list_motions, str(place), place, kind=SuiteError))
     assert "A_X.txt and A_Y.txt have numbers" in said
     assert '"A,A_X.txt,A_Y.txt,,1,0.02,g,0,2", with the unit of your source' in said
+    for name in ("A_X.txt", "A_Y.txt"):
+        (place / name).write_text(TWO_COLUMNS)
+    assert 'for these files "A,A_X.txt,A_Y.txt,,1,0.01,g,0,1", with the step and the unit' in str(
+        refusal(list_motions, str(place), place, kind=SuiteError)
+    )
 
 
 M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0\n"
