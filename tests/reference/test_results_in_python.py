@@ -109,8 +109,8 @@ def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
 def test_what_is_no_body_surface_or_quantity_is_refused(surface, motion):
     for body in (0, 3, "1", 1.0):
         assert "must be a whole number from 1 to 2" in str(refusal(surface.plot, body=body))
-    listed = reference.amplification(SCENE, [(0.3, 1.1), (2.0, 0.7)], tolerance=1e-3)
-    assert "must be a grid" in str(refusal(listed.plot))
+    for phases in ([(0.3, 1.1), (2.0, 0.7)], (0.3, 1.1), [[(0.3, 1.1), (0.3, 2.2)]]):
+        assert "must be a grid" in str(refusal(reference.amplification(SCENE, phases, tolerance=1e-3).plot))
     assert "quantity = 'speed': must be one of position" in str(refusal(motion.plot, "speed"))
 
 

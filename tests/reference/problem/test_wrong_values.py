@@ -64,6 +64,14 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"title": "a\0b"}, "title", "must have no control characters"),
     ({"duration": 10**400}, "duration", "must be a valid number"),
     ({"duration": 1e9, "excitation.periods": [3.0, 2.0]}, "duration", "must be at most 1e+06 periods of 1 s"),
+    *(
+        (
+            {"duration": 1e9, "excitation.periods": periods},
+            "duration",
+            "1e+06 periods of 0.2 s, the shortest of loading a",
+        )
+        for periods in ([0.3, 0.2], [0.2, 0.3])
+    ),
     ({"duration": None}, "duration", "this key is required"),
     ({"acceptance.median": -1.0}, "acceptance.median", "must be greater than 0"),
     ({"superstructure": 0.05}, "superstructure", "must be a table of keys"),
