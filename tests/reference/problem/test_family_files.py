@@ -68,6 +68,7 @@ def test_a_scene_without_a_range_is_a_family_of_one() -> None:
 WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.1, 0.2]}", " = {'range': [0.1, 0.2]}: must be {range = [lowest, highest]"),
     ("{range = [0.2, 0.1], steps = 3}", ".range = [0.2, 0.1]: must be two finite numbers"),
+    ("{range = [0.2, 0.2], steps = 3}", ".range = [0.2, 0.2]: must be two finite numbers"),
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
     ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
