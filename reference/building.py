@@ -184,8 +184,8 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
         lines.append(f"Building {name_some(names, MAX_NAMES_PER_LINE)}: {text}")
         lines += _word_frictions(own)
         lines.append(f"  peak of the ground: {_word_peaks([building.ground_peak for building in own])}")
-    if len(alike) > MAX_KINDS:
-        lines.append(f"and {len(alike) - MAX_KINDS} more buildings")
+    if (more := len(alike) - MAX_KINDS) > 0:
+        lines.append(f"and {more} more kind{'' if more == 1 else 's'} of buildings")
     return "\n".join(lines).splitlines()
 
 

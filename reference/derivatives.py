@@ -310,8 +310,8 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     largest = np.maximum(np.nanmax(one_sided, axis=(0, 1), initial=0.0), np.abs(slope))
     departure = np.abs(mean - slope)
     beyond = departure - mean_error - slope_error
-    uncertain = np.nan_to_num(slope_error - MIN_CONTRADICTION * largest, nan=-1.0)
-    excess = np.nan_to_num(beyond - MIN_CONTRADICTION * largest, nan=-1.0).max(axis=0, initial=-1.0)
+    uncertain = np.nan_to_num(slope_error - MIN_CONTRADICTION * largest)
+    excess = np.nan_to_num(beyond - MIN_CONTRADICTION * largest).max(axis=0, initial=0.0)
     score = np.maximum(excess, uncertain) / np.where(largest > 0.0, largest, 1.0)
     if not (score > 0.0).any():
         return None, 0.0, False

@@ -39,6 +39,8 @@ def test_a_wrong_object_is_one_line_that_says_what_to_pass(
         with pytest.raises(TypeError, match=rf"^{first.name} = .*: must be a {kind}, as reference\.") as failure:
             function(*words, **named)
         assert "\n" not in str(failure.value)
+    with pytest.raises(TypeError, match=f"missing .* positional argument.*{first.name}"):
+        function()
 
 
 SHORT, START = SCENE.with_values({"isolator.travel": 0.1}), reference.State(np.full((2, 2), 0.08), np.zeros((2, 2)))

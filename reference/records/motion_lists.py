@@ -67,7 +67,7 @@ class MotionList:
         """Return a sentence on the content of the folder, with an example of how components were paired."""
         first = self.motions[0].files
         how = f"as {FILE_NAME} lists them" if self.listed else "" if "" in first else "paired by name"
-        if not self.listed and list(first) == ["x"]:
+        if list(first) == ["x"]:
             how = "one component each"
         example = ", ".join(f"{axis} = {one_line(file.name)}" for axis, file in first.items() if axis)
         upright = sum("z" in motion.files for motion in self.motions)

@@ -151,12 +151,11 @@ def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
     Raises RecordError for a name that no line can hold.
     """
     columns = proposal.columns or (0,)
-    axes = [*motion.files] if len(motion.files) > 1 else AXES[: len(columns)]
-    columns = columns[:1] * len(axes) if len(motion.files) > 1 else columns
+    columns = columns[:1] if len(motion.files) > 1 else columns  # one column of all files is stated once
     stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
     given = next(iter(motion.options.values()), {})
     stated |= {key: given[key] for key in ("step", "unit") if key in given}
-    options = {axis: {**stated, "column": column} for axis, column in zip(axes, columns)}
+    options = {axis: {**stated, "column": column} for axis, column in zip(AXES, columns)}
     head, line = motion_list_text([replace(motion, options=options)]).splitlines()
     return head, f'"{line}"', word_guesses([key for key in proposal.missing if key not in given])
 

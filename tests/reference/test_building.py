@@ -99,6 +99,13 @@ def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
     assert lines[6] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
     assert lines[7].startswith("Building other: 6 bodies")
     assert len(lines) == 14
+    kinds = [scene.with_values({"bodies.0.mass": mass, "name": f"{mass:g} kg"}) for mass in (100, 300, 400, 500, 600)]
+    ends = {3: "  peak of the ground: 1.41 m/s^2 = 0.144 g", 4: "and 1 more kind of buildings"}
+    for count, last in (*ends.items(), (5, "and 2 more kinds of buildings")):
+        lines = word_buildings([describe_building(each) for each in kinds[:count]])
+        names = [line.split(":")[0] for line in lines if line.startswith("B")]
+        assert names == ["Building 100 kg", "Building 300 kg", "Building 400 kg"]
+        assert (lines[-1], len(lines)) == (last, 21 + (count > 3))
 
 
 def test_buildings_that_differ_in_friction_alone_have_a_line_of_it_for_each() -> None:

@@ -8,6 +8,7 @@ from chains import chain, refusal
 
 import reference
 from reference.problem import Scene, SceneError, State, load_scene
+from reference.solver.system import pack_scene
 
 PHASES = [(0.3, 1.1), (2.0, 0.7)]
 THREE: dict[str, Any] = {"masses": (2.0, 1.0, 0.5), "stiffness": [(150.0, 110.0), (180.0, 240.0)]}
@@ -32,6 +33,26 @@ def test_a_frictionless_chain_swings_in_its_complex_modes() -> None:
         motion = reference.trajectory(scene, PHASES[0], "small", times=times, initial=start, tolerance=1e-10)
         expected = (shape * np.exp(root * times)[:, None]).real
         np.testing.assert_allclose(motion.position[:, :, 0], expected, atol=1e-9 * np.abs(shape).max())
+
+
+@pytest.mark.parametrize("shear", [0.0, 9e3])
+def test_steps_know_the_fastest_vibration_and_decay_of_the_chain(shear: float) -> None:
+    """By Gershgorin: twice the largest sum of the links of a body over its mass; friction that yields holds, too."""
+    scene = damped(chain(0.5, 0.1, **THREE), 0.3, 0.02)
+    law: Any = {"isolator.friction": {"slow": 0.1, "initial_stiffness": shear}} if shear else {}
+    system = pack_scene(scene.with_values(law), False, None)
+    touch = np.array([[1, 0], [1, 1], [0, 1]]) / np.array([[2.0], [1.0], [0.5]])
+    decay = 2.0 * (touch @ scene.damping).max()
+    assert system.damping_rate == pytest.approx(decay, rel=1e-12)
+    assert system.fastest == pytest.approx(np.sqrt(2.0 * (touch @ scene.stiffness).max() + shear / 2.0) + decay)
+    assert (reference.damped_modes(scene).eigenvalue.imag < system.fastest).all()
+    assert (system.stiffness, system.mass_ratio) == (shear / 2.0 if shear else np.inf, 1.75)
+    for below, above, links in (
+        (system.below, system.above, scene.stiffness),
+        (system.damping_below, system.damping_above, scene.damping),
+    ):
+        np.testing.assert_allclose(below, [[0.0, 0.0], links[0] / 1.0, links[1] / 0.5], rtol=1e-14)
+        np.testing.assert_allclose(above, [links[0] / 2.0, links[1] / 1.0, [0.0, 0.0]], rtol=1e-14)
 
 
 @pytest.mark.parametrize(

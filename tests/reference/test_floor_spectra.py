@@ -105,6 +105,9 @@ def test_the_factor_for_a_spectrum_is_that_of_least_squares() -> None:
     assert factor_for_spectrum(time, ground, periods, plain) == pytest.approx(1.0)
 
 
+FITTING = "must be positive numbers (P,), as many periods as accelerations of the target"
+
+
 def test_what_has_no_spectrum_or_factor_is_refused_in_one_line() -> None:
     motion, rising, both = harmonic(), [0.0, 1.0], [1.0, 2.0]
     for periods, damping, rule in (
@@ -114,8 +117,11 @@ def test_what_has_no_spectrum_or_factor_is_refused_in_one_line() -> None:
     ):
         assert str(refusal(reference.floor_spectra, motion, periods, damping)).startswith(rule)
     for given, rule in (
-        ((rising, both, [1.0, 2.0], [1.0]), "as many periods"),
-        ((rising, both, [1.0], [0.0]), "must be positive"),
+        ((rising, both, [1.0, 2.0], [1.0]), f"periods (2,), target (1,): {FITTING}"),
+        ((rising, both, [1.0], [0.0]), f"periods (1,), target (1,): {FITTING}"),
+        ((rising, both, [-1.0], [1.0]), f"periods (1,), target (1,): {FITTING}"),
+        ((rising, both, [[1.0]], [[1.0]]), f"periods (1, 1), target (1, 1): {FITTING}"),
+        ((rising, both, [], []), f"periods (0,), target (0,): {FITTING}"),
         (([0.0, 0.0], both, [1.0], [1.0]), "rising instants"),
         ((rising, [[1.0, 0.0], [2.0, 0.0]], [1.0], [1.0]), "at rest along a direction"),
     ):

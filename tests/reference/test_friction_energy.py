@@ -35,7 +35,7 @@ def test_friction_takes_what_gravity_loses(isolator) -> None:
 
 
 VERTICAL = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 2.0]]}
-VARYING = {"isolator.friction": {"slow": 0.05, "fast": 0.12, "rate": 30.0}, "duration": 8.0}
+VARYING = {"isolator.friction": {"slow": 0.05, "fast": 0.12, "rate": 30.0}, "duration": 8.0, "bodies.1.mass": 0.6}
 RUNS = [("fig3-I", {}, None), ("fig3-II", {}, V_REG), ("fig4-viscous", {}, None), ("fig3-I", VERTICAL, None)]
 BALANCES = [(*run, partial(reference.trajectory, equations=name)) for run in RUNS for name in ("exact", "small")]
 BALANCES += [("fig3-I", VARYING, V_REG, side.trajectory) for side in (reference, multibody)]
@@ -46,7 +46,7 @@ BALANCES += [("fig3-I", VARYING, V_REG, side.trajectory) for side in (reference,
 )
 def test_energy_is_balanced_within_the_error(name, values, v_reg, trajectory) -> None:
     """By the engine: measured at the contact, and from kinetic, elastic and gravity energy."""
-    scene = reference.load_scene(name).with_values(values)
+    scene = reference.load_scene(name).with_values({"bodies.1.mass": 1.7, **values})
     answer = demands(trajectory(scene, PHASE, regularization=v_reg))
     limit = 3e-3 if values or trajectory is multibody.trajectory else 2e-4
     assert answer.energy_balance is not None
@@ -55,7 +55,7 @@ def test_energy_is_balanced_within_the_error(name, values, v_reg, trajectory) ->
 
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-I", None), ("fig3-I", V_REG), ("fig4-viscous", None)])
 def test_friction_power_is_the_law_times_normal_force_and_speed(name, regularization) -> None:
-    scene = reference.load_scene(name)
+    scene = reference.load_scene(name).with_values({"bodies.1.mass": 1.7})
     motion = reference.trajectory(scene, PHASE, regularization=regularization)
     speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
     law = speed if scene.lubricated else np.minimum(1.0, speed / (regularization or 1e-300))

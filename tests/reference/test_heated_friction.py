@@ -48,7 +48,7 @@ def test_a_heated_motion_is_that_of_constant_steps(name, within):
 @pytest.mark.parametrize("v_reg", [None, 1e-3])
 def test_the_friction_of_a_motion_is_what_its_heat_leaves(v_reg):
     """Power by the balance of forces; the integral over a constant step; friction where the platform slides fast."""
-    scene, step = heated(), 2e-4
+    scene, step = heated(SCENE.with_values({"bodies.0.mass": 1.3, "bodies.1.mass": 0.7})), 2e-4
     motion = reference.trajectory(scene, PHASE, regularization=v_reg, times=np.arange(20001) * step)
     speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
     covers = np.hypot(*motion.position[:, 0, :2].T) < 0.5 * np.sqrt(np.pi) * HEATING["contact_radius"]

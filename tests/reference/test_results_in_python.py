@@ -87,6 +87,9 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     assert {"0", "π/2", "π"} <= names, "quarter turns, and no numbers that look like names of phases"
     low, high = axes.get_zlim()
     assert low <= surface.mu[:, 1].min() < surface.mu[:, 1].max() <= high
+    small = reference.amplification(SCENE, PAIRS.reshape(3, 3, 2) / 4.0, tolerance=1e-3).plot()
+    small.figure.canvas.draw()
+    assert not {"0", "π/2"} & {label.get_text() for label in small.get_xticklabels()}, "so short an axis"
     flat = surface.plot(axes=plt.figure().add_subplot())
     (mesh,) = flat.collections
     plt.close("all")
@@ -106,8 +109,8 @@ def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
 def test_what_is_no_body_surface_or_quantity_is_refused(surface, motion):
     for body in (0, 3, "1", 1.0):
         assert "must be a whole number from 1 to 2" in str(refusal(surface.plot, body=body))
-    listed = reference.amplification(SCENE, [(0.3, 1.1), (2.0, 0.7)], tolerance=1e-3)
-    assert "must be a grid" in str(refusal(listed.plot))
+    for phases in ([(0.3, 1.1), (2.0, 0.7)], (0.3, 1.1), [[(0.3, 1.1), (0.3, 2.2)]]):
+        assert "must be a grid" in str(refusal(reference.amplification(SCENE, phases, tolerance=1e-3).plot))
     assert "quantity = 'speed': must be one of position" in str(refusal(motion.plot, "speed"))
 
 
@@ -125,6 +128,8 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     mu = np.array([[1.0, 2.25], [1.5, 2.5], [3.0, 5.0], [np.nan, np.nan]])
     error = np.array([[0.01, 0.2], [0.03, 0.1], [0.02, 0.4], [np.nan, np.nan]])
     shown = Amplification(mu, error, np.array(["ok", "ok", "ok", "rim reached"]), np.zeros(4), 0.0)
+    for name, shape in (("phases", (4, 2)), ("regularization_effect", (4, 2)), ("displacement", 4), ("cap_share", 4)):
+        np.testing.assert_array_equal(getattr(shown, name), np.full(shape, np.nan), err_msg=name)
     line = "Amplification of 4 phase pairs: mu_1 1 to 3 ± 0.03, mu_2 2.25 to 5 ± 0.4, 3 ok, 1 rim reached"
     assert repr(shown) == f"<{line}>"
     table = shown._repr_html_().removesuffix("</tbody></table>")

@@ -73,7 +73,9 @@ def test_a_drive_that_touches_the_friction_limit_moves_nothing(equations, tolera
 def test_loads_beyond_double_precision_or_without_a_motion_are_told_at_once(equations):
     scene = chain(amplitudes=[[1e200, 0.0], [0.0, 1.0]])
     assert refused(scene, Outcome.NON_FINITE_LOAD, equations=equations) == 0.0
-    assert reference.trajectory(scene, PHASE, equations).status == Outcome.NON_FINITE_LOAD
+    assert repr(reference.trajectory(scene, PHASE, equations)).startswith(
+        "<Trajectory of scene: no samples, 0 rests, platform at most 0 mm off, non-finite load; "
+    )
     still = chain(amplitudes=[[0.0, 0.0], [0.0, 0.0]])
     assert refused(still, Outcome.NO_GROUND_MOTION, equations=equations) == 0.0
 

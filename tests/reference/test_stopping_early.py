@@ -7,7 +7,7 @@ import pytest
 from random_loadings import random_case
 
 import reference
-from reference.problem import Scene, load_scene
+from reference.problem import GRAVITY, Scene, load_scene
 from reference.solver import error_estimate
 from reference.solver.error_estimate import RunPeaks, peaks_at, peaks_with_error
 from reference.surface import prepare_run
@@ -74,6 +74,20 @@ def test_both_runs_stop_early_but_full_ones_and_those_with_the_printed_condition
     finer, coarser, *whole = ends
     assert coarser < finer < 0.25 * scene.duration
     np.testing.assert_allclose(whole, scene.duration, rtol=1e-9)
+
+
+@pytest.mark.parametrize("law", [{"friction": 3.0}, {"friction": None, "lubrication": 50.0}])
+def test_liftoff_long_after_the_peak_is_not_lost(law: dict[str, Any]) -> None:
+    """By hand: the contact opens where the ground falls with g, at rest and in motion; 1.77 s."""
+    time = [0.0, 0.2, 0.4, 0.6, 1.6, 1.8, 2.0, 3.0]
+    shaking = np.zeros((8, 3))
+    shaking[1:3], shaking[5, 2] = [[18.0, 3.0, 0.0], [-18.0, 2.0, 0.0]], -11.8
+    one = {"bodies": [{"mass": 2.0}], "duration": 3.0, **{f"isolator.{key}": value for key, value in law.items()}}
+    record = {"record": {"time": time, "acceleration": shaking}}
+    scene = load_scene("fig3-I").with_values({**one, "excitation": record})
+    found = reference.amplification(scene, [(0.0, 0.0)], "small")
+    assert found.status.tolist() == ["contact lost"]
+    assert found.instant[0] == pytest.approx(1.6 + 0.2 * GRAVITY / 11.8, rel=1e-8)
 
 
 def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns() -> None:

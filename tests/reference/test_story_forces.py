@@ -131,10 +131,11 @@ def test_the_engine_and_statics_give_the_same_support_forces(
 
 
 def test_no_moment_without_heights_and_no_supports_without_places() -> None:
-    forces = story_forces(
-        reference.trajectory(reference.load_scene("fig3-I").with_values({"bodies.1.height": None}), (0.3, 1.1))
-    )
-    assert (forces.moment, forces.support_min, forces.support_max, forces.uplift) == (None, None, None, None)
+    for changed in ({"bodies.1.height": None}, {"isolator.supports": None}):
+        scene = reference.load_scene("fig3-I").with_values(changed)
+        forces = story_forces(reference.trajectory(scene, (0.3, 1.1)))
+        assert (forces.support_min, forces.support_max, forces.uplift) == (None, None, None)
+        assert (forces.moment is None) == ("bodies.1.height" in changed)
 
 
 def test_dead_loads_follow_the_centers_of_mass() -> None:

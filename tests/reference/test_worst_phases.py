@@ -111,11 +111,16 @@ def test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted(monkeypatch:
         heights = [top * np.exp(-6.0 * (1.0 - np.cos(phases - at)).sum(axis=1)) for top, at in zip((4, 3.5, 3.2), tops)]
         return np.max(heights, axis=0)
 
-    computed: list[int] = []
-    scene = scene_with(monkeypatch, lambda phases: computed.append(len(phases)) or hills(phases))
+    computed: list[Array] = []
+    scene = scene_with(monkeypatch, lambda phases: computed.append(phases) or hills(phases))
     worst = reference.worst_phases(scene, starts=[*[top + 0.1 for top in tops], TOP - 0.2])
     assert (worst.value, worst.runner_up) == (pytest.approx(4.0, abs=1e-6), pytest.approx(3.5, abs=1e-2))
-    assert (worst.climbs, worst.reached, worst.evaluations) == (4, 2, sum(computed))
+    assert (worst.climbs, worst.reached, worst.evaluations) == (4, 2, sum(map(len, computed)))
+    first = computed[1][: len(computed[1]) // 4]
+    assert np.ptp(first, axis=0) == pytest.approx(4.0 * np.pi / phase_maximum.GRID), "two steps of the grid"
+    seam = scene_with(monkeypatch, lambda phases: hills(phases + TOP - [0.01, 0.0]))
+    again = reference.worst_phases(seam, starts=[[0.1, 0.1], [6.2, 6.2], [3.0, 3.0]])
+    assert (again.climbs, again.reached) == (3, 2), "across the ends of the phases"
     shifted = scene_with(monkeypatch, lambda phases: hills(phases - np.pi))
     law = {"equations": "small", "regularization": None, "cutoff": 1e-3}
     assert all(0.0 <= phase < 2.0 * np.pi for phase in reference.worst_phases(shifted, tolerance=1e-7, **law).phases)

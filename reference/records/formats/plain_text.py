@@ -152,7 +152,7 @@ def word_guesses(missing: Sequence[str]) -> str:
 def _first_data_line(lines: Sequence[str]) -> int | None:
     """Return the first line, from 0, after which all lines are numbers; a line of count and step is in the header."""
     for number, line in enumerate(lines[:MAX_HEADER_LINES]):
-        if _loose_cells(line) and not (COUNT_AND_STEP.fullmatch(line) and _states_count(lines, number)):
+        if _loose_cells(line) and not _states_count(lines, number):
             return number
     return None
 

@@ -74,6 +74,8 @@ def test_wrong_bounds_are_one_line(tmp_path: Path, friction: str, bounds: str, l
     said = str(refusal(load_family, bounded_file(tmp_path, friction, bounds)))
     assert "isolator.bounds = " in said
     assert line in said
+    if "makes" in line:  # the bounds are at fault, whatever else runs
+        assert line in str(refusal(load_family, bounded_file(tmp_path, friction, bounds, "{values = [1.0, 2.0]}")))
 
 
 def test_a_wrong_friction_is_said_as_it_is_written_and_not_as_a_bound(tmp_path: Path) -> None:

@@ -55,8 +55,8 @@ def test_any_key_of_one_value_may_run(tmp_path: Path, old: str, new: str, key: s
 
 
 def test_names_have_as_many_digits_as_it_takes(tmp_path: Path) -> None:
-    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.10001], steps = 3}"), 3.0)
-    assert [scene.name for scene in family.scenes] == [f"mine[friction={n}]" for n in (0.1, 0.100005, 0.10001)]
+    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.100000001], steps = 3}"), 3.0)
+    assert [scene.name for scene in family.scenes] == [f"mine[friction={n}]" for n in (0.1, 0.1000000005, 0.100000001)]
     assert [scene.amplitudes.max() for scene in family.scenes] == [3.0] * 3, "every member is scaled"
 
 
@@ -71,9 +71,11 @@ def test_a_scene_without_a_range_is_a_family_of_one() -> None:
 WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.1, 0.2]}", " = {'range': [0.1, 0.2]}: must be {range = [lowest, highest]"),
     ("{range = [0.2, 0.1], steps = 3}", ".range = [0.2, 0.1]: must be two finite numbers"),
+    ("{range = [0.2, 0.2], steps = 3}", ".range = [0.2, 0.2]: must be two finite numbers"),
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
     ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
+    ("{values = [{}]}", ".values = [{}]: must be a list of 1 to 1000 finite numbers, or of texts, or of tables of f"),
     ("{values = [0.1, 0.1]}", ".values = 0.1: is there twice"),
     (
         "{values = [0.1, -2.0, -1.0]}",
@@ -175,3 +177,6 @@ def test_a_family_of_many_bodies_is_refused_before_its_scenes_are_made():
     bodies = [{"mass": 1.0}] + 100 * [{"mass": 1.0, "period": [1.0, 1.0]}]
     said = refusal(make_family, {"bodies": bodies, "duration": {"range": [1.0, 2.0], "steps": 500}}, "mine.toml")
     assert (said.key, said.value) == ("bodies: 101 in each of 500 scenes", 50_500)
+    many = {"combine": "zip", "bodies": [{"mass": {"values": [1.0, 2.0 + n]}} for n in range(23)]}
+    said = refusal(make_family, many, "mine.toml")
+    assert (said.key, said.value, said.rule) == ("bodies.20.mass", {"values": [1.0, 22.0]}, "at most 20 keys may run")

@@ -34,8 +34,8 @@ BASES: dict[str, dict[str, Any]] = {  # by the first of its keys that a quantity
     "measured.": {"measured": [PEAK]},
 }
 PLACES = {  # of lists: where the value is put
-    "bodies.period": ".0", "bodies.stiffness": ".0", "bodies.offset": ".1", "bodies.size": ".2",
-    "excitation.amplitudes": ".0.1", "excitation.periods": ".0", "excitation.decay": ".1", "measured.phases": ".0",
+    "bodies.period": ".1", "bodies.stiffness": ".1", "bodies.offset": ".1", "bodies.size": ".2",
+    "excitation.amplitudes": ".1.0", "excitation.periods": ".1", "excitation.decay": ".1", "measured.phases": ".1",
 }  # fmt: skip
 
 
@@ -64,6 +64,22 @@ def ranges_in(table: type[Table], start: str = "") -> Iterator[tuple[str, Range]
 
 
 SCENE = dict(ranges_in(Scene))
+
+
+def test_a_range_is_said_with_unit_and_hint_and_holds_its_ends() -> None:
+    positive, signed, hinted = Range(0.25, 3e6, "m"), Range(-2.0, 40.0), Range(0.0, 1.0, "s", hint="percent?")
+    endless = Range(0.5, 7.0, "m", or_infinite=True)
+    assert [each.rule for each in (positive, signed, hinted, endless)] == [
+        "must be finite and positive, from 0.25 to 3e+06 m",
+        "must be finite, from -2 to 40",
+        "must be finite, from 0 to 1 s: percent?",
+        "must be positive, from 0.5 to 7 m, or inf",
+    ]
+    assert [each.text for each in (signed, endless)] == ["-2 to 40", "0.5 to 7, or inf"]
+    for each in (positive, endless):
+        inside = [value in each for value in (each.lowest, each.highest, math.inf, -math.inf, math.nan)]
+        assert inside == [True, True, each.or_infinite, False, False]
+        assert not any(math.nextafter(*way) in each for way in ((each.lowest, 0.0), (each.highest, 1e9)))
 
 
 def test_every_number_of_a_scene_has_a_range() -> None:

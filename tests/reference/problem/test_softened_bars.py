@@ -82,7 +82,15 @@ def test_bars_that_cannot_hold_the_bodies_upright_are_refused() -> None:
         loaded = {**tall, "bodies.1.bars": {**bars, "load_effect": effect}}
         FIG3.with_values({**loaded, "bodies.1.mass": 144.6})
         said = refusal(FIG3.with_values, {**loaded, "bodies.1.mass": 144.7})
-        assert (said.key, said.rule.split(":")[0]) == ("bodies.1.bars", "the bodies topple under their weight")
+        rule = "the bodies topple under their weight: take stiffer bars, a larger spread or lower bodies"
+        table = {key: loaded["bodies.1.bars"][key] for key in said.value}
+        assert (said.key, said.value, said.rule) == ("bodies.1.bars", table, rule)
+        # a body between, on a stiff link that does not bend, raises the tower and nothing else
+        between, top = {"mass": 2.0, "height": 3.0, "stiffness": [1e12, 1e12]}, {"mass": 144.6, "height": 8.8}
+        bodies = [{"mass": 1.0, "height": 0.2}, between, {**top, "bars": loaded["bodies.1.bars"]}]
+        FIG3.with_values({"bodies": bodies})
+        bodies[2]["mass"] = 144.7
+        assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.2.bars"
 
 
 def test_both_sides_agree_like_for_like_with_softened_bars() -> None:

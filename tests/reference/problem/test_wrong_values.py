@@ -64,6 +64,14 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"title": "a\0b"}, "title", "must have no control characters"),
     ({"duration": 10**400}, "duration", "must be a valid number"),
     ({"duration": 1e9, "excitation.periods": [3.0, 2.0]}, "duration", "must be at most 1e+06 periods of 1 s"),
+    *(
+        (
+            {"duration": 1e9, "excitation.periods": periods},
+            "duration",
+            "1e+06 periods of 0.2 s, the shortest of loading a",
+        )
+        for periods in ([0.3, 0.2], [0.2, 0.3])
+    ),
     ({"duration": None}, "duration", "this key is required"),
     ({"acceptance.median": -1.0}, "acceptance.median", "must be greater than 0"),
     ({"superstructure": 0.05}, "superstructure", "must be a table of keys"),
@@ -108,6 +116,12 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"isolator.support_stiffness": 1e4, "isolator.restitution": 0.5}, "isolator.restitution", "rebound by it: remove"),
     # 19.62 N on four supports: each sinks by 0.0249 m, just above a tenth of the radius
     ({"isolator.support_stiffness": 197.0}, "isolator.support_stiffness", "gives way by 0.1 of the radius under the"),
+    # one support in place of an unknown number
+    (
+        {"isolator.supports": None, "isolator.support_stiffness": 400.0},
+        "isolator.support_stiffness",
+        "gives way by 0.197 of the radius under the weight: must be at most 0.1",
+    ),
     # bodies and links
     ({"bodies.0.mass": 1e308, "bodies.1.mass": 1e308}, "bodies.0.mass", "finite and positive"),
     ({"bodies.1.yaw": 45.0}, "bodies.1.yaw", "rad"),

@@ -165,7 +165,9 @@ def test_components_with_other_instants_are_refused(tmp_path):
     (tmp_path / "a.csv").write_text("time [s],ax [g]\n0,1\n0.01,2\n0.02,0\n")
     (tmp_path / "b.csv").write_text("time [s],ax [g]\n0,1\n0.02,2\n0.04,0\n")
     (tmp_path / "two.csv").write_text("time [s],ax [g],ay [g]\n0,1,1\n0.02,2,2\n")
-    for pair, said in (("a", ""), ("b", "other instants along x than along y"), ("two", "holds several directions")):
+    (tmp_path / "one.csv").write_text("time [s],ax [g]\n0,1\n")
+    other, two = "other instants along x than along y", "holds several directions"
+    for pair, said in (("a", ""), ("b", other), ("two", two), ("one", other)):
         place = scene_file(tmp_path, f'record = {{x = "a.csv", y = "{pair}.csv"}}')
         if said:
             assert said in refusal(load_scene, place, kind=SceneError).rule

@@ -1,5 +1,7 @@
 """Files in the shapes that networks, programs and spreadsheets write: read to the last digit, or refused."""
 
+import tomllib
+
 import numpy as np
 import pytest
 from chains import refusal
@@ -137,6 +139,7 @@ PLAIN = [  # text, what is proposed, values at 0.01 s in g
     ("a motion\n" + rows(" "), 'step = 0.01, unit = "g", skip = 1, column = 2}, with the unit of', FOUR),
     ("Acceleration (g)\n100 Hz\n" + ONE, '{file = "a.txt", step = 0.01, unit = "g", skip = 2}', FOUR),
     ("x\ny\n4 values at a time step of 0.01 s in units of g\n" + ONE, 'step = 0.01, unit = "g", skip = 3}', FOUR),
+    ("3 0.5\n1 0.25\n4 -0.5\n", '{file = "a.txt", step = 0.01, unit = "g", column = 1}', [3.0, 1.0, 4.0]),
     (ONE.replace(".", ","), '{file = "a.txt", step = 0.01, unit = "g"}', FOUR),
 ]
 
@@ -153,6 +156,14 @@ def test_plain_text_needs_a_line_that_the_error_proposes(text, line, values):
     samples, _ = read(text, step=options["step"], unit=options["unit"], **stated)
     assert samples[:, 1].tolist() == (GRAVITY * np.array(values)).tolist()
     assert samples[:, 0].tolist() == (0.01 * np.arange(len(values))).tolist()
+
+
+def test_a_proposal_names_the_file_whatever_its_name_is():
+    for name in ('a"b.txt', "a\\b.txt", "a\tb.txt", "a\x7fb.txt", "ä b.txt"):
+        said = str(refusal(read, ONE, name, kind=RecordError))
+        table = tomllib.loads(said[said.index("record = ") : said.index("}") + 1])
+        assert table == {"record": {"file": name, "step": 0.01, "unit": "g"}}
+        assert name not in said or name.isprintable()
 
 
 def test_stated_units_are_found_in_headers_of_plain_text():
@@ -201,7 +212,18 @@ REFUSED = [  # name, text, options, and words of the line
     ),
     ("a.csv", "time [s],Velocity [m/s]\n0,1\n1,2\n", {}, "line 1: must be a header such as time [s], ax [m/s^2]"),
     ("a.csv", "time [s],ax [g],X [g]\n0,1,2\n1,2,3\n", {}, "two have one direction"),
-    ("a.csv", "NS [g],EW [g]\n0,1\n1,2\n", {}, "without a column of the time write record = {file = "),
+    *(
+        (
+            "a.csv",
+            header + "\n0,1\n1,2\n",
+            {},
+            f"line 1: '{header.replace(',', ' ')}': must have time and at least one of ax, ay, az; without a column "
+            'of the time write record = {file = "...", step = 0.01, unit = "g", skip = 1, column = 1}',
+        )
+        for header in ("NS [g],EW [g]", "NS [g],pier 7 [g]")
+    ),
+    ("a.csv", "NS [g],v [m/s]\n0,1\n1,2\n", {}, "line 1: must be a header such as time [s], ax [m/s^2]"),
+    ("a.csv", "pier 7 [g],pier 8 [g]\n0,1\n1,2\n", {}, "line 1: must be a header such as time [s], ax [m/s^2]"),
     (
         "a.csv",
         "0.00,0.1\n0.01,0.2\n0.02,0.1\n",
@@ -351,6 +373,7 @@ def test_files_of_jma_have_three_directions_and_no_time():
         ("a.csv", JMA.replace("NS,EW,UD", "north"), "the header must have a line 'NS,EW,UD'"),
         ("a.V2", COSMOS.replace("   3 acc", "   9 acc"), "must be a number"),
         ("a.V2", COSMOS + COSMOS, "2 channels of acceleration: must be one: take the channels apart"),
+        ("a.V2", COSMOS.replace(" 17 lines", " 5 lines"), "no real header with the sampling interval, 'Real-header v"),
         ("a.V2", COSMOS.replace("cm/sec2", "counts"), "'counts': must be the unit of an acceleration"),
         ("a.V2", COSMOS.replace("Real-header", "Real"), "no real header with the sampling interval"),
     ],

@@ -50,6 +50,8 @@ def test_a_record_is_read_beside_its_scene_and_scaled(folder, monkeypatch):
     upright = load_scene(written(folder, 'record = {z = "x.AT2"}\nscale = 2.0'))
     assert upright.record[:, 3] == pytest.approx([0.0, 2.0 * 0.981, 0.0])
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801, "a shipped one"
+    (folder / "synthetic-pair.csv").write_text(CSV)
+    assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == len(KNOTS), "one's own"
 
 
 def test_acceleration_is_linear_between_samples_and_integrated_exactly(folder):

@@ -62,11 +62,21 @@ def test_directions_are_told_by_every_spelling(tmp_path, spelling):
         assert list(found) == list(stations)
 
 
-def test_azimuths_are_those_of_the_compass():
-    words = ("000", "090", "360", "361", "N18E", "S72E", "N30W", "S10W", "N90W", "N91E", "E18N", "90")
-    found = {word: direction.azimuth if (direction := parse_direction(word)) else None for word in words}
-    turns = [0.0, 90.0, 360.0, None, 18.0, 108.0, 330.0, 190.0, 270.0, None, None, None]
-    assert found == dict(zip(words, turns))
+def test_angles_of_names_count_from_north_to_the_east():
+    angles = {
+        "000": 0,
+        "007": 7,
+        "360": 360,
+        "361": None,
+        "12": None,
+        "N18E": 18,
+        "N18W": 342,
+        "S18E": 162,
+        "S18W": 198,
+    }
+    for word, angle in {**angles, "N90E": 90, "N91E": None}.items():
+        direction = parse_direction(word)
+        assert (None if direction is None else direction.azimuth) == angle, word
 
 
 def test_files_of_networks_are_paired_by_suffix_and_by_channel(tmp_path):
@@ -125,6 +135,9 @@ def test_all_names_that_make_no_pair_come_in_one_message(tmp_path, names, said):
     assert "Tried H1 H2 V, azimuths as 090, E N Z" in line
     assert "components = 1" in line
     assert "\n" not in line
+    for file in place.iterdir():
+        file.write_text("broken")
+    assert str(refusal(list_motions, str(place), place, kind=SuiteError)) == line, "names alone decide"
 
 
 def test_single_components_are_plane_motions_where_asked_for(tmp_path):
@@ -208,6 +221,11 @@ def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
     said = str(refusal(list_motions, str(place), place, kind=SuiteError))
     assert "A_X.txt and A_Y.txt have numbers" in said
     assert '"A,A_X.txt,A_Y.txt,,1,0.02,g,0,2", with the unit of your source' in said
+    for name in ("A_X.txt", "A_Y.txt"):
+        (place / name).write_text(TWO_COLUMNS)
+    assert 'for these files "A,A_X.txt,A_Y.txt,,1,0.01,g,0,1", with the step and the unit' in str(
+        refusal(list_motions, str(place), place, kind=SuiteError)
+    )
 
 
 M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0\n"
@@ -265,6 +283,8 @@ def test_what_a_motion_lacks_is_said_in_its_line_of_the_list(tmp_path, listed, f
     error = refusal(load_scene, scene_file(tmp_path, 'record = {suite = "suite", motion = 1}'), kind=SceneError)
     assert (error.file, error.key, error.value) == (str(tmp_path / place[0]), *place[1:])
     assert words in error.rule
+    if {"A_Y.txt", "A_H2.AT2"} & {*files}:
+        assert error.rule.startswith("x = A_"), "the file of several that is at fault"
 
 
 def test_a_written_list_says_what_was_paired(tmp_path):
@@ -275,6 +295,9 @@ def test_a_written_list_says_what_was_paired(tmp_path):
     after = list_motions(str(place), place)
     assert after.motions == before.motions
     assert "as motions.csv lists them" in after.sentence
+    (place / FILE_NAME).write_text("name,x\nonly,B000.AT2\nother,B090.AT2\n")
+    listed = list_motions(str(place), place).sentence
+    assert listed == "2 motions, as motions.csv lists them."
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import SceneError, load_family, load_scene
-from reference.support.files import read_file
+from reference.support.files import MARK_FILE, TEMPORARY_PREFIX, find_abandoned_staging, read_file, write_new
 
 SECRET = "xK7-of-somebody-else"
 RECORDS = {"a.csv": '"a.csv"', "a.AT2": '{x = "a.AT2"}', "suite/a.csv": '{suite = "suite", motion = 1}'}
@@ -43,6 +43,32 @@ def test_a_file_that_is_no_scene_is_not_quoted(tmp_path: Path) -> None:
         (tmp_path / "key").write_text(text, encoding="utf-8")
         said = refusal(load_scene, tmp_path / "mine.toml", kind=SceneError)
         assert (said.key, SECRET in str(said)) == ("file", False)
+
+
+def test_a_name_that_is_taken_stays_what_it_was_also_without_hard_links(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_link(part: Path, place: Path) -> None:
+        raise PermissionError
+
+    (tmp_path / "run.gif").write_bytes(b"own")
+    assert write_new(tmp_path / "run.gif", b"linked").name == "run-2.gif"
+    monkeypatch.setattr(os, "link", no_link)
+    assert write_new(tmp_path / "run.gif", b"moved").name == "run-3.gif"
+    found = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    assert found == {"run.gif": b"own", "run-2.gif": b"linked", "run-3.gif": b"moved"}
+
+
+def test_a_folder_of_somebody_else_is_no_staging_directory(tmp_path: Path) -> None:
+    place = tmp_path / "out"
+    for name, other in (("none", None), ("other", "out-2"), ("left", "out")):
+        folder = tmp_path / f"{TEMPORARY_PREFIX}{name}"
+        folder.mkdir()
+        if other is not None:
+            (folder / MARK_FILE).write_text(
+                f'{{"what": "staging directory of phase-resonance", "name": "{folder.name}", "for": "{other}"}}'
+            )
+    assert [folder.name for folder in find_abandoned_staging(place)] == [f"{TEMPORARY_PREFIX}left"]
 
 
 def test_a_file_is_read_up_to_the_largest_size_and_a_link_followed(tmp_path: Path) -> None:
