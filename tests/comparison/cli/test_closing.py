@@ -52,8 +52,9 @@ def test_printed_options_stand_before_scenes_with_a_dash(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("-my scene.toml").write_text(scene_text(), encoding="utf-8")
-    words = ["--grid", "2", "--out", str(tmp_path / "report"), "--", "-my scene.toml"]
-    film, finer = next_commands(command(*words, hierarchy=errors_in({"spatial": 0.1})))
+    words = ["--grid", "2", "--out", "report", "--", "-my scene.toml"]
+    film, finer = next_commands(run := command(*words, hierarchy=errors_in({"spatial": 0.1})))
+    assert "Report: report/index.html\n" in run.out, "as it was typed"
     assert film[film.index("multibody.animate") + 1] == "./-my scene.toml"
     assert finer[-5:] == ["--grid", "4", "--plan", "--", "-my scene.toml"]
     assert main(finer[3:], fake_hierarchy(), ThreadPoolExecutor, models={"mine": "user_engines:plain"}) == 0

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import signal
 import threading
 import time
 from collections.abc import Callable
@@ -152,7 +151,10 @@ def test_an_end_before_the_first_level_is_one_line(
 def test_an_interrupt_before_the_study_is_one_line(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(command_module, "parse_options", lambda words: signal.raise_signal(signal.SIGINT))
+    def stop(words: list[str]) -> None:
+        raise StoppedError
+
+    monkeypatch.setattr(command_module, "parse_options", stop)
     run = command(*WORDS)
     assert (run.code, run.out, run.err) == (130, "", "interrupted before anything was computed\n")
 
