@@ -35,6 +35,18 @@ def test_a_frictionless_chain_swings_in_its_complex_modes() -> None:
         np.testing.assert_allclose(motion.position[:, :, 0], expected, atol=1e-9 * np.abs(shape).max())
 
 
+def test_dampers_feel_no_jump_where_the_platform_stops() -> None:
+    """Within 0.1 us the acceleration above strong dampers changes at a stop as just before it."""
+    scene = load_scene("fig3-I").with_values({"bodies.1.period": [0.3, 0.4], "bodies.1.mass": 0.6, "duration": 6.0})
+    scene = damped(scene, 2.0)
+    stops = np.array([start for start, _ in reference.trajectory(scene, PHASES[0]).stick if start > 0.0])
+    times = (stops[:, None] + 1e-7 * np.arange(-40, 41)).ravel()
+    above = reference.trajectory(scene, PHASES[0], times=times).absolute_acceleration[:, 1, :2]
+    change = np.abs(np.diff(above.reshape(len(stops), -1, 2), axis=1)).max(axis=(1, 2))
+    assert len(stops) > 1
+    assert (change < 1e-5).all()
+
+
 @pytest.mark.parametrize("shear", [0.0, 9e3])
 def test_steps_know_the_fastest_vibration_and_decay_of_the_chain(shear: float) -> None:
     """By Gershgorin: twice the largest sum of the links of a body over its mass; friction that yields holds, too."""
