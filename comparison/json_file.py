@@ -86,6 +86,6 @@ class StoredFile(Generic[T]):
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             place = ".".join(map(str, first["loc"]))
-            # Without the content of the file, which may be somebody else's
+            # The reason leaves out the content of the file, which may be somebody else's.
             reason = f"{place}: {first['msg']}" if place else first["msg"]
             raise ValueError(f"{file}: not {self.what}: {reason}: run {self.command}") from None

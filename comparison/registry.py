@@ -25,6 +25,7 @@ from comparison.study.study import Study
 
 
 def _load_feature(folder: str) -> Feature:
+    """Return the feature that a folder below comparison/ defines."""
     feature: Feature = import_module(f"comparison.{folder}.feature").FEATURE
     return feature
 
@@ -85,7 +86,7 @@ make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)
 
 
 def select_analyses(study: Study) -> list[Analysis[Any]]:
-    """Return those of ANALYSES that are made of some scene of the study."""
+    """Return those of ANALYSES that are selected for at least one scene of the study."""
     return [analysis for analysis in ANALYSES if study.restrict_to(analysis.key).scenes]
 
 

@@ -24,6 +24,7 @@ def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
 
 
 def _null_as_nan(value: Any) -> Any:
+    """Return NaN for None, by which JSON stands for it, and any other value as it is."""
     return math.nan if value is None else value
 
 
@@ -34,13 +35,13 @@ def _replace_surrogates(value: Any) -> Any:
 
 Array = NDArray[np.float64]
 Number = Annotated[float, BeforeValidator(_null_as_nan), PlainSerializer(finite_or_none, return_type=float | None)]
-Radius = Annotated[
+Radius = Annotated[  # number that may be infinite, as the radius of a plane
     float,
     BeforeValidator(_null_as_nan),
     PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
 ]
-Text = Annotated[str, BeforeValidator(_replace_surrogates)]
-Phases = tuple[Number, Number]
+Text = Annotated[str, BeforeValidator(_replace_surrogates)]  # text that UTF-8 can hold
+Phases = tuple[Number, Number]  # (alpha1, alpha2), rad
 
 
 class Part(BaseModel):
@@ -69,7 +70,7 @@ def require_size(what: str, values: Sized, count: int) -> None:
     require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 
-RESULT_CONFIG = ConfigDict(
+RESULT_CONFIG = ConfigDict(  # how pydantic treats every result
     use_attribute_docstrings=True, revalidate_instances="always", json_schema_extra={"additionalProperties": False}
 )
 

@@ -56,7 +56,7 @@ from comparison.study.study import Study
 from comparison.surfaces.surfaces import make_surface_tasks
 from reference.support.command import stop_on_signals
 
-# Workers load it again; if loading fails, the command ends here with one line.
+# Workers load Exudyn again; if that fails, the command ends here with one line.
 import_module("multibody.models.engine")
 
 
@@ -105,7 +105,7 @@ def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
 
 
 def _make_study(options: Options, hierarchy: Sequence[Model]) -> Study:
-    """Return the whole question."""
+    """Return the study that the options describe: scenes, grid, tolerance, models and analyses."""
     hierarchy = with_steps_of_scenes(hierarchy, options.scenes)
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
@@ -126,7 +126,7 @@ class StudyRun:
         self._cache = Cache(locate_store(options.out))
 
     def describe(self) -> None:
-        """Print what was read of the scenes, what is hardly meant, and what models are left out."""
+        """Print what was read of the scenes, implausible values in them, and which models are left out."""
         print_models_left_out(self._console, self._study)
 
     def plan(self) -> None:
@@ -211,4 +211,5 @@ class StudyRun:
         return None
 
     def _hint(self, words: Sequence[str]) -> str:
+        """Return where the finished results are kept, and the command for the rest."""
         return word_resume_hint(self._cache, words, batches=len(self._study.batches()))

@@ -26,7 +26,7 @@ from reference.support.arguments import Range, check_choice, check_number, check
 
 # Admissible relative differences, phases per axis, and numbers of phase pairs without a value
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
-STATISTICS = ("largest", "mean")
+STATISTICS = ("largest", "mean")  # statistics over the motions that limits may be on
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
 
 

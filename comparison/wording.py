@@ -100,4 +100,5 @@ def mathtext(text: str) -> str:
 
 
 def _with_greek(text: str) -> str:
+    """Return a text with the names of Greek letters replaced by the letters."""
     return GREEK_PATTERN.sub(lambda found: found.group(1) + GREEK_LETTERS[found.group(2)], text)

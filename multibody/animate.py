@@ -120,6 +120,7 @@ def open_viewer(scene: Scene, phase: Array, model: str, regularization: float | 
 
 
 def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
+    """Return the options of the command line, given as `words` or else to the process."""
     parser = OneLineParser("python -m multibody.animate", __doc__.splitlines()[1])
     parser.add_argument("scene", help="name of a built-in scene, or a TOML file")
     parser.add_argument("--phases", nargs=2, type=float, required=True, metavar=("A1", "A2"), help="rad")

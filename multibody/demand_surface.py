@@ -57,6 +57,7 @@ def peak_demands(
     """
 
     def compute_motion(phase: ArrayLike) -> Trajectory:
+        """Return the motion of one phase pair."""
         return trajectory(scene, phase, model, regularization, tolerance, max_work=max_work)
 
     return demands_of_motions(scene, phases, compute_motion)

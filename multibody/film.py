@@ -253,6 +253,7 @@ class _TopView(_Panel):
         self.moving += [*self.lines, self.points]
 
     def show(self, frame: int) -> None:
+        """Move the boxes and the contact paths to their places in a frame."""
         super().show(frame)
         for line, path in zip(self.lines, np.swapaxes(self.drawn.paths, 0, 1)):
             line.set_data(*path[: frame + 1].T)
@@ -283,6 +284,7 @@ class _SideView(_Panel):
         self.moving.append(self.mast)
 
     def show(self, frame: int) -> None:
+        """Move the boxes and the line through their centers to their places in a frame."""
         super().show(frame)
         self.mast.set_data(self.drawn.centers[frame, :, self.axis], self.drawn.centers[frame, :, 2])
 

@@ -168,13 +168,13 @@ def largest_horizontal_acceleration(scene: Scene) -> float:
         if scene.recorded:
             # The norm of a vector that changes linearly is convex: it is largest at a knot.
             return float(np.hypot(*scene.record[:, 1:3].T).max())
-        # The same holds over the cosines of both phases, and both harmonics are largest at the start.
+        # The norm is convex in the cosines of both phases, too: take 1 or -1. Both harmonics are largest at the start.
         first, second = scene.amplitudes[:2].T
         return float(max(np.hypot(*(first + second)), np.hypot(*(first - second))))
 
 
 def word_buildings(buildings: Sequence[Building]) -> list[str]:
-    """Return buildings as lines of text: one description for buildings with the same, of the first kinds only."""
+    """Return lines of text on buildings: one description for equal buildings, at most MAX_KINDS descriptions."""
     alike: dict[str, list[Building]] = {}
     for building in buildings:
         alike.setdefault("\n".join(_word_structure(building)), []).append(building)
@@ -217,10 +217,12 @@ def _word_structure(building: Building) -> list[str]:
 
 
 def _word_radius(radius: float) -> str:
+    """Return the effective radius of the isolator as text, "plane" if it is infinite."""
     return "plane" if math.isinf(radius) else f"radius {radius:.4g} m"
 
 
 def _word_extent(extent: Array | None) -> str:
+    """Return a clause on how far the outermost supports are apart along x and y, m; "" if that is not stated."""
     return "" if extent is None else f", supports over {extent[0]:.4g} m along x and {extent[1]:.4g} m along y"
 
 

@@ -58,6 +58,7 @@ def peak_demands(
     prepare_run(scene, equations, regularization, tolerance, None, rest_condition)
 
     def compute_trajectory(phase: ArrayLike) -> Trajectory:
+        """Return the motion of one phase pair."""
         return trajectory(scene, phase, equations, regularization, tolerance, rest_condition)
 
     return demands_of_motions(scene, phases, compute_trajectory)

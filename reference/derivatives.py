@@ -19,15 +19,15 @@ from reference.problem.scene import require_scene
 from reference.support.arguments import quote
 
 Array = NDArray[np.float64]
-Quantity = Callable[[Scene], Any]
+Quantity = Callable[[Scene], Any]  # function of a scene whose derivatives are computed
 
-STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # changes of the value, as shares of it; each derivative also uses twice its step
-FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # shares of the value by which the value changes
-RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)
+STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # step of a difference over the key's value; a derivative also uses twice its step
+FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # changes of the key's value over this value, at which kinks show
+RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)  # evaluations of the quantity for one key
 # A kink is sought where a mean slope differs from the derivative by at least this share of the largest slope: powers
 # up to the tenth differ by less over 5 % of the value
 MIN_CONTRADICTION = 0.05
-MAX_HALVINGS = 12
+MAX_HALVINGS = 12  # limit of the halvings of the interval that contains a kink
 KINK_WIDTH = 1e-4  # share of the value: an interval of this width locates a kink well enough
 # Share of the change of slope, or of the jump, that must remain in the last interval: less remains of a smooth curve
 MIN_REMAINING_SHARE = 0.25
@@ -268,7 +268,7 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
 
 
 def _differentiate_line(line: _VariedQuantity) -> Estimates:
-    """Return the derivative with the smallest error of all steps."""
+    """Return the derivative of the quantity by its key, from the step with the smallest error."""
     middle, value = line.middle, line.value
 
     def difference(step: float) -> tuple[Array, Array, Array]:
@@ -284,7 +284,7 @@ def _differentiate_line(line: _VariedQuantity) -> Estimates:
     slopes, errors = [], []
     for step in (share * abs(value) for share in STEP_SHARES):
         (near, near_jump, near_error), (far, far_jump, far_error) = difference(step), difference(2.0 * step)
-        # The jump of slope of a smooth quantity is proportional to the step
+        # Without a kink the jump of slope is proportional to the step, so that this difference vanishes
         kink = 2.0 * np.abs(2.0 * near_jump - far_jump)
         slopes.append((4.0 * near - far) / 3.0)
         errors.append(np.abs(near - far) / 3.0 + kink + (4.0 * near_error + far_error) / 3.0)
@@ -355,6 +355,7 @@ def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] 
     """Return the bracket of one element's kink within the finite changes, and its jump; None without a clear kink."""
 
     def point(at: float) -> _QuantityAtValue:
+        """Return the chosen element of the quantity where the key has the value `at`."""
         numbers = line.value_or_nan_at(at)
         return _QuantityAtValue(at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place]))
 

@@ -30,7 +30,7 @@ from reference.surface import OUTCOMES, loads_are_finite, prepare_run
 
 SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
 STEP_SAMPLES = 8000  # target number of output instants over all time steps; more if there are many steps
-MAX_SAMPLES = 200_000  # limit of the even samples, and of those in the steps
+MAX_SAMPLES = 200_000  # limit of evenly spaced output instants, and of those placed in time steps
 # Lower bound on the error of a peak, as a share of the tolerance: a closer agreement of two runs is accidental
 # (measured errors reach 0.2)
 MIN_ERROR_FRACTION = 1.0
@@ -102,7 +102,7 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
-    # Such as a motion close to the rim: a more accurate run decides, and shows the error
+    # The looser run ended early, as close to the rim: a more accurate run decides, and the first run shows its error
     if other.outcome != Outcome.OK:
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
@@ -121,9 +121,9 @@ class _RecordedRun(NamedTuple):
     outcome: Outcome
     instant: float  # s, end of the run
     record: StepRecord
-    peak: Array  # (N,) m/s^2
+    peak: Array  # (N,) m/s^2, largest absolute accelerations
     reading_error: Array  # (N,) m/s^2, errors of the peaks from interpolation inside their steps
-    system: System  # system with the friction factor k_T from the heat of this run
+    system: System  # with k_T, the factor of friction by temperature, from the heat of this run
 
 
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:

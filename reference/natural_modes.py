@@ -165,7 +165,7 @@ def damped_modes(scene: Scene) -> DampedModes:
 def _solve_damped_axis(
     masses: Array, stiffness: Array, damping: Array
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Return eigenvalues (2 N,) and shapes (N, 2 N) along one axis."""
+    """Return eigenvalues (2 N,), 1/s, and complex mode shapes (N, 2 N) of the damped chain along one axis."""
     # The state is (elongations of the links times the root of their stiffness, velocities times the root of the
     # masses), see above. A flat slider has no first link: its rigid motion has the eigenvalue 0 twice, once as a
     # displacement, which this state does not contain, and once as a velocity. Both are added by hand, exact.

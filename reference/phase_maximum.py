@@ -32,7 +32,7 @@ from reference.problem.symmetry import distinct_pairs, find_half_turns
 from reference.support.arguments import check_choice, check_number
 from reference.surface import amplification
 
-QUANTITIES = ("amplification", "displacement")
+QUANTITIES = ("amplification", "displacement")  # quantities that `worst_phases` maximizes
 GRID_TOLERANCE = 1e-4  # relative error of mu on the grid of phases
 MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
 MAX_SHORTFALL = 0.01  # share of the maximum: a search that ends lower by more need not follow its jump

@@ -142,6 +142,7 @@ def amplification(
         summed = system.small and not full and is_linear(scene).allowed
 
         def solve(part: slice) -> float:
+            """Solve a slice of the phase pairs; return the time it took, s."""
             return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
 
         cost = _solve_on_threads(solve, len(pairs), alone=summed)

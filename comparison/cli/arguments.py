@@ -139,10 +139,11 @@ def write_and_show(folder: Path, write: Callable[[], list[Path]], show: Callable
 
 
 def command(main: Callable[Concatenate[Sequence[str], Parameters], int]) -> Callable[..., int]:
-    """Wrap the main function of a command: it returns exit code 2, 3, 4 or 128 + signal, and reads the words itself."""
+    """Wrap the main function of a command: errors become exit codes, and the words default to those typed."""
 
     @wraps(main)
     def run_to_exit_code(argv: Sequence[str] | None = None, *args: Parameters.args, **kwargs: Parameters.kwargs) -> int:
+        """Run the command and return its exit code; an error of input or an early end is one line on standard error."""
         try:
             return main(sys.argv[1:] if argv is None else list(argv), *args, **kwargs)
         except (SceneError, UsageError) as error:

@@ -92,6 +92,7 @@ def print_level(console: Console, results: Results, before: Results | None, leve
 
 
 def _headline_sentences(results: Results) -> list[str]:
+    """Return the headline of every body of every scene."""
     return [headline.sentence for scene in results.scenes for headline in scene.headlines]
 
 

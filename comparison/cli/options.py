@@ -112,6 +112,7 @@ def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str])
 
 
 def _parser() -> CommandParser:
+    """Return the parser of the command line."""
     description = "The paper's equations against a multibody engine over a grid of initial phases, as a report."
     parser = CommandParser("run", description)
     parser.add_scenes(

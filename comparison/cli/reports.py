@@ -34,7 +34,7 @@ MIN_REPORT_INTERVAL = 3.0  # s, shortest time between two reports; the last leve
 
 @dataclass(frozen=True)
 class CompleteLevel:
-    """A level that is completely computed, with its study, labeled surfaces, and models without values left out."""
+    """A completely computed level: its surfaces, their tasks, and its study without models that have no values."""
 
     level: StudyLevel
     study: Study

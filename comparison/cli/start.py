@@ -87,7 +87,7 @@ def _read_processor_time_of_children() -> float:
     return seconds
 
 
-_started: list[Clock] = []
+_started: list[Clock] = []  # start of the command that this process runs; empty if a program calls it
 
 
 def find_command_start() -> Clock:

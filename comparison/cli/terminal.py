@@ -112,7 +112,7 @@ def print_records(
     """
     Print once what was read of every recorded motion, one line if short; named: by motion, "" for its files.
 
-    is_suite: the motions are of one suite, and a line says which of them is hardly meant beside the others.
+    is_suite: the motions are of one suite, and a line names those that are implausible beside the others.
     """
     names, scenes = zip(*named) if named else ((), ())
     records = describe_records(scenes, names)

@@ -40,8 +40,8 @@ MODEL_SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED_NAME}:{DOTTED_NA
 TAKEN_NAMES = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
 MAX_IMPORT_SECONDS = 60.0  # s of processor time that importing an engine may take
 
-Engines = Mapping[str, str | Callable[..., Any]]
-_make_refusal = partial(SceneError, "command line", MODEL_OPTION)
+Engines = Mapping[str, str | Callable[..., Any]]  # functions of the user, or their import paths, by name
+_make_refusal = partial(SceneError, "command line", MODEL_OPTION)  # error of --model, made of its value and the rule
 
 
 def add_models(parser: CommandParser) -> None:

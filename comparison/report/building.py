@@ -46,7 +46,7 @@ def assemble_report(
     """
     Return everything that a report is made from; a field whose own computation raises is empty, with a line in `lost`.
 
-    found: of the features, by key. kind: with a field for each of them.
+    found: results of the features, by key. kind: type of the results, with a field for each feature.
     """
     parts_lost = LostParts(lost)
 

@@ -111,6 +111,7 @@ class Feature:
     clause: Callable[[Results], str] | None = None
 
     def __post_init__(self) -> None:
+        """Enter key, template and fields of the feature in its section."""
         if self.section:
             template = self.section.template or f"{self.key}/section.html.j2"
             shows = tuple(field.name for field in self.fields)

@@ -56,6 +56,7 @@ def render_pages(report: Report) -> dict[str, str]:
 
 
 def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
+    """Return the numbers that a feature adds to the page, compressed and written in letters."""
     return compress_to_text(numbers(report))
 
 
@@ -95,7 +96,7 @@ def render_summary(report: Report) -> Markup:
 
 
 def name_second_model(study: Study) -> str:
-    """Return the name of what the answers compare with the paper's equations."""
+    """Return the name of the side with which the page compares the paper's equations: Exudyn or the last model."""
     return "Exudyn" if has_engine(study) else "the last model"
 
 
@@ -111,7 +112,7 @@ def is_drawn(bars: Waterfall) -> bool:
 
 
 def word_measurements(results: Results) -> str:
-    """Return the statement on measurements, without the full stop."""
+    """Return what is validated by measurements, with what this study adds, without the full stop."""
     return "; ".join([VALIDATED_BRIEFLY, *results.measurement_clauses])
 
 
@@ -211,6 +212,7 @@ def make_content_policy(script: str, style: str) -> str:
     """Return the page's content security policy: its own script and style by hash, embedded pictures, nothing else."""
 
     def digest(text: str) -> str:
+        """Return the hash by which the policy names a script or style of the page."""
         return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
 
     allowed = {"script-src": digest(script), "style-src": digest(style), "img-src": "data:"}

@@ -20,7 +20,7 @@ from comparison.surfaces.model_difference import compute_difference
 from comparison.surfaces.surfaces import select_values
 from reference.problem import Scene
 
-Rows = list[list[float | None]]
+Rows = list[list[float | None]]  # one row for each alpha1, in it one value for each alpha2
 
 MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of mu and of an error
 COMPRESSION_LEVEL = 6  # compression level: the next one takes half as long again for 2 % less
@@ -80,6 +80,7 @@ def _read_encodable(
 
 
 def _format_json(data: Any) -> str:
+    """Return data as compact JSON text; NaN and infinity raise ValueError."""
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
@@ -137,6 +138,7 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
     def list_rows(name: str, digits: int) -> list[Rows]:
+        """Return a variable of the model as rows of numbers, for every body."""
         values = select_values(report.surfaces, name, scene.name, model)
         return [_round_rows(values[body - 1], digits) for body in bodies]
 

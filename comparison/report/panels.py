@@ -34,7 +34,7 @@ def make_panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], ser
 
 
 def make_distribution_panels(results: Results, scene: str, quantity: str, unit: str, curves: Any) -> list[Panel]:
-    """Return plots of the share of phases where a quantity stays below a value, by (model, values), if any."""
+    """Return plots of the share of phases below each value of a quantity; curves: (model, values); none without any."""
     models = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     series = [
         {

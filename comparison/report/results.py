@@ -32,7 +32,7 @@ VALIDATED = (
     "+7.7 %), at 550 g not met (by +12 %). No building has been compared"
 )
 
-# short form by `word_what_is_validated_briefly`, for the first screen
+# The same in short, for the first screen; docs/measured_statements.py writes it, too.
 VALIDATED_BRIEFLY = (
     "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
     "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "
@@ -131,7 +131,7 @@ class Results(Part):
 
     @property
     def measurements(self) -> str:
-        """Return the results of measurements of the models, in a clause."""
+        """Return how the models fare against the measured peaks of this study, in a clause."""
         return "; ".join(self.measurement_clauses) or "this study has no measured peaks"
 
     @property

@@ -73,7 +73,7 @@ engine: comparison/evidence/test_benchmarks.py
   numbers published elsewhere, where friction sticks against the equations with its friction | the error of both |
     test_the_engine_meets_all_published_numbers
 """
-CHECKS = tuple(
+CHECKS = tuple(  # the checks of CHECKS_TABLE, one for each row
     CodeCheck(*block[:2], *map(str.strip, row.split("|")))
     for block in re.findall(r"^(\w+): (\S+)\n((?:  .*\n)+)", CHECKS_TABLE, re.MULTILINE)
     for row in re.split(r"\n(?=  \S)", block[2].rstrip())

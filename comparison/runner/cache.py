@@ -31,12 +31,12 @@ from pydantic import ConfigDict, TypeAdapter
 from reference.problem import SceneError
 from reference.support.files import TEMPORARY_PREFIX, read_file, write_atomically
 
-FILE_SIGNATURE = b"phase-resonance result 1\n"
+FILE_SIGNATURE = b"phase-resonance result 1\n"  # first bytes of every stored result
 CHECKSUM_BYTES = 32  # bytes of a checksum
 # Size in bytes above which groups that the study does not need are dropped, least recently used first
 MAX_CACHE_BYTES = 2**30
 STALE_FILE_AGE = 3600.0  # s, age from which a temporary file was left by a killed run: writing one takes milliseconds
-GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")
+GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")  # name of a directory of stored results: a hash
 ARRAY_KEY, BYTES_KEY = "\0array", "\0bytes"  # JSON keys that refer by number to an array or bytes stored after the JSON
 
 
@@ -216,6 +216,7 @@ def _pack_value(about: Any, value: Any) -> bytes:
     count = 0
 
     def convert_to_json(part: Any) -> Any:
+        """Return a value as JSON can hold it; arrays and bytes are stored behind and become references."""
         nonlocal count
         if isinstance(part, bytes | np.ndarray):
             array = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
@@ -244,6 +245,7 @@ def _unpack_value(content: bytes, declared: Any) -> Any:
         arrays.append(npy.read_array(stream, allow_pickle=False))
 
     def with_arrays(part: dict[str, Any]) -> Any:
+        """Return the array or the bytes that a part of the JSON refers to; any other part as it is."""
         if ARRAY_KEY in part:
             return arrays[part[ARRAY_KEY]]
         return arrays[part[BYTES_KEY]].tobytes() if BYTES_KEY in part else part

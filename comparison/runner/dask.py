@@ -34,7 +34,7 @@ MAX_SECONDS_WITHOUT_WORKERS = 60.0  # s without any worker after which the run e
 RECOUNT_SECONDS = 2.0  # s between two counts of the workers, which may join or leave at any time
 CONNECTION_LOST = "the connection to the scheduler was lost"
 
-_ONE_CALL = threading.Lock()
+_ONE_CALL = threading.Lock()  # held during a call, so that a worker computes one at a time
 
 
 @contextmanager
@@ -51,6 +51,7 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # this program reports the error itself, in one line
 
     async def knock() -> None:
+        """Open and close a connection to the scheduler; raise if none answers."""
         await (await connect(address, timeout=CONNECT_TIMEOUT)).close()
 
     try:
@@ -74,6 +75,7 @@ def _finish_call(call: Call) -> None:
     ended: Future[Any] = Future()
 
     def run() -> None:
+        """Make the call in a thread and keep its result or error."""
         try:
             ended.set_result(call())
         except BaseException as error:

@@ -22,7 +22,7 @@ SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules th
 # Packages whose versions a report states
 REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
 DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")  # packages that a figure depends on
-# modules whose source a result depends on
+# Modules whose source code a stored result depends on: it is computed again when that changes.
 ANSWERING_MODULES = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
 
 

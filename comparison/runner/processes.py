@@ -36,7 +36,7 @@ try:
 except ImportError:  # Windows cannot limit a process's processor time; its wall time is limited instead.
     resource = None  # type: ignore[assignment]
 
-SPAWN_CONTEXT = multiprocessing.get_context("spawn")
+SPAWN_CONTEXT = multiprocessing.get_context("spawn")  # worker processes start as fresh interpreters
 # Wall time over the time limit after which a silent process is stuck, waiting for something that never comes
 STALLED_WALL_RATIO = 20.0
 # With a time limit of more than a few seconds the wall time may be this multiple of it, for a shared processor, plus
@@ -47,7 +47,7 @@ EXIT_SECONDS = 5.0  # s that a process has to end after its pipe has ended
 # environment variable with which Python does not search the working directory first
 SAFE_PATH = "PYTHONSAFEPATH"
 
-Call = Callable[[], Any]
+Call = Callable[[], Any]  # function with its arguments bound, to be called in a worker
 Pool = Executor | Callable[[int], Executor]  # an executor that the caller ends, or a function that makes one for N jobs
 
 # Starting a process also collects ended ones: only one thread may do either at a time.
@@ -224,7 +224,7 @@ def _serve_calls(pipe: Connection, collections: tuple[int, int, int], safe_path:
     """
     Make the calls that messages name until the parent closes the pipe or ends.
 
-    safe_path: for the processes that a task starts.
+    safe_path: value of SAFE_PATH for the processes that a task starts. collections: thresholds of garbage collection.
     """
     _set_safe_path(safe_path)
     gc.set_threshold(*collections)

@@ -84,6 +84,7 @@ def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display
     last = time.monotonic()
 
     def line(display: Display) -> None:
+        """Print the progress as a plain line, at most every LINE_INTERVAL."""
         nonlocal last
         if (now := time.monotonic()) - last >= LINE_INTERVAL:
             last = now

@@ -66,7 +66,7 @@ class Task:
 
     @property
     def points(self) -> int:
-        """Return the number that it counts for on the terminal."""
+        """Return the number of its phase pairs, or 1 for a task that is no batch, which the terminal counts."""
         return self.batch.points if self.batch else 1
 
     def halves(self) -> list[Task]:
@@ -101,7 +101,7 @@ class TaskResult:
 
 
 def execute_task(task: Task) -> TaskResult:
-    """Call the function of a task inside a worker process. Its errors are raised: the sweep handles them."""
+    """Call the function of a task inside a worker process. Its errors are raised: the runner handles them."""
     clock = time.process_time()
     value = task.function(task.argument)
     return TaskResult(value, time.process_time() - clock)
@@ -152,6 +152,7 @@ def describe_contents(value: Any) -> Any:
 
 
 def _describe_arrays(data: xr.Dataset) -> dict[str, Any]:
+    """Return the arrays of a data set by name."""
     return {str(name): variable.values for name, variable in data.variables.items()}
 
 

@@ -15,13 +15,13 @@ from comparison.wording import word_exception
 from reference.problem import Amplification, Outcome, Scene, Trajectory
 
 MAX_MU = 1e12  # far above mu of any building, and small enough that no sum of squares of mu or of a ratio overflows
-# Outcome of our own models with which mu counts, with the larger error that is stated
+# Outcome of this project's models after which mu is used, with the larger error that it states
 USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Phase pairs number `first` ... `first` + len(phases) - 1 of those the model solves, phases (M, 2), rad."""
+    """Consecutive phase pairs (M, 2), rad, of a scene for one model; first: number of the first among all it solves."""
 
     scene: Scene
     model: str
@@ -108,14 +108,14 @@ def import_function(path: str) -> Any:
 
 
 def compute_amplification(scene: Scene, model: Model, phases: Any, **settings: object) -> Amplification:
-    """Return mu of a scene by a model; settings: more than the model's own. Runs inside a worker process."""
+    """Return mu of a scene by a model; settings: beyond the model's own. Runs inside a worker process."""
     asked = {**model.settings, **settings}
     answer: Amplification = import_function(model.amplification)(model.scene_of(scene), phases, **asked)
     return answer
 
 
 def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) -> Trajectory:
-    """Return one motion of a scene by a model; settings: more than the model's own. Runs inside a worker process."""
+    """Return one motion of a scene by a model; settings: beyond the model's own. Runs inside a worker process."""
     asked = {**model.motion_settings, **settings}
     motion: Trajectory = import_function(model.trajectory)(model.scene_of(scene), phases, **asked)
     return motion
@@ -123,7 +123,7 @@ def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Replace every answer that is none by NaN, in place: mu and error (M, N), status (M).
+    Replace unusable answers by NaN, in place: mu and error (M, N), status (M).
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is

@@ -16,8 +16,8 @@ from reference.problem import Scene
 COMPILING_SECONDS = 20.0  # s, first call of the reference on a machine, which compiles it
 STARTING_SECONDS, WRITING_SECONDS = 4.0, 4.0  # s, loading of modules and workers; writing of a report
 USUAL_DURATION, USUAL_BODIES = 20.0, 2  # s and number of bodies of the scenes that the models' stated seconds refer to
-# s of processor time of a motion to its end. By the equations once, for a second of the motion and for a knot of its
-# record, these of every body and once more; by the engine for a radian of the fastest link, in space for every body.
+# Processor time of a motion, s. Equations: once; then, times the number of bodies + 1, per second of motion and per
+# knot of the record. Exudyn: per radian of the fastest link; in the spatial model also times the number of bodies.
 MOTION_COST, MOTION_SECOND_COST, MOTION_KNOT_COST = 0.02, 4e-4, 3.7e-6
 MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3
 DEFAULT_FREQUENCY = 7.0  # rad/s, frequency assumed for a scene without a faster link

@@ -7,7 +7,7 @@ from math import gcd
 from comparison.study.models import Model
 from comparison.study.study import Study, nested_grids
 
-# largest number of phases per axis at the first two levels, by side; the third level is the whole study
+# Largest number of phases per axis at the first and second level, by side; the third level is the whole study.
 MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
     {"reference": 16, "engine": 8, "spatial": 4, "user": 8},
     {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "user": float("inf")},

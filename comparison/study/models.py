@@ -135,7 +135,7 @@ class Model:
         return {key: value for key, value in self.settings.items() if key != "cutoff"}
 
     def scene_of(self, scene: Scene) -> Scene:
-        """Return the scene that the model moves in place of a scene of the study."""
+        """Return the scene as this model computes it: with friction that does not yield if the model is `rigid`."""
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
@@ -338,7 +338,7 @@ SMALL_AS_INTEGRATED = _model_after(
     reading=AS_INTEGRATED,
     in_chain=applies_to_every_scene,
 )
-RESOLVED = _model_after(
+EXACT_AS_INTEGRATED = _model_after(
     EXACT,
     {"mu_i": _RESOLVED_PEAK},
     key="resolved",
@@ -366,7 +366,7 @@ SMALL_REGULARIZED = _model_after(
     seconds=0.001,
 )
 REGULARIZED = _model_after(
-    RESOLVED,
+    EXACT_AS_INTEGRATED,
     _REGULARIZED_FRICTION_ASSUMPTIONS,
     key="regularised",
     title="exact equations, v_reg",
@@ -421,18 +421,18 @@ SPATIAL = _model_after(
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (
-    SMALL, EXACT, SMALL_AS_INTEGRATED, RESOLVED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
+    SMALL, EXACT, SMALL_AS_INTEGRATED, EXACT_AS_INTEGRATED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# effects between models of which one is not in the chain: effect, where, first, second
+# Effects outside the chain of models: name, law or reading that tells it apart, first and second model
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
-    (RESOLVED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
+    (EXACT_AS_INTEGRATED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
     (REGULARIZED.effect, "small", SMALL_AS_INTEGRATED, SMALL_REGULARIZED),
 )
 
 
 def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
-    """Return the model that softens the bars of an engine model, as the step after it."""
+    """Return an engine model whose bars are softened by the weight above, as the model after it."""
     return _model_after(
         model,
         {"links": "bars as soft as the weight that they carry makes them"},
@@ -450,7 +450,7 @@ SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_b
 SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
 
 
-RIGID = _model_after(
+SMALL_RIGID_FRICTION = _model_after(
     SMALL_AS_INTEGRATED,
     {"friction": "set-valued Coulomb, rigid before it slides, where the scene's yields"},
     key="rigid",
@@ -465,8 +465,8 @@ _YIELDS = "elastic up to mu N before it slides, mu constant or of the slip veloc
 
 
 def _tell_of_yielding(model: Model, only: bool) -> Model:
-    """Return a model with the words that scenes need whose friction yields; only: whether that of every scene does."""
-    if model.applies is has_dry_friction:  # that is rigid
+    """Return a model whose texts also describe friction that yields; only: whether it does in every scene."""
+    if model.applies is has_dry_friction:  # models of rigid friction stay
         return model
     friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"
     told = _model_after(model, {"friction": friction} | ({"mu_i": _PEAK} if only else {}))
@@ -488,6 +488,6 @@ def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) ->
     steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)
     added = (model for model in steps if model.amplification in functions and any(map(model.applies, scenes)))
     yields = [has_yielding_friction(scene) for scene in scenes]
-    if RIGID.amplification in functions and any(yields):
-        hierarchy = (RIGID, *(_tell_of_yielding(model, all(yields)) for model in hierarchy))
+    if SMALL_RIGID_FRICTION.amplification in functions and any(yields):
+        hierarchy = (SMALL_RIGID_FRICTION, *(_tell_of_yielding(model, all(yields)) for model in hierarchy))
     return (*hierarchy, *added)

@@ -17,7 +17,7 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-# computation, condition on the scene, and the setting and its values of models that skip it
+# What is skipped, the scenes in which it is, and the models that skip it: a key of their settings and its values
 SKIPPED_COMPUTATIONS = (
     ("every run but one per harmonic", is_linear, "equations", ("small",)),
     ("motion across its plane", is_planar, "equations", ("small", "exact")),

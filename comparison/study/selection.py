@@ -14,7 +14,7 @@ class Selectable(NamedTuple):
     """
     An analysis that can be selected by its name.
 
-    on_request: whether it is made only where it is named, as it costs more than the surfaces. of_the_paper: whether it
+    on_request: whether it is run only where it is named, as it costs more than the surfaces. of_the_paper: whether it
     concerns the paper's own scenes. needs: name of the analysis below which it is shown, "" for none.
     """
 
@@ -30,8 +30,8 @@ class Selection:
     Analyses selected for every scene.
 
     analyses: all that can be selected. by_scene: those asked for, by name of the scene; a scene that is not in it has
-    all but those on request. later: those that only a later level of the study has. of_the_paper: those that are made
-    of the paper's scenes unless they are asked for by name, and that no scene here has for this reason. on_request:
+    all but those on request. later: those that only a later level of the study has. of_the_paper: those that are run
+    for the paper's scenes unless they are asked for by name, and that no scene here has for this reason. on_request:
     those that no scene here has because nobody named them.
     """
 
@@ -47,7 +47,7 @@ class Selection:
         return tuple(each.name for each in self.analyses)
 
     def explain_absence(self, analysis: str) -> str:
-        """Return why an analysis is made of no scene."""
+        """Return why an analysis is selected for no scene."""
         if analysis in self.later:
             return "follows at a later level of the study"
         if analysis in self.of_the_paper:
@@ -60,7 +60,7 @@ class Selection:
 
     def has(self, analysis: str, scene: str) -> bool:
         """
-        Return whether the analysis is made of the scene; one that cannot be selected always is.
+        Return whether the analysis is run for the scene; one that cannot be selected always is.
         """
         usual = [each.name for each in self.analyses if not each.on_request]
         return analysis not in self.later and (

@@ -95,12 +95,12 @@ class Study:
         return tuple(scene for scene in self.scenes if not scene.recorded)
 
     def restrict_to(self, analysis: str) -> Study:
-        """Return the study restricted to the scenes of which the analysis is made."""
+        """Return the study restricted to the scenes for which the analysis is selected."""
         return replace(self, scenes=tuple(scene for scene in self.scenes if self.selection.has(analysis, scene.name)))
 
     @cached_property
     def absent(self) -> dict[str, str]:
-        """Return the analyses that are made of no scene, with the reason."""
+        """Return the analyses that are selected for no scene, with the reason."""
         return {
             analysis: self.selection.explain_absence(analysis)
             for analysis in self.selection.names
@@ -140,7 +140,7 @@ class Study:
         return (self.grid * axis[:, None] + axis).ravel()
 
     def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """Return for each of `places` the one whose answer is also its own, by the symmetries of the scene."""
+        """Return for each of `places` the one of which symmetry makes it the mirror image, or itself."""
         places = self.places(model, scene)
         if scene.recorded:
             return places

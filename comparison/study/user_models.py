@@ -83,6 +83,7 @@ def note_line(error: BaseException, file: Path | None) -> None:
 
 
 def _file_of(function: Callable[..., Any]) -> Path | None:
+    """Return the file that defines a function; None for compiled code."""
     try:
         return Path(inspect.getfile(inspect.unwrap(function)))
     except TypeError:  # raised for a compiled function or a callable object

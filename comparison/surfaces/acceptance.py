@@ -123,7 +123,7 @@ def _list_breaches(
 
 
 def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
-    """Return the name of the pair in the study: the translational difference may be the total one."""
+    """Return the key of a pair; "total" for "translational" where a single engine model makes both the same."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]

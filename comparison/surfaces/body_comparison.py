@@ -93,10 +93,10 @@ def compare_bodies(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Bod
 def count_independent_phases(
     study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
 ) -> int:
-    """Return the number of orbits of the `known` phase pairs (K, K) under the symmetries of all models."""
+    """Return the number of `known` phase pairs (K, K), counting once those that symmetries of all models relate."""
     if scene.recorded:
         return int(known.any())
-    reduced = replace(study, full=False)  # the mirrored phases that a full study computes are not independent
+    reduced = replace(study, full=False)  # A full study also computes mirrored phases, which are not independent.
     axis = np.arange(0, study.grid, stride)
     places = (study.grid * axis[:, None] + axis)[known]
     orbits = np.empty((len(places), len(models)), dtype=np.intp)

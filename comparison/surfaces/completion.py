@@ -32,7 +32,7 @@ from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
 from reference.problem.symmetry import indices_of_solved_pairs
 
-Indices = NDArray[np.intp]
+Indices = NDArray[np.intp]  # numbers of phase pairs on the whole grid
 
 MIN_SPATIAL_PER_AXIS = 9  # phases per axis of the spatial model, below which its values are drawn as points
 MIN_VALUES = 16  # smallest number of phase pairs from which a surface is interpolated

@@ -15,7 +15,7 @@ from comparison.surfaces.waterfall import NAN, Waterfall
 
 # Share of the total from which an effect is a cause; share of an effect from which an interaction is stated
 NAMED_SHARE = 0.2
-# by pair of the sequence: the pair with the same effect in another order of the models, and that order in words
+# By effect of the model sequence: the pair that shows the same effect in another order of steps, and the order in words
 SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),

@@ -234,7 +234,7 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
 
 
 def _word_largest(known: Sequence[Headline]) -> str:
-    """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
+    """Return the largest mean difference of all bodies, the next, and smallest and largest at single phase pairs."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
     size = word_difference(abs(largest.mean), largest.error).removeprefix("+")
@@ -286,6 +286,7 @@ def _word_codes(known: Sequence[Headline]) -> str:
 
 
 def _capitalize(text: str) -> str:
+    """Return a text with a capital first letter."""
     return f"{text[0].upper()}{text[1:]}" if text else text
 
 
@@ -330,7 +331,7 @@ def word_supremum_cell(numbers: Headline) -> str:
     return f"{signed(numbers.supremum_mean)}, up to {signed(numbers.supremum_maximum)}"
 
 
-CELL_WORDINGS = SimpleNamespace(
+CELL_WORDINGS = SimpleNamespace(  # wording of each cell of the first screen's table
     difference=word_difference_cell,
     range=word_range_cell,
     causes=word_causes_cell,

@@ -69,7 +69,7 @@ TIME_ROUNDING = 1e-12
 @dataclass(frozen=True)
 class Integration:
     """
-    Solver, ground motion, duration, level of accuracy and step budget of one run.
+    Everything that a run needs: solver, ground motion, duration, level of accuracy and step budget.
 
     ground: acceleration of the plate. end: duration of the motion, in units of time. budget: steps left to all runs of
     the phase pair. keep: whether the run keeps its motion.

@@ -39,7 +39,7 @@ MAX_ITERATIONS = 50
 MAX_RESIDUAL = 1e-9
 SAFETY_OF_FORCE_ROUNDING = 100.0
 
-CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current
+CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current  # the engine's name for its present state
 
 
 def find_balanced_start(

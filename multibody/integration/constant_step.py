@@ -28,8 +28,8 @@ MAX_CONTRACTIVITY = 0.2
 
 # Names of the explicit integrators here, and in the engine.
 EXPLICIT_INTEGRATORS = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}
-INITIAL_CONFIGURATION = exudyn.ConfigurationType.Initial
-INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT_INTEGRATORS)
+INITIAL_CONFIGURATION = exudyn.ConfigurationType.Initial  # the engine's name for the start of a run
+INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT_INTEGRATORS)  # names of all integrators here
 
 
 class EngineMotion(NamedTuple):

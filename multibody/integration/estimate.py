@@ -41,8 +41,8 @@ SAFETY_OF_ROUNDING = 3.0
 FORCE_NOISE_RATIO = 0.5
 FORCE_NOISE_RATIO_OF_TURNING = 0.2
 
-# Force on the platform of a flat slider over Newton's residual: above it only a part of the residual acts (measured:
-# 34).
+# Largest force on the platform of a flat slider, over Newton's residual, at which the whole residual may be missing
+# from all runs (measured: 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
 # Factor on the change of peaks by springs of bearings where that change was measured at a coarser level only

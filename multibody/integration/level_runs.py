@@ -277,7 +277,7 @@ class LevelRuns:
 
 
 def _with_physical_warping_compliance(level: Level) -> Level:
-    """Return `level` with the compliance of supports whose contact points do not lie in one plane, as of bearings."""
+    """Return `level` with the warping compliance of real bearings under the supports."""
     return replace(level, warping_compliance=PHYSICAL_WARPING_COMPLIANCE)
 
 

@@ -67,7 +67,7 @@ class Event:
 @dataclass
 class Openings:
     """
-    Contacts (K,) that are open, and number of impacts so far.
+    Openings and closings of the contacts (K,) in a run: which are open, and the number of impacts so far.
 
     settled_at: instant at which contact forces have settled after the last impact, in units of time.
     """

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 # Default limit of the engine's steps in all runs of one phase pair: beyond it the pair has no answer.
 MAX_WORK = 2e6
-WORK_RANGE = Range(1.0, 1e12, "steps")
+WORK_RANGE = Range(1.0, 1e12, "steps")  # limit of the steps that a caller may give
 
 # Number of successive levels with impacts, each another motion than the level before, after which refinement ends.
 MAX_DIFFERENT_MOTIONS = 3

@@ -49,7 +49,7 @@ NEGLIGIBLE_EXCESS = 1e-4
 # v_reg of a sliding contact over the slip speed at which slides end.
 V_REG_OVER_SLIDE_END = 0.25
 
-# Weight of a step's change of the platform's velocity, over the slip speed, against the change of springs over yield.
+# Weight of the platform's change of velocity over the slip speed in a step's ratio, where springs have the weight 1.
 VELOCITY_CHANGE_WEIGHT = 0.3
 
 # Smallest elastic displacement by which a vector is divided: the direction of a smaller one is arbitrary.

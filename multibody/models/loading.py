@@ -60,7 +60,7 @@ class SymbolicGround:
         return sum(terms[1:], terms[0]) if terms else exudyn.symbolic.Real(0.0)
 
 
-Ground = SymbolicGround | RecordedGround
+Ground = SymbolicGround | RecordedGround  # acceleration of the plate, as the engine reads it
 
 
 def make_ground(mbs: Any, scene: Scene, units: Units) -> Ground:

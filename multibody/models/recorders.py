@@ -24,16 +24,19 @@ def add_recorders(
         return mbs.AddSensor(sensor)
 
     def sense_object(contact: Any, quantity: Any) -> Any:
+        """Return a new sensor that keeps a quantity of a contact in memory."""
         sensor = items.SensorObject(
             objectNumber=contact, outputVariableType=quantity, storeInternal=True, writeToFile=False
         )
         return mbs.AddSensor(sensor)
 
     def sense_body(body: Any, quantity: Any) -> Any:
+        """Return a new sensor that keeps a quantity of a linear body in memory."""
         sensor = items.SensorBody(bodyNumber=body, outputVariableType=quantity, storeInternal=True, writeToFile=False)
         return mbs.AddSensor(sensor)
 
     def add_motion_sensors(quantity: Any) -> list[Any]:
+        """Add a sensor of a quantity of motion for every node and linear body, and return the sensors."""
         return [sense_node(node, quantity) for node in nodes] + [sense_body(body, quantity) for body in linear]
 
     return Recorders(

@@ -244,7 +244,7 @@ def _make_impact_law(
 @dataclass(frozen=True)
 class _SpatialSystem:
     """
-    Assembled spatial system: setting of its contacts and links and its initial state, in units of the model.
+    Assembled spatial model, which sets its contacts and links and gives its initial state, in its own units.
 
     index: index of the coordinates that move the bodies, (N, 3). radius: radius of the spheres. bearing_penetration:
     penetration under the weight by the stiffness of the scene's bearings, or 0.

@@ -46,7 +46,7 @@ class SpeedFriction:
         self.coefficient_ratios = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        # slip speeds and loads over the weight's shares, with their rates, at the start of the step from _start to _end
+        # slip speeds, and loads over shares of the weight, with their rates, at _start of the step that ends at _end
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)
         self._load = [1.0] * len(contacts)
         self._start = self._end = 0.0

@@ -17,7 +17,7 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-# Spacing of ln x in the trapezoidal rule, whose error relative to the kernel is exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
+# Spacing of ln x, x the root of a decay rate, which makes a relative error of exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
 LOG_SPACING = 0.3
 
 # Smallest x, the root of a decay rate, times the root of the duration.
@@ -49,7 +49,7 @@ class SurfaceHeat:
         self._unit_time, self._count = unit_time, count
         low, high = math.log(MIN_DECAY_RATE_ROOT), math.log(3.0 / math.sqrt(KERNEL_CUTOFF_TIME * 1e-3))
         x = np.exp(np.arange(low, high, LOG_SPACING)) / math.sqrt(duration)
-        self._rates, self._add_weights = x * x, 2.0 / math.sqrt(math.pi) * LOG_SPACING * x
+        self._rates, self._weights = x * x, 2.0 / math.sqrt(math.pi) * LOG_SPACING * x
         self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
@@ -72,7 +72,7 @@ class SurfaceHeat:
     def temperature(self, time: float, power: Array, distance: float) -> Array:
         """Return the temperature (K,), degrees C, at the end of a step up to `time` with power (K,), W, there."""
         shares = self._advance(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
-        celsius: Array = self._initial + self._rise * (shares @ self._add_weights)
+        celsius: Array = self._initial + self._rise * (shares @ self._weights)
         return celsius
 
     def distance(self, time: float) -> float:

@@ -125,7 +125,7 @@ def assemble_translational(
 @dataclass(frozen=True)
 class _TranslationalSystem:
     """
-    Assembled translational system: setting of its contact and its initial state, in units of the model.
+    Assembled translational model, which sets its contact and gives its initial state, in its own units.
 
     bodies: index of the coordinates that move the bodies, (N, 3). height: height of the plane of a flat slider.
     coordinates: number of coordinates of the system.

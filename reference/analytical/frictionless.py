@@ -21,19 +21,19 @@ from reference.problem import Scene, exponents, loading_period
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Intervals per shortest period, and terms of the series on each: the remainder is below 1e-14 of the motion
+# Time intervals per shortest period, and terms of the Taylor series on each: its error is below 1e-14 of the motion
 INTERVALS_PER_PERIOD = 12
 SERIES_TERMS = 12
-# rad: below this size of s t the drift on a plane is summed as a series of DRIFT_TERMS terms, without cancellation
+# Largest |s t| of a loading exp(s t) at which the drift on a plane is a series of DRIFT_TERMS terms: no cancellation
 MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20
 ROUNDING_ERROR = 1e-13  # relative error of a frequency and of each operation
 
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return peak accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and True at the end, (M,).
+    Return peak accelerations, m/s^2, and their errors, (M, N); largest displacement, m, and whether travel ends, (M,).
 
-    The scene is one that `linear` allows. `ends` is True at phase pairs at which the platform may reach the end of its
+    The scene is one that `is_linear` allows. Travel ends at phase pairs at which the platform may reach the end of its
     travel, or without one the rim (4.1): such a motion has left the range of the small equations.
     """
     natural = modes(scene)
@@ -87,7 +87,7 @@ def _harmonic_responses(
 
 
 def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
-    """Return the derivative of this order of (exp(s t) - 1 - s t) / s^2 at the instants, (T,)."""
+    """Return a time derivative of the drift on a plane under exp(s t), (exp(s t) - 1 - s t) / s^2, (T,)."""
     angle = s * time
     if order > 1:
         return np.asarray(s ** (order - 2) * np.exp(angle))
@@ -97,13 +97,13 @@ def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
     series = np.zeros(len(time), dtype=complex)
     for power in range(DRIFT_TERMS, 1, -1):
         series = (series * angle + 1.0) / power
-    # `series` is 1 / 2 + z / 6 + ... by Horner's rule, (exp(z) - 1 - z) / z^2.
+    # `series` is now (exp(z) - 1 - z) / z^2 = 1/2 + z/6 + ... at the angle z = s t, by Horner's rule.
     direct = (np.expm1(angle) - angle) / s**2
     return np.where(small, series * time**2, direct)
 
 
 def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
-    """Return (exp(s t) - exp(z t)) / (s - z) for the roots z (N,), (T, N), s, which is t exp(z t) where s equals z."""
+    """Return (exp(s t) - exp(z t)) / (s - z), (T, N), s, the response of modes of eigenvalue z (N,) to exp(s t)."""
     gap = s - roots
     same = gap == 0.0
     growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)

@@ -29,7 +29,7 @@ SERIES_REMAINDER = 1e-14  # share of the envelope that the terms left out by the
 @dataclass(frozen=True)
 class PhaseSeries:
     """
-    Series in time of the vectors of N bodies on T intervals.
+    Power series in time, on T intervals, of the vectors of N bodies: linear in exp(i alpha_1) and exp(i alpha_2).
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class PhaseSeries:
     def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
         """Return the series from the derivatives (T, N, axes, 2) at the middle of intervals of length 2 `half`, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
-        sizes = np.abs(scaled).sum(axis=-1)  # the harmonics add up at these phases
+        sizes = np.abs(scaled).sum(axis=-1)  # largest over all phases: both harmonics add up
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
         envelope = np.sqrt((sizes.sum(axis=0) ** 2).sum(axis=-1)).max(axis=0)
         rest = np.moveaxis(sizes[2:].sum(axis=0), 0, -1)
@@ -57,7 +57,7 @@ class PhaseSeries:
 
 
 def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
-    """Return max_t |v| of every body for phase pairs (M, 2), rad, and the error of the maximum: (M, N) each."""
+    """Return the largest length |v| over time of every body for phase pairs (M, 2), rad, and its error: (M, N) each."""
     peaks, errors = np.empty((2, len(phases), len(series.envelope)))
     _maximize_over_time(series.terms, series.rest, _phase_factors(phases), peaks, errors)
     return peaks, errors + SERIES_REMAINDER * series.envelope
@@ -76,7 +76,7 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return the factors of the four coefficients at each phase pair, (M, 4)."""
+    """Return (M, 4) factors of Re A_1, Im A_1, Re A_2, Im A_2 in v: cos and -sin of both phases of each pair."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
@@ -98,7 +98,7 @@ def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array,
 
 @njit(nogil=True)
 def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
-    """Return the coefficient of x^order on interval n for one body and axis."""
+    """Return the coefficient of x^order of one body's vector along an axis, on interval n at one phase pair."""
     total = 0.0
     for part in range(4):
         total += turn[part] * terms[order, body, axis, part, n]

@@ -39,10 +39,10 @@ class Estimate:
     reason: str = ""
 
 
-NEVER_RESTS = "never at rest: no dry friction"
-MOVING_AT_END = "moving at the end: take a longer duration"
-NOT_SAMPLED = "no samples of the last rest"
-UNKNOWN_ESTIMATE = Estimate(math.nan, math.nan)
+NEVER_RESTS = "never at rest: no dry friction"  # reason for no residual displacement
+MOVING_AT_END = "moving at the end: take a longer duration"  # reason for no residual displacement
+NOT_SAMPLED = "no samples of the last rest"  # reason for no residual displacement
+UNKNOWN_ESTIMATE = Estimate(math.nan, math.nan)  # any number of a motion that ended early
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
@@ -106,8 +106,8 @@ class DemandSamples(NamedTuple):
         return float(np.hypot(*place[min(first, len(place) - 1)])), creep
 
 
-ReadNumber = Callable[[DemandSamples], float]
-ReadNumbers = Callable[[DemandSamples], Sequence[float]]
+ReadNumber = Callable[[DemandSamples], float]  # function that reads one number from samples
+ReadNumbers = Callable[[DemandSamples], Sequence[float]]  # function that reads several numbers from samples
 
 
 class DemandReader:
@@ -144,7 +144,7 @@ class DemandReader:
             return UNKNOWN_ESTIMATE
         scene, stick = self.motion.scene, self.motion.stick
         yields = scene.dry_friction.elastic
-        stick = stick[-1:] if yields else stick  # elastic displacements of several rests do not add up
+        stick = stick[-1:] if yields else stick  # elastic friction springs back: earlier rests leave no distance
         if not stick or stick[-1][1] < (1.0 - DURATION_TOLERANCE) * scene.duration:
             rests = scene.has_dry_friction or yields
             return Estimate(math.nan, math.nan, MOVING_AT_END if rests else NEVER_RESTS)
@@ -190,5 +190,5 @@ class DemandReader:
         return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
 
     def _solution_error(self, value: float, others: list[float], scale: float | None = None) -> float:
-        """Return the error that the differences of the runs give to a value; NaN without other runs."""
+        """Return the numerical error of a value, from its values in less accurate runs; NaN without other runs."""
         return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)

@@ -94,12 +94,14 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     coarse = [part for part in (values[i::2, j::2] for i in (0, 1) for j in (0, 1)) if np.isfinite(part).any()]
 
     def estimate_mean() -> Estimate:
+        """Return the mean of mu with its error."""
         value = float(values[known].mean())
         sampling = max(abs(float(np.nanmean(part)) - value) for part in coarse)
         error = SAMPLING_FACTOR * sampling + float(errors[known].mean())
         return Estimate(value, error if known.all() else float("nan"))
 
     def estimate_fractile(probability: float) -> Estimate:
+        """Return the value that mu stays below with this probability, with its error."""
         value = fractile(values[known], probability)
         sampling = max(abs(fractile(part[np.isfinite(part)], probability) - value) for part in coarse)
         higher = fractile(np.where(known, values + errors, np.inf), probability) - value

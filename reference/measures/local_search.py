@@ -27,13 +27,13 @@ from reference.problem.scene import Scene
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
 # Coordinates along each axis of the square at which the predicted quotient is computed: first, then around its maximum
 COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
-QUOTIENT_GRIDS = 5  # number of grids for the largest quotient, each four times finer than the one before
+QUOTIENT_GRIDS = 5  # successive grids that locate the largest quotient, each four times finer than the one before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
 # The square moves and keeps its size if the best pair is farther from the center than this share of the half width
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of the square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction over the range of values in the square
+MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction, as a share of the range of values in the square
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
 # values in its square, or by more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump even a

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # index of the first body with the demand
+PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies; index of the first body that has one
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
     "residual": ("residual displacement of the isolator", "m"),
@@ -187,7 +187,7 @@ def _estimate_table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array 
 
 def list_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
     """
-    Iterate over field of `Demands`, body and number for every demand of a motion.
+    Iterate over (field of `Demands`, number of the body, estimate) for every demand of a motion.
 
     The body is 0 for the isolator; of a drift it is the upper one.
     """

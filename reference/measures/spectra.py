@@ -20,7 +20,7 @@ from reference.support.arguments import Range, check_array, check_number
 from reference.support.build_cache import cache_on_disk
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, periods of a spectrum by default
-DAMPING_RANGE = Range(0.0, 1.0, "of critical")
+DAMPING_RANGE = Range(0.0, 1.0, "of critical")  # damping ratio of the oscillator
 SERIES_TERMS = 8  # number of terms in the power series of a step
 MAX_ANGLE = 0.25  # rad, largest phase angle of the oscillator in a step: the series has an error of 1e-12
 # The sampling error is SAMPLING_FACTOR times the largest change if every third sample is taken. On the built-in
@@ -100,6 +100,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     series = _power_series(damping)
 
     def spectra(motion: Trajectory, first: int = 0, every: int = 1) -> Array:
+        """Return the floor spectra of a motion, from every n-th sample beginning with `first`, and both ends."""
         last = len(motion.time) - 1
         kept = np.arange(last + 1) % every == first
         kept[[0, last]] = True
@@ -280,7 +281,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
 
 def _power_series(damping: float) -> Array:
     """
-    Return coefficients (SERIES_TERMS, 3) of the motion from rest in powers of the angle, lowest power first.
+    Return coefficients (SERIES_TERMS, 3) of an oscillator's motion from rest in powers of its angle, lowest first.
 
     Columns: motion under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp
     up to 1, over the square of the angle. All motions of a step are sums of these. The k-th derivative at the start of

@@ -13,7 +13,7 @@ from reference.problem.scene import Scene
 from reference.problem.supports import static_shares
 from reference.support.constants import GRAVITY
 
-ReadVectors = Callable[[DemandSamples], Array]  # vectors in the plane at every instant, (T, 2)
+ReadVectors = Callable[[DemandSamples], Array]  # function that reads horizontal vectors (T, 2) at every instant
 
 
 @dataclass(frozen=True)
@@ -130,6 +130,7 @@ def _read_supports(
     """Return the smallest, then the largest over time of values (T, K) of `count` supports, with their errors."""
 
     def ends(samples: DemandSamples) -> list[float]:
+        """Return the smallest values of all supports over time, then the largest."""
         found = values(samples)
         return [*found.min(axis=0).tolist(), *found.max(axis=0).tolist()]
 
@@ -141,6 +142,7 @@ def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterato
     """Iterate over the largest magnitudes of vectors over time, then their components along x and y, with errors."""
 
     def sizes(vector: ReadVectors) -> tuple[Estimate, ...]:
+        """Return the largest magnitude of a vector over time and its largest x and y components, with errors."""
         return read.extremes(lambda samples: _largest_sizes(vector(samples)), 3)
 
     found = [sizes(vector) for vector in vectors]
@@ -191,6 +193,7 @@ def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> C
     shares = scene.masses / scene.total_mass
 
     def forces(samples: DemandSamples) -> Array:
+        """Return the normal forces of all supports at every instant, (T, K), N."""
         moment = np.einsum("i,tia->ta", scene.masses * heights, samples.acceleration)
         drift = np.einsum("i,tia->ta", shares, samples.place - samples.place[:, :1])
         off_middle = scene.center_of_mass - middle + lean * samples.place[:, 0] + drift

@@ -12,7 +12,7 @@ from reference.problem.keys import ENSEMBLE, STUDY, NonNegative, Positive, Table
 from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
 
-ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # a user may give an engine such a name
+ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # form of the name that a user may give to an engine
 
 
 class LimitTable(Table):
@@ -122,6 +122,7 @@ class Acceptance(Limits):
 
     @model_validator(mode="after")
     def _check_duplicate_and_engine_keys(self) -> Acceptance:
+        """Refuse a limit stated both here and in `like_for_like`, and a table whose key cannot name an engine."""
         if twice := sorted(self.limits_by_key().keys() & (self.like_for_like or Limits()).limits_by_key().keys()):
             raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
         for name, limits in self.user_engine_limits.items():

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from reference.problem.keys import REPORT, Table, key
 
-AnalysisNames = Annotated[list[str], Field(min_length=1)]
+AnalysisNames = Annotated[list[str], Field(min_length=1)]  # one name of an analysis or more
 
 
 class Analyses(Table):
@@ -21,6 +21,7 @@ class Analyses(Table):
 
     @model_validator(mode="after")
     def _check_selection(self) -> Analyses:
+        """Refuse a table with both `only` and `skip`."""
         if self.only is not None and self.skip is not None:
             raise ValueError("give only or skip, not both")
         return self

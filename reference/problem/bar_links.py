@@ -39,7 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """Return the links between bodies under `loads`, N, from below; None if rigid; radius: m, as default `spread`."""
+    """Return each link's stiffness under its load, N, from below, None if it is rigid; radius: default `spread`, m."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -76,7 +76,7 @@ def stands_upright(
     apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2. The weight N above sinks by
     D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Rigid links have one rotation on both sides.
     """
-    rotation = np.cumsum([0] + [link is not None for link in links])  # number of each body's rotation; 0: it has none
+    rotation = np.cumsum([0] + [link is not None for link in links])  # which rotation each body has, from 1; 0: none
     count = len(links)
     size = count + int(rotation[-1])
     unit = np.eye(size + 1)[:, :size]  # the last row stands for the platform, which does not move

@@ -13,7 +13,7 @@ from reference.records.samples import AXES, file_name, files_by_axis
 from reference.support.arguments import as_float, quote
 from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
-# Most letters of one changed value in a name of a scene, and of all of them; more become "changed"
+# Largest numbers of letters that one changed value, and all of them, have in a scene's name; longer: "changed"
 MAX_VALUE_LETTERS, MAX_CHANGES_LETTERS = 40, 80
 TABLES_WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # their changes change no result
 

@@ -20,7 +20,7 @@ from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
 
-SAMPLES_PER_PERIOD = 32  # per period of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
+SAMPLES_PER_PERIOD = 32  # of the faster harmonic: 16 per wave of the squared acceleration, of twice the frequency
 # Share of the largest square above which a sample is computed again: rounding may have made the largest smaller
 MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 
@@ -139,11 +139,11 @@ def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, du
     """Return peaks (M,), m/s^2, for phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): exponents."""
     count = math.ceil(duration / step) + 1
     peaks = np.empty(phases.shape[0])
-    grown = np.empty((count, 2, 2))  # real and imaginary part of exp(s t) at the samples
-    bound = np.empty(count)  # upper bound on |u|^2 from each sample on
+    grown = np.empty((count, 2, 2))  # exp(s t) of both harmonics at the samples, as real and imaginary part
+    bound = np.empty(count)  # upper bound on the squared acceleration from each sample on
     turn = np.empty((2, 2))  # real and imaginary part of exp(i phase)
     known = 0  # number of samples at which `grown` and `bound` are computed
-    square = np.empty(count)  # |u|^2 at the samples for one phase pair
+    square = np.empty(count)  # squared acceleration at the samples for one phase pair
     for m in range(phases.shape[0]):
         phase = phases[m]
         for harmonic in range(2):

@@ -178,7 +178,7 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
 
 
 def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]) -> Array:
-    """Return the sum over both harmonics of Re(a_ki exp(i alpha_i) harmonics_i), rows x, y, z."""
+    """Return the ground motion (T, 3): real part of both harmonics (T, 2) times their amplitudes and phase factors."""
     result: Array = np.real((harmonics * _phase_factors(phase)) @ scene.amplitudes.T)
     return result
 
@@ -190,7 +190,7 @@ def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
 
 
 def _check_instants(time: ArrayLike) -> Array:
-    """Return instants, s, in their shape. Raises ValueError, one line."""
+    """Return finite instants, s, as an array of the given shape. Raises ValueError, one line."""
     return check_array("time", time, "must be instants (T,), s").reshape(np.shape(time))
 
 

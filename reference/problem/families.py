@@ -49,17 +49,17 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ALL_MOTIONS = "all"  # stands for every motion of a suite
-MOTION_KEY = ("excitation", "record", "motion")
+MOTION_KEY = ("excitation", "record", "motion")  # path of the key that chooses a motion of a suite
 COMBINATIONS = ("product", "zip")  # every value with every other one; or the n-th values of all keys together
 MAX_SCENES = 1000  # a family has at most so many scenes
 MAX_BODIES_IN_ALL = 50_000  # all scenes of a family together have at most so many bodies
 MAX_KEYS = 20  # at most so many keys of a file may have several values
-BOUNDS_KEY = "isolator.bounds"
-BOUND_NAMES = ("lower bound", "upper bound")
-BOUND_FACTOR = Range(0.01, 100.0)
+BOUNDS_KEY = "isolator.bounds"  # key with two factors of friction, each of which makes a scene
+BOUND_NAMES = ("lower bound", "upper bound")  # names of the scenes with the smaller and the larger friction
+BOUND_FACTOR = Range(0.01, 100.0)  # factor of friction in `isolator.bounds`
 BOUND_DIGITS = 12  # digits to which a bound's coefficient is rounded: 0.075, not 0.07500000000000001
 
-Value = float | int | str
+Value = float | int | str  # one of the values that a key of a family takes
 FilesByDirection = dict[str, str]  # file names of one record by direction
 NumbersByKey = dict[str, float]  # the numbers of one table, such as that of friction
 
@@ -311,7 +311,7 @@ def _add_other_errors(
 def _locate_bound_error(
     error: SceneError, tables: dict[str, Any], data: dict[str, Any], label: str, factors: Sequence[Value]
 ) -> SceneError:
-    """Return the error of a scene with a bound of friction as one of the file as written, or else of the bounds."""
+    """Return the error of a scene at a friction bound as an error of the stated friction, or else of the bounds."""
     try:
         make_scene({**tables, "isolator": {**tables["isolator"], "friction": data["isolator"]["friction"]}}, label, "")
     except SceneError as own:
@@ -451,7 +451,7 @@ def _list_values_of_key(
 
 
 def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | FilesByDirection | NumbersByKey]:
-    """Return listed values of one kind. Raises SceneError."""
+    """Return a list of numbers, of texts, or of tables of files or numbers, not mixed. Raises SceneError."""
     kinds = (_is_number, lambda value: isinstance(value, str), _is_table_of_files, _is_table_of_numbers)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MAX_SCENES):
@@ -467,10 +467,12 @@ def _is_table_of_files(value: Any) -> bool:
 
 
 def _is_table_of_numbers(value: Any) -> bool:
+    """Return whether a value is a table of numbers, such as that of friction."""
     return isinstance(value, dict) and len(value) > 0 and all(map(_is_number, value.values()))
 
 
 def _is_number(value: Any) -> bool:
+    """Return whether a value is a finite number."""
     return math.isfinite(as_float(value))
 
 

@@ -240,7 +240,7 @@ def kind_of_friction(friction: Any) -> str:
     return FRICTION_FORMS[int(isinstance(friction, dict | VelocityFriction))]
 
 
-Friction = Annotated[
+Friction = Annotated[  # friction in a scene file: a constant, or a table
     Annotated[NonNegative, Tag(FRICTION_FORMS[0])] | Annotated[VelocityFriction, Tag(FRICTION_FORMS[1])],
     Discriminator(kind_of_friction),
 ]

@@ -72,6 +72,7 @@ def range_validator(allowed: Range) -> AfterValidator:
     """Return the validator that raises an error for a number outside a range."""
 
     def check(value: float) -> float:
+        """Return a number inside the range. Raises ValueError for any other."""
         if value not in allowed:
             raise ValueError(allowed.rule)
         return value
@@ -101,7 +102,7 @@ class Table(BaseModel):
     """One table of the scene file: unknown keys, wrong types and numbers outside their range raise an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays and do not enter the hash
+    long_keys: ClassVar[frozenset[str]] = frozenset()  # keys whose arrays stay arrays and do not enter the hash
 
     @model_validator(mode="before")
     @classmethod
@@ -137,7 +138,7 @@ class Table(BaseModel):
         return super().model_copy(deep=deep)
 
 
-def exactly_one(table: BaseModel, *keys: str) -> None:
+def require_exactly_one(table: BaseModel, *keys: str) -> None:
     """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
     if sum(getattr(table, key) is not None for key in keys) != 1:
         raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")

@@ -34,7 +34,7 @@ class Outcome(StrEnum):
     VALUE_OUT_OF_RANGE = "value out of range"
 
 
-ADVICE: dict[Outcome, str] = {
+ADVICE: dict[Outcome, str] = {  # what to try after each outcome
     Outcome.OK: "nothing to do",
     Outcome.TOLERANCE_NOT_MET: "the error shown is larger than asked: loosen the tolerance, or give a cutoff v_c",
     Outcome.RIM_REACHED: "x1^2 + y1^2 reached rho^2 (4.1): lower the amplitude or enlarge the radius",

@@ -18,7 +18,7 @@ from reference.support.constants import GRAVITY
 
 # rad: where the fastest vibration turns by more in the whole motion, integration costs less than summation
 MAX_VIBRATION_ANGLE = 2e5
-RECORDED_REASON = "a recorded motion: no harmonics, no phases"
+RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # why a record permits no reduction
 
 MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned about the vertical
 LOAD_SHIFT_FACTOR = 2.0  # safety factor on the shift of the load of the supports, which is computed for a level sphere
@@ -57,7 +57,7 @@ def has_one_axis_per_harmonic(scene: Scene) -> Reduction:
 
 
 def body_cannot_tilt(scene: Scene) -> Reduction:
-    """Find whether the body of the spatial model cannot turn (vi), so that the translational model gives its motion."""
+    """Find whether the spatial model is one body that cannot turn: then the translational model gives its motion."""
     # All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
     # shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the
     # ring. The weight of a second body shifts with its displacement across the direction of sliding, and turns the
@@ -166,7 +166,7 @@ def has_no_friction_law(scene: Scene) -> Reduction:
 
 def is_linear(scene: Scene) -> Reduction:
     """Find whether the small equations (4.3)-(4.4) are linear, so that the motion is a sum of one per harmonic."""
-    # A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) also keeps the term f_c u (p . v) / rho.
+    # Lubrication is not linear: its main force f_c v is, but (4.3) also keeps a product of displacement and velocity.
     if scene.lubricated and scene.friction_coefficient > 0.0:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
     if scene.friction_coefficient > 0.0:

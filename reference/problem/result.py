@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 POINT_FIELDS = ("instant", "cap_share", "displacement", "displacement_effect")  # fields with a number per phase pair
-AXIS_LABELS = {
+AXIS_LABELS = {  # quantities that `Trajectory.plot` draws, and the labels of their axes
     "position": "displacement against the plate, m",
     "velocity": "velocity against the plate, m/s",
     "absolute_acceleration": "absolute acceleration, m/s$^2$",

@@ -20,7 +20,7 @@ from reference.problem.beam_column import buckling_load
 from reference.problem.chain_modes import solve_chain_modes
 from reference.problem.changed_values import name_change, name_with_changes, put_value, value_at
 from reference.problem.friction import DryFriction, Heating, VelocityFriction, law_of_friction
-from reference.problem.keys import NONE, REQUIRED, Positive, Table, Text, exactly_one, key, range_of
+from reference.problem.keys import NONE, REQUIRED, Positive, Table, Text, key, range_of, require_exactly_one
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES
 from reference.problem.supports import are_on_one_line, ring_positions, static_shares
@@ -33,7 +33,7 @@ from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
 
-MAX_BODIES = 10_000
+MAX_BODIES = 10_000  # largest number of bodies in a scene
 MIN_STATIC_SHARE = 1e-9  # support load over the weight: a support with a smaller share carries nothing
 MAX_SUPPORT_DEFLECTION = 0.1  # largest deflection of the supports under the weight, over the radius
 DERIVED_ROUNDING = 1e-12  # relative rounding error of a value that is computed from other values
@@ -106,7 +106,7 @@ class Scene(Table):
 
     @model_validator(mode="after")
     def _check_all_tables(self) -> Scene:
-        """Check what no table can check by itself."""
+        """Check the rules that join several tables of the scene."""
         self._check_links()
         self._check_bars()
         self._check_superstructure()
@@ -128,7 +128,7 @@ class Scene(Table):
                 raise MisfitError(f"bodies.0.{name}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
             try:
-                exactly_one(body, *LINKS)
+                require_exactly_one(body, *LINKS)
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
 
@@ -362,7 +362,7 @@ class Scene(Table):
     def damping(self) -> NDArray[np.float64]:
         """Link damping c_{i+1,i} in x and y, (N-1, 2), N s/m; row i links body i and body i + 1."""
         if (ratio := self._first_mode_ratio) is not None:
-            # a matrix D0 = beta C0 has the modal damping ratios beta omega / 2
+            # damping in proportion to stiffness, D0 = beta C0, has the modal damping ratios beta omega / 2
             first = [solve_chain_modes(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T]
             proportional: NDArray[np.float64] = 2.0 * ratio / np.array(first) * self.stiffness
             return proportional

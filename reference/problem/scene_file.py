@@ -28,7 +28,7 @@ RANGE_KEYS, VALUES_KEYS = {"range", "steps"}, {"values"}  # keys of an inline ta
 MAX_BYTES = 2**22  # a scene file has at most so many bytes
 MAX_NESTING = 10  # a scene file nests at most so many tables and lists in one another
 RECORD_KEYS = (*TWO_FREQUENCY_KEYS, *READER_KEYS)  # keys of [excitation] that the reader of records checks
-RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # for an unreadable record
+RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # stands for an unreadable one
 # One part of a dotted TOML key: bare, in double quotes, or in single quotes
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 # A key of that many parts is nested too deep, and the parser's time grows as the square of their number.

@@ -26,7 +26,7 @@ def find_half_turns(scene: Scene) -> NDArray[np.intp]:
 
 
 def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """Return the index of the solved pair for every pair 2 pi k / grid, (grid^2,), where alpha2 runs fastest."""
+    """Return for every phase pair of a grid, (grid^2,), the index of the pair of equal mu that stands for it."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = find_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
@@ -36,7 +36,7 @@ def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 
 def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
-    """Return the fewest phase pairs (P, 2), rad, for a surface on 2 pi k / grid, and the index of one at each point."""
+    """Return the fewest phase pairs (P, 2), rad, that give a surface on a grid, and which of them each point takes."""
     solved, taken = np.unique(indices_of_solved_pairs(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
 

@@ -30,9 +30,9 @@ from reference.problem.keys import (
     Radius,
     Table,
     Text,
-    exactly_one,
     key,
     range_validator,
+    require_exactly_one,
 )
 from reference.problem.ranges import DAMPING_COEFFICIENT_RANGE, MAX_SUPPORTS, SUPPORT_POSITION_RANGE
 from reference.problem.validation import DAMPING_FORMS, EXCITATION_FORMS, SUPPORT_FORMS
@@ -55,18 +55,18 @@ def _kind_of_damping(value: Any) -> str:
     return DAMPING_FORMS[isinstance(value, list)]
 
 
-Damping = Annotated[
+Damping = Annotated[  # damping of a link: ratio of critical, or [cx, cy] in N s/m
     Annotated[float, Tag(DAMPING_FORMS[0])]
     | Annotated[list[Annotated[float, range_validator(DAMPING_COEFFICIENT_RANGE)]], Tag(DAMPING_FORMS[1])],
     Discriminator(_kind_of_damping),
     BeforeValidator(_check_damping),
 ]
-Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]  # [x, y], or one number per harmonic
 PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 NonNegativePair = Annotated[list[NonNegative], Field(min_length=2, max_length=2)]
-Edges = Annotated[list[Positive], Field(min_length=3, max_length=3)]
+Edges = Annotated[list[Positive], Field(min_length=3, max_length=3)]  # edges of a box along x, y and z
 Position = Annotated[list[Annotated[float, range_validator(SUPPORT_POSITION_RANGE)]], Field(min_length=2, max_length=2)]
-Supports = Annotated[
+Supports = Annotated[  # number of supports, or their positions
     Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORT_FORMS[0])]
     | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORT_FORMS[1])],
     Discriminator(lambda supports: SUPPORT_FORMS[int(isinstance(supports, list))]),
@@ -124,8 +124,8 @@ class Isolator(Table):
     @model_validator(mode="after")
     def _check_alternatives(self) -> Isolator:
         """Require one key of each pair that states the same, and the keys that other keys need."""
-        exactly_one(self, "period", "radius")
-        exactly_one(self, "friction", "lubrication")
+        require_exactly_one(self, "period", "radius")
+        require_exactly_one(self, "friction", "lubrication")
         bearings = self.support_stiffness
         if bearings is not None and self.restitution is not None:
             rule = "supports with a support_stiffness rebound by it: remove one of the two keys"
@@ -253,7 +253,7 @@ class Superstructure(Table):
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 
-    # from about 1e150 m/s^2 on the outcome is "non-finite load"
+    # amplitudes above about 1e150 m/s^2 are accepted, and end with the outcome "non-finite load"
     amplitudes: Annotated[list[Pair], Field(min_length=2, max_length=3)] = key(
         "amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics",
         Range(-1e308, 1e308, "m/s^2"),
@@ -266,7 +266,7 @@ class Excitation(Table):
     scale: Positive | None = key("factor of all amplitudes; 1 without it")
 
 
-Samples = Annotated[
+Samples = Annotated[  # samples of a record, (K, 4), which JSON writes as lists
     NDArray[np.float64],
     PlainValidator(check_samples),
     PlainSerializer(np.ndarray.tolist, return_type=list[list[float]]),

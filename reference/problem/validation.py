@@ -23,13 +23,13 @@ from reference.support.scene_error import (
 EXCITATION_FORMS = ("two frequencies", "recorded motion")
 SUPPORT_FORMS = ("number of supports", "positions of supports")
 FRICTION_FORMS = ("constant friction", "velocity-dependent friction")
-ALONG_AXES = {  # form of keys of a body
+ALONG_AXES = {  # form of the keys of a body whose values are lists
     "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
 }  # fmt: skip
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list means several sliding surfaces
 # For each of pydantic's errors of length, its name of the limit, and the words that precede the limit
 LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
-MISSING_TABLE_RULES = {
+MISSING_TABLE_RULES = {  # rules in the errors for missing tables
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
 }

@@ -11,22 +11,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 HORIZONTAL, VERTICAL = "xy", "z"
-SPELLINGS = {
+SPELLINGS = {  # words that name a direction, by axis
     "x": ("H1", "E", "W", "EW", "E-W", "WE", "EAST", "L", "LN", "LONG", "L1", "FN", "X", "HN1", "BH1", "HH1"),
     "y": ("H2", "N", "S", "NS", "N-S", "SN", "NORTH", "T", "TR", "TRAN", "TRANS", "T1", "FP", "Y", "HN2", "BH2", "HH2"),
     "z": ("V", "UP", "UD", "U-D", "U", "DN", "DOWN", "DWN", "VER", "VERT", "VERTICAL", "Z", "HN3", "BH3", "HH3"),
 }
 CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # SEED channel codes that precede E, N, Z
-AXIS_OF = {word: axis for axis, words in SPELLINGS.items() for word in words}
+AXIS_OF = {word: axis for axis, words in SPELLINGS.items() for word in words}  # axis that each word names
 AXIS_OF |= {f"{band}{end}": axis for band in CHANNEL_BANDS for end, axis in zip("ENZ", "xyz")}
 MAX_WORD_LETTERS = max(map(len, AXIS_OF))
-WORD_INSIDE_NAME = re.compile(
+WORD_INSIDE_NAME = re.compile(  # channel code between separators inside the name of a file
     rf"(?P<base>.+[._-])(?P<word>(?:{'|'.join(CHANNEL_BANDS)})[ENZ123])(?P<rest>[._-].+)", re.IGNORECASE
 )
-WORD_AS_SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)
+WORD_AS_SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)  # direction as suffix of a file
 # Degrees: azimuths of two horizontal components differ by so much, as few instruments stand askew
 RIGHT_ANGLE_RANGE = 75.0, 105.0
-KNOWN_SPELLINGS = (
+KNOWN_SPELLINGS = (  # examples of them in an error
     "H1 H2 V, azimuths as 090, E N Z, EW NS UD, L T V, LN TR, L1 T1, FN FP, UP DWN, HNE HNN HNZ, N18E S72E, X Y Z"
 )
 
@@ -62,7 +62,7 @@ def axis_of_word(word: str) -> str:
 
 
 def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
-    """Return every reading of a file's name as the name of a motion with a direction."""
+    """Return every way to split a file's name into the name of a motion and a direction."""
     found = []
     for length in range(min(MAX_WORD_LETTERS, len(stem) - 1), 0, -1):  # a longer word is tried first: DWN before N
         direction, base = parse_direction(stem[-length:]), stem[:-length].rstrip("-_. ")

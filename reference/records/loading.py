@@ -33,17 +33,17 @@ from reference.records.suites import suite_samples
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError, unknown_key
 
-EXAMPLES = resources.files("reference.records") / "examples"
+EXAMPLES = resources.files("reference.records") / "examples"  # folder of the shipped scenes with records
 RECORD_RULE = (
     'must be a file, "motion.csv" or "motion.AT2", files by direction, {x = "a.AT2", y = "b.AT2"}, a plain text, '
     '{file = "a.acc", step = 0.01, unit = "g", skip = 0, column = 1}, or a motion of a suite, '
     '{suite = "fema-p695:farfield", motion = 3, normalized = true}'
 )
-SUITE_KEYS = ("suite", "motion", "normalized", "components")
-ARRAY_KEYS = {"time", "acceleration"}
+SUITE_KEYS = ("suite", "motion", "normalized", "components")  # keys of a record that is a motion of a suite
+ARRAY_KEYS = {"time", "acceleration"}  # keys of a record that is given as arrays
 FROM_ARRAYS = "arrays"  # stands for the files of a record that is given as arrays
 READER_KEYS = ("samples", "origin")  # fields of the excitation that the reader fills in
-TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")
+TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")  # keys whose place a record takes
 
 
 def load_record_samples(data: dict[str, Any], label: str) -> dict[str, Any]:

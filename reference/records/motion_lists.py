@@ -17,16 +17,16 @@ from reference.support.arguments import name_some, quote
 from reference.support.files import read_file
 from reference.support.scene_error import one_line
 
-FILE_NAME = "motions.csv"
-COLUMNS = ("name", *AXES, "factor")
+FILE_NAME = "motions.csv"  # name of the file that lists the motions of a folder
+COLUMNS = ("name", *AXES, "factor")  # columns of motions.csv
 OPTION_COLUMNS = ("step", "unit", "skip", "column")  # optional columns with options of plain texts
-MAGNITUDE_COLUMN = "magnitude"  # optional column
-MAX_BYTES = 2**20  # size of motions.csv, bytes
+MAGNITUDE_COLUMN = "magnitude"  # optional column with the magnitude of the earthquake
+MAX_BYTES = 2**20  # largest size of motions.csv, bytes
 MAX_NAMED_FILES = 3  # a sentence names so many ignored files of a kind
-MAX_FACTOR = 1e6
-MAX_STEP = 1e3  # s, sampling interval of a plain text
-MAX_NUMBER = 10_000  # number of lines to skip, or of a column
-MAX_MAGNITUDE = 10.0
+MAX_FACTOR = 1e6  # largest factor of a motion
+MAX_STEP = 1e3  # s, largest sampling interval of a plain text
+MAX_NUMBER = 10_000  # largest number of lines to skip, and largest number of a column
+MAX_MAGNITUDE = 10.0  # largest magnitude of an earthquake
 MAX_LISTED_FAULTS = 10  # an error lists the faults of so many lines
 
 

@@ -16,7 +16,7 @@ MAX_HEADER_LINES = 100  # a header is sought in so many lines from the first
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
 UNITS |= {"cm/s²": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "ft/s^2": 0.3048}
 UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"
-SPELLED_UNIT = re.compile(
+SPELLED_UNIT = re.compile(  # unit of acceleration in another spelling, such as cm/sec/sec
     r"(m|cm|mm|in|inch|inches|ft|feet)[ .*]?(?:/ ?\(?s(?:ec)?(?:\^?2|²| ?/ ?s(?:ec)?)\)?| ?s\^?-2)"
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
@@ -24,7 +24,7 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?"
 NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
 NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 WORD = re.compile(r"[^\W\d_]{2,}")  # two letters in a row: a line with them is no line of numbers
-NUMBER_LETTERS = {*"0123456789+-.eE \t"}
+NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # a line of other letters is examined cell by cell
 WRITE_RECORD = "write record = "  # begins the proposal of every format for a scene
 
 

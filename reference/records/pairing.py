@@ -13,7 +13,7 @@ MAX_NAMED = 20  # an error names at most so many files
 
 
 class SuiteError(ValueError):
-    """Error for a motion that no suite has, with the key of the record, "suite" or "motion", and the rule."""
+    """Error of a suite, or of a motion that it does not have, with the key of the record and the rule."""
 
     def __init__(self, key: str, rule: str) -> None:
         super().__init__(f"{key}: {rule}")
@@ -85,6 +85,7 @@ def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Pat
 
 
 def _list_names(names: Sequence[str]) -> str:
+    """Return names in quotes as text, at most MAX_NAMED of them."""
     return name_some([quote(name) for name in names], MAX_NAMED)
 
 

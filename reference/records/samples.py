@@ -22,7 +22,7 @@ from reference.support.scene_error import one_line
 Array = NDArray[np.float64]
 
 AXES = ("x", "y", "z")
-MAX_FILE_BYTES = 2**24  # size of a file: half an hour at 200 Hz along three directions
+MAX_FILE_BYTES = 2**24  # largest size of a file: half an hour at 200 Hz along three directions
 MAX_ACCELERATION = 1e300  # m/s^2: finite in any unit
 MIN_INTERVAL = 1e-9  # s, shortest time between samples
 ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"

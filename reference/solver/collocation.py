@@ -19,10 +19,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7  # collocation points of one time step
-ROW_LENGTH = STAGES + 1  # length of a row (rows.py)
+ROW_LENGTH = STAGES + 1  # numbers in a row (rows.py): one for each stage, and one without a meaning
 CHANNELS = (STAGES + 1) // 2  # number of channels: one for the real eigenvalue, and one for each conjugate pair
 GUESSED_DIGITS = 3  # number of decimals of LAPACK's results that serve as first guesses
-EIGENVALUE_ITERATIONS = 12  # number of iterations from such a guess to rounding
+EIGENVALUE_ITERATIONS = 12  # iterations that refine a guessed eigenvalue or node to rounding
 
 
 def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -69,19 +69,19 @@ def _radau_nodes(stages: int) -> np.ndarray:
 
 
 def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
-    """Return weights of the interpolating polynomial at theta, or of its integral from 0: (len(theta), STAGES)."""
+    """Return (len(theta), STAGES) weights of the stages in their polynomial or its integral, at theta."""
     basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
     return np.ascontiguousarray(_solve_linear(values.T, raised.T).T)
 
 
-NODES = _radau_nodes(STAGES)
+NODES = _radau_nodes(STAGES)  # stages c_i, as shares of a step
 A = _interpolation_weights(NODES, True)  # Butcher's matrix: integrals from the start of a step to the stages
 A2 = exact_product(A, A)  # matrix of the second integrals to the stages
-# Weights of the interpolating polynomial at theta = 0: its defect there against the known acceleration is the error
+# Weights of the stages in their polynomial at theta = 0, the start of a step: what it misses there is the error
 AT_START = _interpolation_weights(np.zeros(1), False)[0]
-# Coefficients of the powers of theta of the interpolating polynomial
+# Matrix from values at the stages to the coefficients of their polynomial in powers of theta, lowest first
 MONOMIALS = _solve_linear(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
@@ -93,9 +93,9 @@ def _defect_polynomial() -> np.ndarray:
     return np.array(coefficients)
 
 
-# Interpolation error of the polynomial through the stages over that at theta = 0
+# Shape of the interpolation error within a step, a polynomial in theta: 1 at the start, 0 at the stages
 DEFECT_POLYNOMIAL = _defect_polynomial()
-# Weights of the accelerations in the defect at theta = 0 of the polynomial through the velocities, over h
+# Weights of the stage accelerations in what the polynomial through the velocities misses at the start, over h
 VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
 # Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from theta = 0
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)

@@ -41,7 +41,7 @@ MAX_STEP_TOLERANCE = 1e-5
 MIN_STEP_TOLERANCE = 1e-11
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
-# Factor on that tolerance for elastoplastic friction: both runs may miss a slide that is shorter than a step
+# Factor on the tolerance inside a step where friction yields: both runs may miss a slide shorter than a step
 YIELDING_TOLERANCE_FACTOR = 0.01
 # Time of the coarser run beyond the last peak, over RunSettings.period: the two runs differ in the times of events
 EVENT_MARGIN = 0.01
@@ -60,8 +60,8 @@ NOT_MET = 100  # outcome of a run whose error stays above the tolerance; system.
 class RunPeaks(NamedTuple):
     """Largest absolute accelerations with estimated errors, and outcome, instant and cost of their runs."""
 
-    value: Array  # (M, N) m/s^2
-    error: Array  # (M, N) m/s^2
+    value: Array  # (M, N) m/s^2, largest absolute accelerations
+    error: Array  # (M, N) m/s^2, their estimated errors
     code: Array  # (M,) outcome of the runs (system.py), or NOT_MET
     instant: Array  # (M,) s, end of the run
     steps: Array  # (M,) number of steps of the last run

@@ -15,7 +15,7 @@ from reference.solver.system import Load, System
 from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, Workspace
 
 # Kinds of events: the polynomial in powers[0] passes zero, friction at rest reaches its limit, the sliding speed passes
-# a given one. The kinds are numbers of NumPy, no literals (system.py).
+# a given one. Integers of NumPy: numba would compile a function again for every literal (system.py).
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
 NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
 # Number of golden sections in the search for an event between two stages: one shorter than 1e-6 of a step is ignored

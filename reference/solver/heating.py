@@ -108,7 +108,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
 
 @njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
-    """Return the integral of the polynomial in u with these coefficients over sqrt(theta - u), u up to theta or 1."""
+    """Return the conduction integral of a piece at theta: its heat, a polynomial in u, over sqrt(theta - u)."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
     moment = 2.0 * (np.sqrt(theta) - beyond)
     total = moment * coefficients[0]
@@ -120,7 +120,7 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
 
 @njit(**NUMBA_OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
-    """Return the integral of the polynomial through `power` at the nodes over sqrt(theta - u), far from the piece."""
+    """Return the conduction integral of a piece far from theta, by quadrature of its heat `power` at the nodes."""
     total = 0.0
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
@@ -205,7 +205,7 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
 
 @njit(**NUMBA_OPTIONS)
 def describe_block(start: float, length: float, heat: Array, moments: Array) -> None:
-    """Set total heat, mean time and variance of one piece."""
+    """Set total heat, mean time and variance in time of the heat of one piece."""
     total, center, variance = 0.0, 0.0, 0.0  # loops: whole arrays would take three times as long to compile
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * heat[k]
@@ -218,7 +218,7 @@ def describe_block(start: float, length: float, heat: Array, moments: Array) -> 
 
 @njit(**NUMBA_OPTIONS)
 def join_blocks(a: Array, b: Array, both: Array) -> None:
-    """Set total heat, mean time and variance of two blocks together."""
+    """Set total heat, mean time and variance in time of the heat of two blocks together."""
     heat = a[0] + b[0]
     if heat > 0.0:
         center = (a[0] * a[1] + b[0] * b[1]) / heat

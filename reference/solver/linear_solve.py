@@ -17,7 +17,7 @@ from reference.solver.system import Array
 
 MOST_BLOCKS = 2  # a system has at most so many blocks: the platform's accelerations along x and y
 MIN_PIVOT = 0.1  # share of the largest entry below a pivot: for a smaller pivot rows are exchanged
-_PLACES = np.arange(MOST_BLOCKS * STAGES)
+_PLACES = np.arange(MOST_BLOCKS * STAGES)  # places of the rows and columns of a matrix
 
 
 def _ones_where(chosen: NDArray[np.bool_]) -> Array:

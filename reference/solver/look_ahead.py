@@ -84,7 +84,7 @@ def rough_step_length(system: System, settings: RunSettings) -> float:
 
 @compiled
 def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
-    """Return when a large value may follow the state x, v, s, by rough steps of length h, s; infinity if none can."""
+    """Return the instant, s, of the next large value, from the state on in rough steps h, s; infinity if none comes."""
     bodies = work.x.shape[0]
     for i in range(bodies):  # x1, v1 keep the state here, as the next accurate step sets them anew
         for axis in range(2):
@@ -233,7 +233,7 @@ def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground
     cosine = min(max(cosine, -1.0), 1.0)
     sine = sqrt(1.0 - cosine * cosine)
     turn = vx * gy - vy * gx
-    opposed = turn * (dx * vy - dy * vx) > 0.0 and turn * (gx * dy - gy * dx) > 0.0  # e is -d / |d| on the way
+    opposed = turn * (dx * vy - dy * vx) > 0.0 and turn * (gx * dy - gy * dx) > 0.0  # slip opposes the drive on the way
     if opposed or cosine < -cos(DIRECTION_MARGIN):
         return drive + friction
     cosine = cosine * cos(DIRECTION_MARGIN) - sine * sin(DIRECTION_MARGIN)

@@ -55,7 +55,7 @@ MAX_CHANGE = 1e3  # a larger change of the angle, rad, or of the logarithm of th
 
 @compiled
 def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
-    """Solve one step of length h in tau; `tolerance` bounds the last change of the angle. Return its outcome."""
+    """Solve a step of length h in stretched time until angles change by `tolerance` at most; return its outcome."""
     # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
     # (`set_motion_at_stages`). These give ground, springs and dampers (`set_drive_at_stages`): a fixed-point iteration
     # for the chain, which converges as the chain hardly moves in it. The forces give the platform's acceleration along
@@ -219,7 +219,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
 
 @compiled
 def correct_log_speeds(work: Workspace, h: float) -> bool:
-    """Correct the logarithms of the speed in `levels` by one Newton step; return False if its matrix is singular."""
+    """Correct the logarithms of the sliding speed at the stages by one Newton step; return False if it is singular."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     turn = row(residual, 0)

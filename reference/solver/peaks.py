@@ -24,9 +24,9 @@ from reference.solver.work import SQUARED_SPEED, Workspace
 # In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
 # exceeds the higher one by less than this share of the squared acceleration.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_PATH_FACTOR = 1.5  # bound on (path in a step) / (step h x larger end speed)
+MAX_PATH_FACTOR = 1.5  # bound on the path in a step over its duration times the larger speed at its ends
 NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
-IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components of a vector; no literals (system.py)
+IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components; integers of NumPy (system.py)
 # SEARCH_POINTS in rows of ROW_LENGTH; the last row repeats the first points
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
 MAX_RATE = 60.0  # largest rate times step length that counts: a faster response of friction adds nothing to the error
@@ -86,7 +86,7 @@ def largest_square(work: Workspace, components: int, low: float, high: float) ->
 
 @compiled
 def velocity_defect(work: Workspace, body: int, axis: int) -> float:
-    """Return the defect of the polynomial through a body's velocities at the start of a step, over its length."""
+    """Return what the polynomial through a body's stage velocities misses at the start of a step, over its length."""
     missed = 0.0
     for k in range(STAGES):
         missed += VELOCITY_AT_START[k] * work.a[body, axis, k]
@@ -144,7 +144,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best (N,) to the largest |total|^2 over [low, high] of the step; return True if a value is near it."""
+    """Raise work.best (N,) to the largest squared acceleration in a part of the step; return True if any is near it."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))

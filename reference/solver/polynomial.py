@@ -8,7 +8,7 @@ from reference.solver.rows import Row, combine_columns, put
 from reference.solver.system import Array
 
 A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns_as_rows(A), columns_as_rows(A2), columns_as_rows(MONOMIALS)
-NODES_ROW = columns_as_rows(NODES[:, None])[0]
+NODES_ROW = columns_as_rows(NODES[:, None])[0]  # stages c_i, as shares of a step, in a row
 POWERS = STAGES + 2  # number of coefficients: a position is the second integral of a polynomial through the stages
 
 

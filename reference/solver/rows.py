@@ -33,7 +33,7 @@ from reference.solver.compiled import compiled
 Row: TypeAlias = Any  # a row, which exists in compiled code alone
 Number: TypeAlias = Any  # a float, or a row of floats
 
-_VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)
+_VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)  # LLVM's type of a row
 _ALIGNMENT = 8  # bytes, the alignment that numpy's arrays guarantee
 Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # a function that numba asks for the code of a call
 
@@ -53,7 +53,7 @@ class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, kind, _VECTOR)
 
 
-_ROW = _RowType()
+_ROW = _RowType()  # numba's type of every row
 
 
 def _index(k: int) -> Any:
@@ -81,12 +81,16 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
     """Define an operation of two rows, or of a row and a float, whose result is a row."""
 
     def typer(context: Any) -> Callable[..., Any]:
+        """Return the function that tells numba the type of the result."""
+
         def kind(left: Any, right: Any) -> Any:
+            """Return the type of the result for two operands; None if they are no row with a row or a float."""
             return _ROW if _ROW in (left, right) and {left, right} <= {_ROW, types.float64} else None
 
         return kind
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+        """Write code that applies the instruction to both operands as rows."""
         return instruction(builder, *_broadcast_to_rows(builder, numbers, signature.args))
 
     type_callable(operation)(typer)
@@ -104,6 +108,7 @@ def _lower_by_instruction(name: str) -> Lower:
     """Return code that calls one instruction of LLVM for a whole row."""
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+        """Write code that calls the instruction."""
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
 
@@ -116,6 +121,7 @@ def _lower_one_by_one(operation: Any) -> Lower:
     # as at an instant.
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+        """Write code that calls the function for every number of a row."""
         function = context.get_function(operation, types.float64(types.float64))
         results = ir.Constant(_VECTOR, [0.0] * ROW_LENGTH)
         for place in map(_index, range(STAGES)):
@@ -130,6 +136,7 @@ def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
     """Return code that selects the smaller or larger numbers of two rows, by a relation of LLVM."""
 
     def lower_call(builder: Any, left: Any, right: Any) -> Any:
+        """Write code that selects from each pair of numbers of two rows."""
         return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
 
     return lower_call
@@ -182,6 +189,7 @@ def row(context: Any, array: Any, place: Any) -> Any:
     """Return the row at a place of an array: an index, or a tuple of them, for all axes but the last."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        """Write code that reads a row from an array."""
         return builder.load(_address(context, builder, signature.args, arguments), align=_ALIGNMENT)
 
     return _ROW(array, place), lower_call
@@ -192,6 +200,7 @@ def put(context: Any, array: Any, place: Any, values: Any) -> Any:
     """Write a row, or a float in all places of it, to a place of an array."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        """Write code that stores a row in an array."""
         (written,) = _broadcast_to_rows(builder, arguments[2:], signature.args[2:])
         builder.store(written, _address(context, builder, signature.args, arguments), align=_ALIGNMENT)
         return context.get_dummy_value()
@@ -204,6 +213,7 @@ def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
     """Return a float unchanged, or a row with it in all places if `pattern` is a row."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        """Write code that makes a row of a float where a row is asked for."""
         return _broadcast(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
 
     return pattern(types.float64, pattern), lower_call
@@ -214,6 +224,7 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
     """Return one value where the number is above zero, the other elsewhere; all three rows, or all floats."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        """Write code that selects by the sign of each number."""
         zero = ir.Constant(arguments[0].type, [0.0] * ROW_LENGTH if signature.return_type == _ROW else 0.0)
         return builder.select(builder.fcmp_ordered(">", arguments[0], zero), *arguments[1:])
 
@@ -227,7 +238,10 @@ def _reduce_by(relation: str) -> Callable[..., Any]:
     # may be returned: an ordered comparison with NaN is false.
 
     def reduce(context: Any, values: Any) -> Any:
+        """Return the signature of the function, and the writer of its code, as numba asks for them."""
+
         def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            """Write code that halves a row three times, down to its largest or smallest number."""
             if signature.args[0] != _ROW:
                 return arguments[0]
             best, width = arguments[0], ROW_LENGTH
@@ -243,8 +257,8 @@ def _reduce_by(relation: str) -> Callable[..., Any]:
     return reduce
 
 
-row_minimum = intrinsic(_reduce_by("<"))
-row_maximum = intrinsic(_reduce_by(">"))
+row_minimum = intrinsic(_reduce_by("<"))  # smallest number at the stages of a row; of a float, itself
+row_maximum = intrinsic(_reduce_by(">"))  # largest number at the stages of a row; of a float, itself
 
 
 @intrinsic
@@ -252,6 +266,7 @@ def is_finite(context: Any, values: Any) -> Any:
     """Return True if the numbers at the stages are finite."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        """Write code that tests all stages at once."""
         bits = ir.IntType(ROW_LENGTH)
         known = builder.fcmp_ordered("ord", *[builder.fsub(arguments[0], arguments[0])] * 2)
         never_looked_at = bits(1 << ROW_LENGTH - 1)

@@ -18,8 +18,8 @@ MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP = 4, 48  # bounds on the number of 
 class SampledMotion(NamedTuple):
     """Motion of N bodies at T instants, as the equations give it."""
 
-    x: Array  # (T, N, 2) m
-    v: Array  # (T, N, 2) m/s
+    x: Array  # (T, N, 2) m, horizontal displacements relative to the plate
+    v: Array  # (T, N, 2) m/s, their rates
     total: Array  # (T, N, 3) m/s^2, absolute acceleration; its vertical part is the same for all bodies
     reaction: Array  # (T,) N/kg, reaction over m1
 

@@ -122,7 +122,7 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
 
 @compiled
 def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, float]:
-    """Set the residual at the stages from the platform's equations; return the outcome and their size, m/s^2."""
+    """Set the residual of the platform's equations at the stages; return the outcome and the largest acceleration."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
     if row_maximum(load.px * load.px + load.py * load.py) >= system.radius**2:

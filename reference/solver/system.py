@@ -64,9 +64,9 @@ class System(NamedTuple):
 class Ground(NamedTuple):
     """Acceleration of the ground, m/s^2, and temperature factor of friction at one instant."""
 
-    x: float  # xi''
-    y: float  # eta''
-    z: float  # zeta''
+    x: float  # xi'' of (5.3), along x
+    y: float  # eta'', along y
+    z: float  # zeta'', along the vertical
     k_t: float  # temperature factor of friction
 
 
@@ -147,8 +147,8 @@ def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: boo
 
 
 def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
-    """Return the fields of the law of friction."""
-    # The lubricated law with f_c = 0 gives the same motion without friction, and has no corner.
+    """Return the fields of `System` that state the law of friction, by name."""
+    # A scene without friction gets the lubricated law with f_c = 0: the same motion, by a law without a corner.
     dry, mass = scene.dry_friction, scene.masses[0]
     smooth = dry.largest == 0.0
     heat = None if smooth else dry.heat

@@ -40,7 +40,7 @@ class _SystemType(ByReference):
 
 
 class _StepRecordType(ByReference):
-    """Numba's type of a Record, passed by reference."""
+    """Numba's type of a StepRecord, passed by reference."""
 
 
 class _WorkspaceType(ByReference):
@@ -98,12 +98,12 @@ class Workspace:
     levels: Array  # (L,) logarithm of the sliding speed at the stages near a stop
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
     powers: Array  # (5, POWERS) coefficients of polynomials in theta, the elapsed share of the step
-    dense: Array  # (2, L) two functions of theta at collocation.SEARCH_POINTS
+    dense: Array  # (2, L) sums of squares at collocation.SEARCH_POINTS, in the rows of peaks.SEARCH_ROWS
     scale: Array  # (N,) m/s^2, accelerations that errors are relative to
     defect: Array  # (N,) m/s^2, interpolation error at the start of the step
     force: Array  # (2,) m/s^2, friction that yields, over m1, at the start of the step
     shear: Array  # (15, L) friction that yields at the stages, in the rows above
-    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and rate by every argument; before them both themselves
+    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and rate by eight arguments; last both themselves
     shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method
     shear_right: Array  # (4 S,) right side of its equations, then their correction
     shear_pivots: Array  # (4 S,) row exchanges of the factorized matrix
@@ -182,7 +182,7 @@ def _allocate_fields(work: Workspace, bodies: int) -> None:
 
 
 system_by_reference, record_by_reference = structure_from_tuple(_SystemType), structure_from_tuple(_StepRecordType)
-_fields = SimpleNamespace()
+_fields = SimpleNamespace()  # an example of all fields, which shows numba their types
 _allocate_fields(_fields, 2)  # type: ignore[arg-type]
 _empty_workspace, _compiled_allocation = (
     empty_structure(_WorkspaceType, vars(_fields)),

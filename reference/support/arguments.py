@@ -62,10 +62,12 @@ def require_type(
     """Return a decorator that raises TypeError, a line that ends with `rule`, if the first argument is not a `kind`."""
 
     def with_check(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
+        """Return a function that checks its first argument and then does the same."""
         name = next(iter(signature(function).parameters))
 
         @wraps(function)
         def check_and_call(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
+            """Call the function if its first argument has the type."""
             first = args[0] if args else kwargs.get(name, MISSING)
             if first is not MISSING and not isinstance(first, kind):
                 raise TypeError(f"{name} = {quote(first)}: {rule}")

@@ -24,7 +24,7 @@ import numba
 import platformdirs
 from numba.core.compiler import Compiler
 
-CACHE_NAME = "phase-resonance"
+CACHE_NAME = "phase-resonance"  # name of the folder in the user's cache
 njit: Any = numba.njit
 config: Any = numba.config
 
@@ -76,6 +76,7 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
     folder = build_folder(Path(sources))
 
     def decorate(function: Callable[..., Any]) -> Any:
+        """Return the function as numba compiles it, with its builds in the folder."""
         before = config.CACHE_DIR
         config.CACHE_DIR = str(folder or "")
         try:

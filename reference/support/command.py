@@ -100,6 +100,7 @@ def stop_on_signals() -> Iterator[None]:
     heard = [number for number in SIGNALS if before[number] is not signal.SIG_IGN]
 
     def stop(number: int, frame: FrameType | None) -> NoReturn:
+        """Raise StoppedError for a signal, and ignore all later ones."""
         for each in heard:
             signal.signal(each, signal.SIG_IGN)
         raise StoppedError(number)
@@ -120,12 +121,14 @@ class _CheckedStdout:
         self._stream = stream
 
     def write(self, text: str) -> int:
+        """Write a text and return its length. Raises OutputError."""
         try:
             return self._stream.write(text)
         except OSError as error:
             raise OutputError(error) from None
 
     def flush(self) -> None:
+        """Write what is buffered. Raises OutputError."""
         try:
             self._stream.flush()
         except OSError as error:

@@ -175,5 +175,6 @@ def _move_to_free(part: Path, place: Path) -> None:
 
 
 def _remove_file(file: Path) -> None:
+    """Remove a file, or leave it where that is not possible."""
     with suppress(OSError):
         file.unlink()

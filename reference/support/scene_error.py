@@ -28,7 +28,7 @@ NO_DAMPER_HINT = (
 )
 EFFECTIVE_RADIUS_HINT = "write radius, the effective radius rho = R - r of the one sliding surface, m"
 DERIVED_KEY_HINT = "follows from radius, friction and the weight: remove this key"
-HINTS = {  # meaning here of keys of other programs, by their letters and digits, in one table or in any
+HINTS = {  # what to write for keys of other programs, by their letters and digits, in one table or in any
     **dict.fromkeys(("bearings", "isolators"), "did you mean supports?"),
     **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), YIELDING_HINT),
     **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), YIELDING_HINT),

@@ -458,7 +458,7 @@ MISTAKES = (
             "Translational and spatial engine are swapped.", (OF + "conditioning.py::test_the_sentence_names_reading_base_grid_sign_and_error",)),
     Mistake(ANALYSES + "conditioning/statement.py", ' (error unknown)"', '"',
             "An unknown error is not told.", (OF + "conditioning.py::test_the_sentence_says_what_the_grid_does_not_tell",)),
-    Mistake(ANALYSES + "conditioning/statement.py", "supremum is ill-conditioned: {values}{_of", "supremum is well-conditioned: {values}{_of",
+    Mistake(ANALYSES + "conditioning/statement.py", "supremum is ill-conditioned: {values}{_word", "supremum is well-conditioned: {values}{_word",
             "The verdict is the opposite.", (OF + "conditioning.py::test_the_sentence_names_reading_base_grid_sign_and_error",)),
     Mistake(ANALYSES + "conditioning/statement.py", '(mean of {pairs})"', '(largest of {pairs})"',
             "A mean is called the largest.", (OF + "conditioning.py::test_the_sentence_names_reading_base_grid_sign_and_error",)),

@@ -312,7 +312,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/trust.py", "value > 0.0 and ratio.motions >= MIN_SPREAD_MOTIONS", "value > 0.0",
             "One motion extends a ratio to the suite.",
             ("tests/comparison/analyses/test_ensemble_report.py::test_one_motion_extends_no_ratio_nor_does_a_force_below_zero",)),
-    Mistake("comparison/analyses/ensemble/analysis.py", "SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: RESOLVED", "SMALL.key: SMALL, EXACT.key: EXACT",
+    Mistake("comparison/analyses/ensemble/analysis.py", "SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: EXACT_AS_INTEGRATED", "SMALL.key: SMALL, EXACT.key: EXACT",
             "Accelerations as integrated are the literal suprema.",
             ("tests/comparison/analyses/test_ensemble.py::test_accelerations_as_integrated_are_below_the_supremum_where_a_stop_adds_to_it",)),
     Mistake("comparison/analyses/ensemble/rows.py", "* stripe.answered + limit * lost) / stripe.motions", "* stripe.answered) / stripe.motions",

@@ -29,7 +29,7 @@ from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene
 
-ENGINE = "multibody:amplification"  # function that the workers call
+ENGINE = "multibody:amplification"  # import path of the engine function that the workers call
 
 
 @command

@@ -11,7 +11,7 @@ from comparison.analyses.assumptions.statements import (
     range_cell,
 )
 from comparison.analyses.assumptions.trials import CHANGE_LIMITS
-from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
+from comparison.analyses.assumptions.validity import Assumptions, Validity, list_cells_by_size
 from comparison.analyses.assumptions.variations import Axis
 from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import Panel, make_panel, replace_nan
@@ -34,11 +34,11 @@ BANDS = [
 
 
 def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
-    """Return one panel per line of variations that tells: the largest change of every mu over what varies."""
+    """Return one plot for each quantity whose variation has an effect: the largest change of every mu over it."""
     told = {each.key for each in found.ranges if each.scene == scene.name and not each.no_effect}
     panels = []
     for key in (key for key in AXES if key in told):
-        line = sorted(line_of(scene, found.cells, key), key=lambda pair: pair[0])
+        line = sorted(list_cells_by_size(scene, found.cells, key), key=lambda pair: pair[0])
         unit = (scene.support_radius or 0.0) if key in ("ring", "offset") else 1.0
         places, series = [unit * size for size, _ in line], []
         for body in range(1, len(scene.bodies) + 1):
@@ -78,7 +78,7 @@ def section_context(report: Report) -> Mapping[str, Any]:
 
 
 def assumption_verdict(results: Results) -> str:
-    """Return the line next to the title of the section."""
+    """Return the verdict in the section's title: how much bodies that turn change mu."""
     return describe_verdict(FOUND.read_from(results))
 
 

@@ -8,16 +8,16 @@ from typing import Literal
 import numpy as np
 
 from comparison.analyses.assumptions.trials import CHANGE_LIMITS, DirectionTrial
-from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, line_of
+from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, list_cells_by_size
 from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UNDER_LOAD, Axis, Variation
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
 NO_EFFECT = "no effect by symmetry"
-Base = Literal["the translational model", "the stated spatial model"]
+Base = Literal["the translational model", "the stated spatial model"]  # model from whose mu a change is taken
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
-SHARE = CHANGE_LIMITS[0]  # change of mu_i: a larger change shows an assumption false
+SHARE = CHANGE_LIMITS[0]  # relative change of mu_i above which an assumption counts as false
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Change:
 
     @property
     def verdict(self) -> str:
-        """Return "met", "not met (by ...)" or "not compared" for an effect of at most SHARE."""
+        """Return "met", "not met (by ...)" or "not compared": whether the change, error included, is at most SHARE."""
         if self.no_effect or not math.isfinite(self.size + self.error):
             return "not compared"
         excess = abs(self.size) + self.error - SHARE
@@ -43,16 +43,16 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return the change of mu of one body of largest size, against the stated spatial model where that is given."""
+    """Return the largest change of mu_i over the phase pairs, from `stated` or else from the translational model."""
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
         before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
-        if len(before) < len(sizes):  # the control was computed at one phase pair: by symmetry it is the same at all
+        if len(before) < len(sizes):  # computed at one phase pair alone: by symmetry it is the same at all
             before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
         sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
         base = STATED
-    place = int(np.argmax(np.abs(sizes)))  # NaN comes first: then nothing is claimed
+    place = int(np.argmax(np.abs(sizes)))  # argmax returns the place of a NaN, so that nothing is claimed
     return Change(
         cell.scene, body, float(sizes[place]), float(errors[place]), found.phases[place], found.reading, base,
         cell.no_effect,
@@ -72,7 +72,7 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Where a change stays within the limit: nowhere, at the stated scene alone, up to a size, no longer, up to the largest
+# Words, by axis, where the limit holds: at no size; at zero only; up to {holds}; not at {fails}; at every further size
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("at no ring tried, up to {fails:g} m", "", "with rings from {holds:g} m", "no longer at {fails:g} m",
              "every smaller one tried too"),
@@ -88,11 +88,11 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
-# ends of a line of variations: where nothing holds; where only zero holds; what holds; what does not; where all holds
+# `describe_range` fills in the sizes {holds} and {fails}, the direction and the sense of rotation.
 
 
 def describe_range(validity: ValidityRange) -> str:
-    """Return where mu_i stays within a share of the translational result, or that symmetry makes every trial blind."""
+    """Return up to which size mu_i stays within a share of the translational result, or that symmetry hides it."""
     none, zero, holds, fails, every = WORDS[validity.key]
     name = f"mu_{validity.body}"
     if validity.no_effect:
@@ -107,14 +107,14 @@ def describe_range(validity: ValidityRange) -> str:
     return f"{name} stays within {100.0 * validity.share:g} % {where.format(**values)}"
 
 
-VARIED: dict[Axis, str] = {
+VARIED: dict[Axis, str] = {  # what varies along each axis, in words
     "ring": "the radius of the ring", "height": "the heights", "oval": "an oval ring", "offset": "offsets of bodies",
     "yaw": "turned bodies and links",
 }  # fmt: skip
 
 
 def range_cell(validity: ValidityRange) -> str:
-    """Return what a table holds of a range: the limit and what fails beyond it, or that no trial can tell."""
+    """Return the table cell of a range: last size within the share and first beyond it, or no effect by symmetry."""
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
@@ -135,7 +135,7 @@ def describe_variation(scene: Scene, variation: Variation) -> str:
 
 
 def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
-    """Return what one trial of a direction changed at one phase pair, or that symmetry makes it blind."""
+    """Return by how much one trial of a direction changed mu at one phase pair, or that symmetry leaves no effect."""
     what = describe_variation(scene, trial.variation)
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
@@ -147,11 +147,11 @@ def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
-    """Return one line per assumption that has directions: what its first size changes in the worst of them."""
+    """Return a line each for oval, offset and yaw: how the first size tried changes mu in the worst direction."""
     lines = []
     for key in DIRECTED:
         trials = [each for each in found.directions if (each.scene, each.key) == (scene.name, key)]
-        sizes = dict(line_of(scene, found.cells, key))
+        sizes = dict(list_cells_by_size(scene, found.cells, key))
         first, stated = sizes.get(FIRST_SIZE[key]), sizes.get(0.0)
         if first is None or stated is None:
             continue
@@ -164,7 +164,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
-    """Return one line on assumption (iv): what it changes that bars shorten; none without both of UNDER_LOAD."""
+    """Return a line on assumption (iv): how shortening of the bars changes mu; none without both of UNDER_LOAD."""
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
@@ -178,24 +178,24 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
 
 
 def assumption_lines(found: Validity, scene: Scene) -> list[str]:
-    """Return the lines below the plots of a scene: what symmetry makes blind, the worst trials, bars under load."""
+    """Return the lines below the plots of a scene: no effect by symmetry, worst directions, bars under load."""
     blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
     lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
     loaded = [cell for cell in found.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
     return lines + describe_uneven(found, scene) + describe_shortening(loaded)
 
 
-def changes_with_errors(found: Validity, scene: str) -> list[Change]:
-    """Return the change of mu of every body by turning, in the scene as stated; none if it was not tried."""
+def list_turning_changes(found: Validity, scene: str) -> list[Change]:
+    """Return how much turning of the bodies changes each mu in the scene as stated; empty if it was not computed."""
     stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
     return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
 
 
 def describe_verdict(found: Validity) -> str:
-    """Return one line: whether mu bears assumption (vi), that no body turns, in every scene as stated."""
+    """Return one line: how bodies that turn, excluded by assumption (vi), change mu in every scene as stated."""
     parts = []
     for scene in dict.fromkeys(cell.scene for cell in found.cells):
-        changes = changes_with_errors(found, scene)
+        changes = list_turning_changes(found, scene)
         if not changes:
             continue
         worst = max(changes, key=lambda change: np.nan_to_num(abs(change.size) + change.error, nan=np.inf))

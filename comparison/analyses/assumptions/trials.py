@@ -37,7 +37,7 @@ BISECTION_RATIO = 1.25
 
 @dataclass(frozen=True)
 class Trial:
-    """Values of one variation, or with None of the translational model: mu (M, N), errors, statuses and cost, s."""
+    """mu (M, N) at M phase pairs under a variation (None: by the translational model), errors, statuses, cost in s."""
 
     variation: Variation | None
     mu: Array
@@ -47,6 +47,7 @@ class Trial:
     cost: float
 
     def __post_init__(self) -> None:
+        """Refuse arrays and statuses whose sizes disagree."""
         if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
             raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
 
@@ -73,14 +74,14 @@ class TaskTrials:
     error_message: str = ""
 
 
-# arguments of a task: scene, both models, what is tried, relative tolerance, phase pairs, number of sizes along an axis
+# Arguments of a task: scene, both models, what is tried, relative tolerance, phase pairs, largest number of sizes tried
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
     """Return the trials of a variation, or of sizes along the worst directions. Runs inside a worker process."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
-    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # found again by name
+    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # the name is the key
     pairs = np.array(phases)
     if what is None:
         return TaskTrials((amplification_of(short, translational, None, tolerance, pairs),))
@@ -101,9 +102,9 @@ def answer_trials(task: Arguments) -> TaskTrials:
 def amplification_of(
     scene: Scene, model: Model, variation: Variation | None, tolerance: float, phases: Array, **settings: object
 ) -> Trial:
-    """Return mu of a model for a variation of a scene."""
+    """Return mu of a model for a scene with a variation, or as stated for None; settings replace the model's own."""
     varied = scene if variation is None else variation.of(scene)
-    whole = {"full": True} if body_cannot_tilt(varied) else {}  # A check of assumption (vi) must not make use of it.
+    whole = {"full": True} if body_cannot_tilt(varied) else {}  # no reduction: it would presume assumption (vi)
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
@@ -113,7 +114,7 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
     """
     Return a trial of every direction of each axis; the worst has the largest change of any body.
 
-    A direction that symmetry makes blind is listed and not computed.
+    A direction without effect by symmetry is listed and not computed.
     """
     ask = partial(amplification_of, scene, spatial, tolerance=SUFFICIENT_ERROR, phases=np.array(DIRECTION_PHASES),
                   regularization=DIRECTION_V_REG)  # fmt: skip
@@ -139,7 +140,7 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
 def follow_direction(
     scene: Scene, spatial: Model, key: Axis, worst: Variation, plain: Trial, tolerance: float, phases: Array, sizes: int
 ) -> Iterator[Trial]:
-    """Yield trials of sizes in one direction until the limits are located."""
+    """Yield trials of growing or shrinking sizes in one direction until each limit on the change of mu is bracketed."""
     tried: list[tuple[float, Array]] = []
     size: float | None = FIRST_SIZE[key]
     while size is not None and len(tried) < sizes:
@@ -180,13 +181,13 @@ def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: fl
 
 
 def compute_relative_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
-    """Return the relative change (M, N) of mu against the first of the phase pairs of another trial, and its error."""
+    """Return the relative change (M, N) of mu from the trial `plain`, at its first M phase pairs, and the error."""
     base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base
 
 
 def without_answer(task: Arguments, failed: TaskResult) -> TaskTrials:
-    """Return a trial without values, with the reason."""
+    """Return trials of NaN for a task that failed, with its outcome and message."""
     scene, _, what, _, phases, _ = task
     tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
     nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)

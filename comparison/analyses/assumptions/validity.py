@@ -97,7 +97,7 @@ def find_validity_ranges(
     """
     found, bodies = [], range(1, len(scene.bodies) + 1)
     for key in get_args(Axis):
-        line = line_of(scene, cells, key)
+        line = list_cells_by_size(scene, cells, key)
         tried = [cell for value, cell in line if value or key not in DIRECTED]
         reasons = [cell.no_effect for cell in tried]
         reasons += [each.no_effect for each in directions if (each.scene, each.key) == (scene.name, key)]
@@ -113,8 +113,8 @@ def find_validity_ranges(
     return found
 
 
-def line_of(scene: Scene, cells: Sequence[AssumptionCell], key: Axis) -> list[tuple[float, AssumptionCell]]:
-    """Return the sizes, without sign, of the cells of a scene in which only one thing varies; the widest ring first."""
+def list_cells_by_size(scene: Scene, cells: Sequence[AssumptionCell], key: Axis) -> list[tuple[float, AssumptionCell]]:
+    """Return size and result of every trial in which `key` alone varies, by rising size; rings by falling size."""
     as_stated = {key: getattr(Variation(), key), "direction": 0.0}
     alone = [c for c in cells if c.scene == scene.name and replace(c.variation, **as_stated) == Variation()]
     line = [(abs(getattr(cell.variation, key)), cell) for cell in alone]
@@ -129,7 +129,7 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
 
 
 def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
-    """Return the last size up to which all hold, and the first that does not; None without."""
+    """Return the last size up to which mu changes by at most `share`, and the first that fails; None without."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     return next(reversed(held), None), next((value for value, _ in line[len(held) :]), None)
 
@@ -248,7 +248,7 @@ class Assumptions(MappedAnalysis[Validity]):
                 yield scene, (translational, spatial), what, tolerance, self.phases, self.sizes
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
-        """Return the cells and what they allow to say; None if no scene has both models of the engine."""
+        """Return by how much every variation changes mu, and the ranges that hold; None without both engine models."""
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)

@@ -16,10 +16,10 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-ROUNDING = 1e-9  # share of the ring's radius, or of a right angle, within which something lies in the plane
-# reason why an angle of the links changes nothing
+ROUNDING = 1e-9  # tolerance of a plane of symmetry, as a share of the ring's radius or of a right angle
+# Reason why turning the links about the vertical changes nothing
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
-# reason why nothing turns
+# Reason why no body turns about the vertical
 ONE_PLANE = "loading and bodies are their own mirror images about the plane of the motion: nothing turns out of it"
 
 
@@ -39,7 +39,7 @@ class Variation:
     """what the weight above does to bars that give way: softening or shortening; null as stated"""
 
     def of(self, scene: Scene) -> Scene:
-        """Return the scene with this variation."""
+        """Return the scene changed by this variation."""
         radius, stated = float(scene.support_radius or np.nan), scene.isolator.supports
         along = np.array([math.cos(self.direction), math.sin(self.direction)])
         values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}
@@ -60,18 +60,18 @@ class Variation:
         return scene.with_values(values)
 
 
-FEW = (  # variations in a report
+FEW = (  # variations that a study tries in each scene
     *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
     Variation(height=0.0),
 )
-MANY = (  # variations that the command of its own computes
+MANY = (  # variations that `phase-resonance assumptions` tries in each scene
     *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
     *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring the scenes would overturn.
     Variation(supports=3),
 )
 UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # variations of scenes with compliant bars
 
-Axis = Literal["ring", "height", "oval", "offset", "yaw"]
+Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # what a variation changes in the building
 DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # variations that are first tried in several directions
 # First size tried of each variation, in several directions
 FIRST_SIZE = {
@@ -87,7 +87,7 @@ DIRECTIONS = 4  # number of directions in half a turn, no two of which a symmetr
 
 
 def with_size(variation: Variation, key: Axis, size: float) -> Variation:
-    """Return the variation with another size in the same direction; that of a yaw is its sign."""
+    """Return the variation with another size in the same direction; an angle keeps its sign."""
     changes: dict[str, Any] = {key: math.copysign(size, getattr(variation, key))}
     return replace(variation, **changes)
 
@@ -118,7 +118,7 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
 
 
 def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
-    """Return why symmetry leaves mu of the spatial model as that of the translational one; "" where it does not."""
+    """Return why symmetry makes mu of both engine models equal, spatial and translational; "" where it does not."""
     if variation.bars is not None or any(link is not None for link in scene.bar_links):
         return ""  # Bars that bend tilt what stands on them, even in a plane.
     if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):

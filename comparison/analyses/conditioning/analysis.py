@@ -43,7 +43,7 @@ SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, values of v_reg
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
 MAX_YIELDING_GRID = 8  # largest number of phases per axis for the exact equations with friction that yields
-OTHER_DAMPING = 0.05  # second damping ratio of all links, or 0 where the scene has this one
+OTHER_DAMPING = 0.05  # damping ratio of all links in a second curve; 0 where the scene's links are damped
 # rad, phase pairs of the engine: no two related by a symmetry
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
 ENGINE_PERIODS = 3.0  # duration in periods of the slower harmonic: the loading is strongest in them
@@ -82,18 +82,18 @@ class ConditioningCurve:
 
 
 def moves_in_space(scene: Scene) -> bool:
-    """Return whether rigid dry friction is asked of bodies that turn."""
+    """Return whether a scene has rigid dry friction and the data of bodies that can turn."""
     return has_dry_friction(scene) and has_spatial_data(scene)
 
 
 def has_yielding_friction_below_links(scene: Scene) -> bool:
-    """Return whether friction yields and links may be damped otherwise."""
+    """Return whether friction yields elastically below at least one link, whose damping can then be varied."""
     return has_yielding_friction(scene) and len(scene.bodies) > 1
 
 
 class Question(NamedTuple):
     """
-    What is asked for several speeds: which model, and the argument that the speed is.
+    Model whose mu is computed over falling speeds, and the keyword argument that sets the speed.
 
     max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a grid. otherwise: whether the links
     are damped by another ratio than the scene's.
@@ -110,16 +110,16 @@ class Question(NamedTuple):
     otherwise: bool = False
 
     def speeds_of(self, scene: Scene) -> tuple[float, ...]:
-        """Return the speeds; of yield displacements the scene's own, too."""
+        """Return the speeds, m/s, or the yield displacements, m, the scene's own among these."""
         own = self.own_yield(scene)
         return self.speeds if own is None else tuple(sorted({*self.speeds, own}, reverse=True))
 
     def own_yield(self, scene: Scene) -> float | None:
-        """Return the scene's yield displacement, m, where that is what varies."""
+        """Return the scene's own yield displacement, m, where yield displacements vary; else None."""
         return float(f"{scene.yield_displacement:.9g}") if self.argument == "yield_displacement" else None
 
     def damping_of(self, scene: Scene) -> float | None:
-        """Return the damping of the links in place of the scene's; None for that."""
+        """Return the damping ratio that replaces the scene's in every link; None where the scene's stays."""
         return (0.0 if scene.damping.any() else OTHER_DAMPING) if self.otherwise else None
 
     def with_damping(self, scene: Scene) -> Scene:
@@ -131,12 +131,12 @@ class Question(NamedTuple):
         return scene.with_values(links | {"name": scene.name})
 
     def choose_grid(self, study: Study) -> int:
-        """Return the phases per axis: those of the largest nested grid of a study that it can afford, or 0."""
+        """Return the phases per axis: largest nested grid of a study up to `max_grid`, else that; 0: ENGINE_PHASES."""
         affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
         return max(affordable, default=self.max_grid)
 
     def answer(self, scene: Scene, phases: Array, speed: float) -> Any:
-        """Ask the model at one speed."""
+        """Return the model's mu of a scene at phases, (P, 2) in rad, with the varied argument set to one speed."""
         if self.argument == "yield_displacement":
             return self.side.amplification(scene.with_yield_displacement(speed), phases, **self.settings)
         return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
@@ -145,10 +145,10 @@ class Question(NamedTuple):
 # Keyword arguments of the models: equations by the reference, and the multibody engine with and without rotation
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
 EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
-YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # ten times more accurate in fact
-IN_TRANSLATION = {"model": "translational", "tolerance": STUDY_TOLERANCE}
-IN_SPACE = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
-OVER_YIELDS = Question(
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # its errors are in fact a tenth of that
+TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}
+SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
+OVER_YIELDS = Question(  # mu over the yield displacement of elastic friction
     "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
 )
 # Models whose mu is computed at several v_c, v_reg or u_y, with the literal supremum that it is compared with
@@ -156,8 +156,8 @@ QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, MAX_GRID),
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, MAX_GRID),
     Question("exact", EXACT, reference, EXACT, "cutoff", SPEEDS, 0),
-    Question("translational", EXACT, multibody, IN_TRANSLATION, "regularization", REGULARIZATIONS, 0),
-    Question("spatial", EXACT, multibody, IN_SPACE, "regularization", REGULARIZATIONS, 0, moves_in_space),
+    Question("translational", EXACT, multibody, TRANSLATIONAL_SETTINGS, "regularization", REGULARIZATIONS, 0),
+    Question("spatial", EXACT, multibody, SPATIAL_SETTINGS, "regularization", REGULARIZATIONS, 0, moves_in_space),
     OVER_YIELDS,
     OVER_YIELDS._replace(applies=has_yielding_friction_below_links, otherwise=True),
 )
@@ -213,12 +213,12 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
-    """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
+    """Return mu at every speed and the literal supremum by the equations; NaN at pairs that lack any of it."""
     phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
     mu, error = (np.stack([getattr(each, part) for each in listed]) for part in ("mu", "error"))
-    known = np.isfinite(mu).all(axis=-1)  # (S, P); a speed at which no pair has an answer takes none from the others
+    known = np.isfinite(mu).all(axis=-1)  # (S, P); a speed without any value excludes no phase pair
     complete = known[known.any(axis=1)].all(axis=0) & np.isfinite(supremum.mu).all(axis=-1)
     mu[:, ~complete], supremum.mu[~complete] = np.nan, np.nan
     statuses = [str(status) for each in (supremum, *listed) for status in each.status]
@@ -246,7 +246,7 @@ def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: 
 def _statistics_at_speed(
     mu: Array, error: Array, over_supremum: Array, over_supremum_error: Array, answers: _Answers, grid: int
 ) -> _SpeedStatistics:
-    """Return the statistics of mu and of mu over supremum - 1, (P,) each with its error, of P phase pairs."""
+    """Return the statistics over P phase pairs of mu and of mu / supremum - 1, both (P,) and with errors."""
     known = np.isfinite(mu)
     if not known.any():
         return _SpeedStatistics()
@@ -298,7 +298,7 @@ def _fill_curve(
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Analysis of every conditioning question in every scene with phases and dry friction."""
+    """Analysis of how mu depends on the smallest speed resolved, in scenes with phases and dry friction."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0

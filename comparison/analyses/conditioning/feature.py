@@ -11,7 +11,7 @@ from comparison.report.section import Report, Section
 from comparison.wording import scientific, signed, significant
 from reference.problem.readings import LITERAL_SUPREMUM
 
-NAMES = {
+NAMES = {  # names of the models in plots and tables
     "small": "small equations",
     "exact": "exact equations",
     "translational": "Exudyn in translation",
@@ -19,7 +19,7 @@ NAMES = {
 }
 # Number of the color of a model's curve
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
-UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # in the order of the tables
+UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of each speed, in the order of the tables
 QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
 
 
@@ -109,12 +109,12 @@ def _place_of_table(table: tuple[str, tuple[float, ...]]) -> int:
 
 
 def _owner_of_curve(curve: ConditioningCurve, model: str = "") -> tuple[str, int, str, int, float | None]:
-    """Return what curves of one model at different speeds have in common: scene, body, model, grid and damping."""
+    """Return the key that curves of one body and model at different speeds share: scene, body, model, grid, damping."""
     return curve.scene, curve.body, model or curve.model, curve.grid, curve.damping
 
 
 def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | None) -> dict[str, Any]:
-    """Return a row of a table: a quantity at every speed, then by the literal supremum where it is known."""
+    """Return a table row of a curve: one statistic of mu at every speed and, where known, of the literal supremum."""
     write = signed if quantity == "relative_mean" else significant
     values = [*getattr(curve, quantity), *([] if supremum is None else getattr(supremum, quantity))]
     errors = getattr(curve, quantity.removesuffix("_mean") + "_error")
@@ -136,6 +136,7 @@ FOUND = ResultField(
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
+    """Return the variables that the template of this section reads."""
     curves = FOUND.read_from(report.results)
     return {
         "conditioning_panels": conditioning_panels(curves),

@@ -7,10 +7,10 @@ from comparison.analyses.conditioning.analysis import ConditioningCurve
 from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
-# m/s, speeds below which no instrument, and no computation, resolves sliding
+# m/s, values of v_c below which no instrument, and no computation, resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
-ILL_CONDITIONED_CHANGE = 1e-3  # change of mu below LOW_V_C that exceeds the engine's tolerance
-MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}
+ILL_CONDITIONED_CHANGE = 1e-3  # relative change of mu below LOW_V_C from which mu is ill-conditioned
+MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
 
 
 def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
@@ -33,7 +33,7 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
         f"{deepest} above {speed_text(LOWEST_V_C)} m/s (mean of {pairs})"
     )
     if abs(size) >= ILL_CONDITIONED_CHANGE and abs(size) > error:
-        return f"The literal supremum is ill-conditioned: {values}{_of_engine(curve, result or ())}."
+        return f"The literal supremum is ill-conditioned: {values}{_word_engine_change(curve, result or ())}."
     if abs(size) + error < ILL_CONDITIONED_CHANGE:
         return f"The literal supremum is well-conditioned: {values}."
     return f"Whether the literal supremum is ill-conditioned, {pairs} do not tell: {values}."
@@ -78,7 +78,7 @@ def _word_other_damping(curve: ConditioningCurve) -> str:
 
 
 def _word_range(curve: ConditioningCurve) -> str:
-    """Say between which sizes, from the literal supremum, the mean lies over all yield displacements."""
+    """Return the smallest and largest mean relative to the literal supremum over all yield displacements, in words."""
     low, high = (f(range(len(curve.v)), key=lambda place: curve.relative_mean[place]) for f in (min, max))
     least, most = (_write_size(curve.relative_mean[place], curve.relative_error[place]) for place in (low, high))
     return (
@@ -116,12 +116,12 @@ def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
 
 
 def _relative_mean_at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
-    """Return relative mean and its error at a speed."""
+    """Return mean mu relative to the literal supremum at a speed, and its error."""
     place = curve.v.index(speed)
     return curve.relative_mean[place], curve.relative_error[place]
 
 
-def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) -> str:
+def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) -> str:
     """Say how much the engine's mean changes over the last step of v_reg, without and with bodies that turn."""
     engines = [
         each

@@ -146,14 +146,14 @@ def _list_task_motions(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:
-    """Return the surfaces with the demands added as the variables that surfaces.nc has."""
+    """Return the surfaces with the demands as further variables, in the form in which surfaces.nc holds them."""
     if demands is None:
         return surfaces
     renamed = demands.rename({name: f"{VARIABLE_PREFIX}{name}" for name in demands.data_vars})
     empty: dict[Any, Any] = dict.fromkeys(renamed.data_vars, np.nan)
     empty[f"{VARIABLE_PREFIX}status"] = NOT_ASKED
     aligned = renamed.reindex(scene=surfaces["scene"], body=surfaces["body"], fill_value=empty)
-    # The coordinates of the surfaces, because these have units
+    # The coordinates of the surfaces stay: only these have units.
     return surfaces.assign(aligned.data_vars).assign_coords(surfaces.coords)
 
 

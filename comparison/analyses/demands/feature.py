@@ -20,7 +20,7 @@ STATISTICS = SceneField(
 
 
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
-    """Return one panel per demand: the share of all phases where it stays below a value, by model."""
+    """Return for each demand a plot of its cumulative distribution over all phases, by model."""
     panels = []
     for quantity, body, title, unit, scale in PLOTTED_DEMANDS if not scene.recorded else ():
         curves = [
@@ -45,6 +45,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
+    """Return the variables that the template of this section reads."""
     results = report.results
     return {
         "demand_panels": [panel for scene in results.scenes for panel in demand_panels(scene, results)],

@@ -13,8 +13,8 @@ from comparison.study.batches import import_function
 from comparison.study.costs import estimate_motion_seconds
 from comparison.study.models import (
     EXACT,
+    EXACT_AS_INTEGRATED,
     REGULARIZED,
-    RESOLVED,
     SMALL,
     SMALL_AS_INTEGRATED,
     SPATIAL,
@@ -25,7 +25,7 @@ from comparison.study.models import (
 from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, demands, floor_spectra, story_forces
 from reference.problem import Outcome, Scene, ground_peak
 
-STAGE = "ensemble"
+STAGE = "ensemble"  # name of the stage of these tasks on the terminal
 NO_PHASES = (0.0, 0.0)  # phases passed to a model under a record, which has none
 SPECTRA_COST_RATIO = 1.7  # Processor time of a motion with floor spectra over the time without them.
 MOTION_TIME_LIMIT = 900.0  # s, largest processor time of one motion
@@ -47,7 +47,7 @@ class MotionDemandsAtScale:
     instant: float = math.nan  # s, time at which the status arose
 
     def estimate(self, quantity: Quantity) -> Estimate:
-        """A demand; NaN without an answer."""
+        """Return a demand with its error; NaN where there is none."""
         return self.values.get(quantity, Estimate(math.nan, math.nan))
 
 
@@ -71,7 +71,7 @@ class EnsemblePoints:
 
 
 MotionTaskArguments = tuple[Scene, Model, float]  # the scene under its motion, the model, and the relative error asked
-# demands of a motion, story forces, spectra, accelerations as integrated where demands have suprema, s of an early end
+# demands, story forces, floor spectra, accelerations as integrated where the demands hold suprema, time of the end, s
 MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
@@ -158,7 +158,7 @@ def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
 def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
     """Return accelerations as integrated for the exact equations, whose demands are suprema; none for other models."""
     scene, model, tolerance = task
-    resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: RESOLVED}.get(model.key)
+    resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: EXACT_AS_INTEGRATED}.get(model.key)
     if resolved is None or not resolved.applies(scene):
         return []
     read = import_function(resolved.amplification)(scene, NO_PHASES, tolerance=tolerance, **resolved.settings)

@@ -85,13 +85,13 @@ from reference.records.samples import RecordError
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
-COMMAND = "comparison.ensemble"
+COMMAND = "comparison.ensemble"  # name of the command in the manifest of its files
 TABLE_FILE = "ensemble.csv"
 PAGE_FILE = "index.html"
 CHECKS_FILE = "junit.xml"
 WRITTEN_FILES = (STORED.name, TABLE_FILE, PAGE_FILE, CHECKS_FILE)
 WORKER_FUNCTIONS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # functions that the workers call
-ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}
+ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}  # models of Exudyn by key
 MAX_SCALES = 100  # largest number of scale factors that a user may ask for
 
 
@@ -168,7 +168,7 @@ def word_engine_work(ensemble: Ensemble, chosen: Sequence[ChosenMember], tasks: 
 
 
 def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: EngineRequest, jobs: int) -> None:
-    """Print how many motions are computed by what in which time, and why a structure has no spatial model."""
+    """Print the numbers of motions, the rough time, and why a structure has no spatial model."""
     members = ensemble.members
     first = list_expected_choices(members, asked)
     later = ensemble.make_engine_tasks([ChosenMember(member, ()) for member in first])
@@ -273,7 +273,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
 
 
 def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineRequest) -> list[EnsembleMember]:
-    """Return members that stand for those that the engine will compute: their cost is alike."""
+    """Return members that cost as much as those that the engine will compute, which are not chosen yet."""
     if asked == MAX_ENGINE_MOTIONS:
         return list(members)
     return [
@@ -351,6 +351,7 @@ def make_suite_family(options: argparse.Namespace, source: str) -> Family:
 
 
 def _parser() -> CommandParser:
+    """Return the parser of the command line."""
     parser = CommandParser(
         "ensemble", "Demands under every motion of a suite at many scale factors (incremental dynamic analysis)."
     )

@@ -32,7 +32,7 @@ GOVERNING_OF_LIMITS = {  # demands of GOVERNING that govern a demand that the en
     "support_displacement": ("displacement",),
 }
 MEDIAN_REASON = "nearest the median displacement"
-ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"
+ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # reasons for the choice of a motion
 MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
 EXPECTED_GOVERNING_COUNT = 3  # governing motions of a structure as assumed before the equations have found them
 
@@ -137,6 +137,6 @@ def _sign_of_worst(quantity: str) -> float:
 
 
 def _largest_demand(point: MotionDemandsAtScale, quantity: str) -> float:
-    """Return the demand of a motion, the largest over the bodies, a smallest one negative; minus infinity without."""
+    """Return the worst demand over the bodies under a motion, negated if small is worse; minus infinity if unknown."""
     values = [_sign_of_worst(quantity) * number.value for (name, _), number in point.values.items() if name == quantity]
     return max((value for value in values if math.isfinite(value)), default=-math.inf)

@@ -101,7 +101,7 @@ def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator
     if not read.stiffness or not shear:
         return
     soft, stiff = sorted(read.stiffness[-1])
-    ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # of the third mode
+    ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # damping of the third mode
     low, high = 1e3 * shear / (stiff * math.hypot(1.0, 2.0 * ratio)), 1e3 * shear / soft
     both = " to ".join(dict.fromkeys(f"{each / 1e6:.4g}" for each in (stiff, soft)))
     formula = f"V / (k √(1 + (2 ζ)²)) to V / k, V = {_word_number(shear / 1e3)} kN, k = {both} MN/m, ζ = {ratio:.3g}"

@@ -219,7 +219,7 @@ def _check_body(
 
 
 def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
-    """Return above which value the motions without one would break a limit on the mean; "" if any value would."""
+    """Say above which value the unknown demands would break a limit on the mean; "" where every value would."""
     theirs = "a value there" if ended == 1 else "a mean of theirs"
     return f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
 
@@ -241,7 +241,7 @@ def _word_demand(structure: Structure, key: str, body: int | None) -> str:
 
 
 def _compute_mean(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
-    """Return the mean of values and of their errors, without a motion that has it."""
+    """Return the mean value, the mean error, and "" in place of a motion, since a mean has none."""
     values, errors, _ = zip(*known)
     return sum(values) / len(known), sum(errors) / len(known), ""
 

@@ -12,8 +12,8 @@ from reference.problem.families import BOUNDS_KEY
 from reference.problem.keys import range_of
 from reference.problem.tables import Record
 
-SCALE_KEY = "excitation.scale"
-RECORD_KEY = "excitation.record"
+SCALE_KEY = "excitation.scale"  # key of the scale factor of the motion in a scene file
+RECORD_KEY = "excitation.record"  # key of the recorded motion in a scene file
 
 Row = TypeVar("Row")
 

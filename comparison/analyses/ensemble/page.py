@@ -47,11 +47,12 @@ from comparison.study.models import EXACT
 from reference.problem import GRAVITY
 from reference.records.samples import AXES
 
-Context = Mapping[str, Any]
-ContextReader = Callable[[EnsembleResult, LostParts], Context]
+Context = Mapping[str, Any]  # variables of a template by name
+ContextReader = Callable[[EnsembleResult, LostParts], Context]  # function that makes the variables of a section
 
 
 def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return what the template shows of the building as read from the scene."""
     return {
         "labels": label_structures(ensemble),
         "warnings": list(map(mark_code, sentences.say_of_all(ensemble, sentences.below_contact_sentence))),
@@ -66,6 +67,7 @@ def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the ground motions of the suite with their spectra, for their template."""
     return {
         "ground_sentence": sentences.ground_sentence(ensemble),
         "target_sentence": sentences.target_sentence,
@@ -78,6 +80,7 @@ def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the table and the plots of demands at the largest scale, for their template."""
     return {
         **fractile_heads_context(),
         "rows": make_demand_rows(ensemble, ensemble.largest_scale),
@@ -93,6 +96,7 @@ def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the verdicts on stated limits of demands, for their template."""
     return {
         "limits_sentence": sentences.limits_sentence(ensemble),
         "rows": make_limit_rows(ensemble.limits),
@@ -124,6 +128,7 @@ def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _directions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the tables of drifts, shears and moments along x and along y, for their template."""
     tables = [
         (f"{title}, {DISPLAY_UNITS[unit][0]}", make_direction_rows(ensemble, name))
         for name, (title, unit) in DIRECTED_DEMANDS.items()
@@ -152,10 +157,12 @@ def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _motions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the table with one row for each motion, for its template."""
     return {"heads": make_motion_heads(ensemble), "rows": make_motion_rows(ensemble)}
 
 
 def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return what the engine computed and the ratios between models, for their template."""
     return {
         "labels": label_structures(ensemble),
         "engine_sentences": sentences.engine_sentences(ensemble),
@@ -186,6 +193,7 @@ def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return command, times and file digests of the run, for their template."""
     return {"run": ensemble.run, "digests": sentences.digest_sentence(ensemble)}
 
 
@@ -274,5 +282,6 @@ def render_ensemble_page(ensemble: EnsembleResult) -> str:
 
 
 def _render_part(part: PagePart, ensemble: EnsembleResult, lost: LostParts) -> Markup:
+    """Return one section of the page as HTML."""
     context = {"ensemble": ensemble, **part.read(ensemble, lost)}
     return render_template(f"ensemble/sections/{part.name}.html.j2", context)

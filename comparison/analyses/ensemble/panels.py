@@ -104,7 +104,7 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     series += _stated_lines(ensemble, quantity, axis["range"])
     label = f"{title} {'by bound' if one else 'over the scale factor'}, {word_motion_count(ensemble.motions)}"
     series += by_engine
-    return make_panel(title, label, axis, _from_zero(f"{title}, {unit}", series), series)
+    return make_panel(title, label, axis, _make_axis_from_zero(f"{title}, {unit}", series), series)
 
 
 def _travel_arrows(
@@ -297,7 +297,7 @@ def _floor_spectrum(ensemble: EnsembleResult, title: str, is_platform: bool) -> 
     quantity = f"pseudo-acceleration, {100.0 * ensemble.spectra[0].damping:g} % damping, g"
     axis = _make_period_axis(ensemble.spectra[0].period)
     label = f"floor spectrum of the {title}, {word_motion_count(ensemble.motions)}"
-    return make_panel(f"floor spectrum: {title}", label, axis, _from_zero(quantity, series), series)
+    return make_panel(f"floor spectrum: {title}", label, axis, _make_axis_from_zero(quantity, series), series)
 
 
 def _ground_spectra(ensemble: EnsembleResult) -> Panel:
@@ -321,13 +321,13 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
     if target:
         wanted = [value / GRAVITY for value in target.acceleration]
         series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
-    y = _from_zero("pseudo-acceleration, 5 % damping, g", series)
+    y = _make_axis_from_zero("pseudo-acceleration, 5 % damping, g", series)
     of = " and their target" if target else ""
     label = f"response spectra of the ground{of}, {word_motion_count(ensemble.motions)} at scale 1"
     return make_panel("response spectra of the ground", label, _make_period_axis(x), y, series)
 
 
-def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def _make_axis_from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Return an axis from zero to 6 % above the largest value."""
     values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}

@@ -16,7 +16,7 @@ DIRECTED_DEMANDS = {  # of every story, read along x and y, too
     "drift": ("drift", "m"),
     "overturning_moment": ("overturning moment of the forces", "N m"),
 }
-# Title and unit of the demands along one axis
+# Title and SI unit of the demands along x or y alone, by key
 ALONG = {
     f"{name}_{axis}": (f"{title} along {axis}", unit)
     for name, (title, unit) in DIRECTED_DEMANDS.items()
@@ -32,7 +32,7 @@ DEMANDS: dict[str, tuple[str, str]] = {
     "overturning_moment": ("overturning moment", "N m"),
     **ALONG,
 }
-BODY_DEMAND_TITLES = {
+BODY_DEMAND_TITLES = {  # titles in which {} stands for the number of the body
     "acceleration": "acceleration of body {}, as integrated",
     SUPREMUM: "acceleration of body {}, literal supremum",
     "drift": "drift below body {}",

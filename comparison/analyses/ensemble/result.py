@@ -25,6 +25,7 @@ class Statistic:
     error: Annotated[float | None, "largest change within the errors of the motions"]
 
     def __post_init__(self) -> None:
+        """Refuse a value that is not finite and an error that is negative or infinite."""
         require(self.value is None or math.isfinite(self.value), f"value must be finite, not {self.value}")
         require(self.error is None or 0.0 <= self.error < math.inf, f"error must be from 0 on, not {self.error}")
 
@@ -87,6 +88,7 @@ class Structure:
     """null in a file of which it is not known"""
 
     def __post_init__(self) -> None:
+        """Refuse an inadmissible number of bodies or weight."""
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
         require(0.0 < self.weight < math.inf, f"weight must be more than 0 N, not {self.weight:g}")
 
@@ -105,6 +107,7 @@ class FloorSpectrumStatistics:
     largest: Annotated[Sequence[Statistic], "at every period, m/s^2"]
 
     def __post_init__(self) -> None:
+        """Refuse spectra with another number of values than periods."""
         require_size("fractiles", self.fractiles, FRACTILE_COUNT)
         for values in (self.mean, *self.fractiles, self.largest):
             require_size("mean, every fractile and largest", values, len(self.period))
@@ -119,6 +122,7 @@ class DemandOfStructure:
     body: Annotated[int | None, "from 1, counted from the platform; null for the isolator"]
 
     def __post_init__(self) -> None:
+        """Refuse a quantity that is no demand."""
         require(self.quantity in DEMANDS, f"quantity must be a demand, not {self.quantity[:40]!r}")
 
 
@@ -143,6 +147,7 @@ class DemandAtScale(DemandOfStructure):
     known_motion: Annotated[str, "motion of that worst value"] = ""
 
     def __post_init__(self) -> None:
+        """Refuse an unknown demand or a wrong number of fractiles."""
         super().__post_init__()
         require_size("fractiles", self.fractiles, FRACTILE_COUNT)
 
@@ -168,6 +173,7 @@ class DemandCurve(DemandOfStructure):
     errors: Annotated[Sequence[float | None], "error estimates of the values"]
 
     def __post_init__(self) -> None:
+        """Refuse an unknown demand, and values or errors that are not one for each scale."""
         super().__post_init__()
         for what, values in (("values", self.values), ("errors", self.errors)):
             require_size(what, values, len(self.scales))
@@ -268,6 +274,7 @@ class TargetSpectrum:
     motions: Annotated[Sequence[MatchedMotion], "in their order"]
 
     def __post_init__(self) -> None:
+        """Refuse a target without motions, and spectra with another number of values than periods."""
         require(len(self.motions) > 0, "motions must be at least one")
         for what, values in (
             ("acceleration", self.acceleration),
@@ -318,6 +325,7 @@ class EnsembleResult:
     ground_periods: Annotated[Sequence[float], "of the motions' spectra at 5 % damping, s"] = ()
 
     def __post_init__(self) -> None:
+        """Refuse parts of the file that contradict each other."""
         require(len(self.structures) > 0, "structures must be at least one")
         require(len(self.scales) > 0, "scales must be at least one")
         require(self.motions >= 1, f"motions must be at least 1, not {self.motions}")

@@ -223,7 +223,7 @@ def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[Dem
 
 
 def _word_source(row: DemandRow, column: int) -> str:
-    """Return motion and bound of a cell of a row, as far as it is of one."""
+    """Return the motion of a worst value and, in an envelope, the bound: what a table cell stems from."""
     motion = row.motion if column == WORST_COLUMN else ""
     return ", ".join(filter(None, [motion, row.bounds[column] if row.bounds else ""]))
 
@@ -354,7 +354,7 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """Return the mark of a bound for mean and worst value, and for each fractile that is not known itself."""
+    """Return "≥ " or "≤ ", `mark`, for mean, unknown fractiles and worst value, which are bounds; "" for the others."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 

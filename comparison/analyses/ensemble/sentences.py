@@ -25,8 +25,8 @@ from reference.support.arguments import name_some
 TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
 MAX_LISTED_MOTIONS = 12  # largest number of motions that are listed by name
 MAX_LISTED_IN_SENTENCE = 3  # largest number of motions listed by name in a sentence that states other facts, too
-DIGITS = 12  # of a digest
-DEFINITIONS = (
+DIGITS = 12  # number of digits shown of a file digest
+DEFINITIONS = (  # definitions of the demands, shown with their table
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
     "middle of the platform; support displacement is the largest of a support, which turns with the platform, by the "
@@ -161,7 +161,7 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
-    """Return the limits of a verdict, each with its bounds and by how much it is not met; "" without any."""
+    """Return the limits that have this verdict, with bounds and by how much they are not met; "" if none has."""
     found: dict[str, list[str]] = {}
     for each in ensemble.limits:
         if each.verdict == verdict:

@@ -48,7 +48,7 @@ def read_target(file: str) -> tuple[Array, Array]:
 def match_spectrum(
     members: Sequence[EnsembleMember], file: str, ends: Sequence[str] | None
 ) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum]:
-    """Return the members with fitted factors, and the spectrum; ends: period range, s. Raises SceneError."""
+    """Return the members with factors that fit them to the target, and that; ends: periods, s. Raises SceneError."""
     period, wanted = read_target(file)
     unit = "s: a period of the target spectrum"
     low, high = (read_number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])

@@ -222,8 +222,8 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
     """
     Yield the demands of all motions by the equations, times the engine's ratio to the equations in its own motions.
 
-    Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes; of a
-    smallest force 16 % and the smallest.
+    Each comes with the ratio and the texts of mean, 84 % fractile and largest value times the mean ratio, with a range
+    from its spread; of a smallest force they are mean, 16 % fractile and smallest value.
     """
     for row in make_model_ratio_rows(ensemble):
         ratio = row.ratios.get(ensemble.engine.model)

@@ -37,7 +37,7 @@ from reference.problem.measured import BODY_QUANTITIES, Measured
 NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")  # for a model without the measured quantity
 
 MeasuredQuantityKey = tuple[str, int]  # quantity and number of the body; 0 for the isolator
-# scene, model, tolerance, phases in rad, and the quantities to read
+# Arguments of a task: scene, model, relative error asked, phases in rad, and the measured quantities to compute
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[MeasuredQuantityKey]]
 # Value and error, NaN without an answer; and the reason for that, or the outcome of the motion
 PeakAnswer = tuple[float, float, str]
@@ -128,7 +128,7 @@ def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
 
 
 def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
-    """Return what measured peaks say of the models, in a clause; "" without any."""
+    """Return how many measured peaks were compared with the models, with what verdicts, in a clause; "" without any."""
     if not peaks:
         return ""
     counts = count_verdicts(computed.verdict for peak in peaks for computed in peak.computed)

@@ -84,6 +84,7 @@ class MotionPlace:
 
 
 def _empty_series() -> Array:
+    """Return the series of a motion that lacks this quantity."""
     return np.zeros(0)
 
 
@@ -117,6 +118,7 @@ class StoredMotion:
     spectra: FloorSpectra | None = None
 
     def __post_init__(self) -> None:
+        """Refuse arrays whose sizes disagree."""
         bodies = self.position.shape[1:2]
         shape = (len(self.time), *bodies, 2)
         if self.time.ndim != 1 or self.position.shape != shape or self.acceleration.shape != shape:
@@ -132,7 +134,7 @@ class StoredMotion:
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
-Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]
+Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # third: relative error; last: phases, rad
 
 
 def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:

@@ -62,7 +62,7 @@ def _meaning_of_demand(name: str) -> Any:
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
 
 
-_DEMANDS: dict[str, Any] = {
+_DEMANDS: dict[str, Any] = {  # type and schema entry of every demand, by name
     each.name: (
         ResidualDisplacement if each.name == "residual" else _type_of_demand(str(each.type)),
         _meaning_of_demand(each.name),

@@ -47,7 +47,7 @@ from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
 
-MotionOffsets = dict[tuple[MotionPlace, str], int]
+MotionOffsets = dict[tuple[MotionPlace, str], int]  # index of the first packed number, by place and model key
 
 MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed column, as a share of half its range
 SPECTRUM_DIGITS = 4  # significant digits of a spectrum: more are invisible in a drawn line

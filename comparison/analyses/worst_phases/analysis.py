@@ -37,7 +37,7 @@ ENGINE_HALF_WIDTH = 0.02
 NO_PHASES = (math.nan, math.nan)  # phases or a direction that are not known
 
 
-Quantity = Literal["amplification", "displacement"]
+Quantity = Literal["amplification", "displacement"]  # what is searched for its largest value over the phases
 
 
 @result
@@ -113,7 +113,7 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
-    stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}  # the model's
+    stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}  # set by model
     worst = LargestOverPhases(scene.name, model.key, quantity, body, **stated)
     found = [worst]
     if engine is not None:
@@ -204,7 +204,7 @@ def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -
 def _estimate_engine_by_ratio(
     center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
 ) -> ComputedPhases:
-    """Return the engine at 3 x 3 phase pairs by its ratio to the equations, computed at five of these."""
+    """Return the engine's mu at 3 x 3 phase pairs: the equations' times a ratio that five of these give."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]

@@ -72,6 +72,7 @@ def _make_mark(worst: LargestOverPhases) -> list[float | str]:
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
+    """Return the variables that the template of this section reads."""
     results = report.results
     return {
         "distribution_panels": [

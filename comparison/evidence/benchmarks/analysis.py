@@ -67,6 +67,7 @@ class BenchmarkTable:
         )
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
+        """Return the task that solves one benchmark by one side."""
         seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
         return Task(
             solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
@@ -111,6 +112,7 @@ def halve_samples(motion: Trajectory) -> Trajectory:
 
 
 def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
+    """Return a benchmark with the numbers of every side."""
     return Benchmark(
         name=case.scene.name,
         title=case.title,

@@ -23,7 +23,7 @@ from reference.records.formats import read_csv_samples
 from reference.records.samples import MAX_FILE_BYTES, RecordError
 from reference.support.files import read_file
 
-SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"
+SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"  # folder of the scene files
 INCH = 0.0254  # m in an inch
 BLOCK_WEIGHT = 10.0  # N, weight of the blocks in code_aster's benchmarks
 RAMP_EFFECT = 2e-7  # m, change of the displacement because Newmark's pulse ends within 1 ms instead of at once
@@ -121,7 +121,7 @@ def _release_case() -> BenchmarkCase:
 
 def _coulomb_damping_case() -> BenchmarkCase:
     """Return a free vibration with Coulomb damping (ANSYS VM73), scaled in time."""
-    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor from 386 in/s^2 and 10 lb to a radius of 981 m
+    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # frequency at 30 lb/in and 10 lb, over the scene's 0.1 rad/s
     times = (0.09, 0.102, 0.183)
     return BenchmarkCase(
         title="ANSYS VM73: free vibration with Coulomb damping",
@@ -242,7 +242,7 @@ MASTODON_FRICTION = {
     "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)
     "fast": 0.06 * 0.789 / 0.79,
     "rate": 100.0,
-    "load_exponent": -0.357,  # slope of 0.7^(0.02 (p - 50)) at p = 50 MPa, that of the weight
+    "load_exponent": -0.357,  # log-log slope of MASTODON's 0.7^(0.02 (p - 50)) at p = 50 MPa, under the weight
     "heating": {"contact_radius": 0.2, "conductivity": 18.0, "diffusivity": 4.4e-6},
 }
 
@@ -289,6 +289,7 @@ def _refuse_other_input(path: Path, samples: Array) -> None:
         raise SceneError("command line", MASTODON_OPTION, str(path), rule)
 
     def words(count: int, step: float, peaks: Sequence[float] | Array) -> str:
+        """Return number of samples, step and peaks of an input motion in words."""
         return f"{count} samples every {step:.4g} s with peaks of " + ", ".join(f"{peak:.4g}" for peak in peaks)
 
     step, peaks = float(np.median(np.diff(samples[:, 0]))), np.abs(samples[:, 1:]).max(axis=0)

@@ -63,6 +63,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     table = replace(solved, run=collect_run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
+        """Write the table as JSON and as a page; return the paths."""
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
         return files + publish_attempted(out, TABLE_PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
 

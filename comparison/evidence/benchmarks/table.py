@@ -50,6 +50,7 @@ class PublishedNumber:
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
     def __post_init__(self) -> None:
+        """Refuse a verdict that contradicts the numbers."""
         for side, number in self.numbers.items():
             if number.verdict != self.judge(number.value, number.error):
                 raise ValueError(
@@ -89,6 +90,7 @@ class Benchmark:
     seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
 
     def __post_init__(self) -> None:
+        """Refuse a row without the numbers of the equations or of Exudyn."""
         for row in self.rows:
             require(row.numbers.keys() >= {EQUATIONS, ENGINE}, f"numbers must have {EQUATIONS} and {ENGINE}")
 

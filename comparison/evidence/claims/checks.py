@@ -19,7 +19,7 @@ MIN_CORRELATION = 0.7
 # |x - y| over the largest displacement below which a motion is along one line, within the solver's tolerance
 MAX_PLANE_DEVIATION = 1e-6
 MIN_AXIS_DIFFERENCE = 0.1  # |x - y| over the largest displacement above which motions along x and y differ
-SMALL_SWING_RATIO = 0.1  # (x^2 + y^2) / rho^2 that is still much less than 1
+SMALL_SWING_RATIO = 0.1  # largest squared displacement over rho^2 that counts as small
 # Prominence over the range; at 20 % the count of mu_1 depends on the grid and on the integration
 COMPLEX_PROMINENCE = 0.25
 OTHER_PROMINENCES = 0.15, 0.35  # other prominences, at which the count may contradict the statement
@@ -41,6 +41,7 @@ class StatementVerdict:
     reason: Annotated[Text, "the numbers that decide, why it cannot hold, or why nothing was compared"]
 
     def __post_init__(self) -> None:
+        """Refuse a verdict without a reason."""
         if not self.reason:
             raise ValueError(f"reason = {self.reason!r}: the verdict {self.verdict!r} needs one")
 

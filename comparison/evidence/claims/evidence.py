@@ -27,13 +27,13 @@ class Evidence:
     error: float = float("nan")  # largest absolute error estimate
     statuses: tuple[str, ...] = ()  # distinct outcomes of the phase pairs
     bends: tuple[SharpestCurvature, ...] = ()  # sharpest curvature of each body's surface
-    # max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTION_PHASES
+    # For each body, largest difference of its displacements along x and y over the largest of them, at MOTION_PHASES
     apart: tuple[float, ...] = ()
-    swing: float = float("nan")  # max (x_1^2 + y_1^2) / rho^2 over MOTION_PHASES
+    swing: float = float("nan")  # largest squared displacement of the platform over rho^2, at MOTION_PHASES
     resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s
     ground: SharpestCurvature | None = None  # sharpest curvature of the denominator of (5.1)
     error_message: str = ""  # why there is no evidence, or ""
-    case: str = ""  # name of the case
+    case: str = ""  # name of the scene in STATEMENT_CASES
 
     def flat(self, body: int) -> bool:
         """Return whether a surface varies by less than its errors, or so little that it shows no resonance."""

@@ -27,7 +27,7 @@ from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Amplification, Outcome, Scene, ground_peak, loading_period
 
-RelativeDifferences = tuple[Array, Array]  # relative differences and their errors, (P, S, N)
+RelativeDifferences = tuple[Array, Array]  # relative differences and errors, by phase pair, parameter value, body
 
 # rad, phase pairs that the equations compute
 EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
@@ -51,7 +51,7 @@ def _compare_at_speeds(
     side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float], resolved: bool,
     scene: Scene,
 ) -> RelativeDifferences:  # fmt: skip
-    """Return mu at each v_reg relative to that with set-valued friction, resolved at the same speed or supremum."""
+    """Return the relative difference of mu at each v_reg from set-valued friction, as resolved peak or supremum."""
     short = shorten_scene(scene, periods)
     return _relative_differences(
         (
@@ -63,7 +63,7 @@ def _compare_at_speeds(
 
 
 def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> RelativeDifferences:
-    """Return the relative differences of mu from its limit, and their errors, by body, parameter and phase pair."""
+    """Return the relative differences of mu from its limit, and errors, by phase pair, parameter value and body."""
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
@@ -113,10 +113,10 @@ class ConvergenceCase(NamedTuple):
     applies: Callable[[Scene], bool]
 
 
-_by_equations = partial(
+_by_equations = partial(  # mu by the equations at each v_reg against set-valued friction
     _compare_at_speeds, reference, EQUATION_PHASES, EQUATION_PERIODS, EQUATION_TOLERANCE, REGULARIZATIONS
 )
-_by_engine = partial(
+_by_engine = partial(  # mu by Exudyn at each v_reg against the equations with set-valued friction
     _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
 )
 
@@ -159,7 +159,7 @@ def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
 def _fit_trends(
     task: CaseArguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
 ) -> list[Trend]:
-    """Return the trend of every body. sizes, errors: by body, (P, S)."""
+    """Return the trend of every body. sizes, errors: for each body, by phase pair and parameter value."""
     scene, number = task
     what, parameter, expected, *_ = CONVERGENCE_CASES[number]
     return [

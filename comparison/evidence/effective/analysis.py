@@ -173,10 +173,10 @@ def _measure_friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     fast = speed > MEASURED_SPEED_SHARE * speed.max()
     ratio = across[fast] / along[fast]
     law = scene.dry_friction
-    if law.exponent:  # ratio converted back to the load under the weight
+    if law.exponent:  # Convert the ratio to a contact force equal to the weight.
         ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:
-        share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast
+        share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast friction
         if not share.min() > MIN_FRICTION_CHANGE_SHARE:
             return float("nan")
         ratio = law.slow + (ratio - law.slow) / share

@@ -177,7 +177,7 @@ def solve_cell(cell: MatrixCell) -> MatrixEntry:
         seconds = time.process_time() - begin
         finer = []
         for other, settings, usual in column.finer if makes_checkable_claim(reply) else ():
-            # another function takes only settings that it has itself
+            # Another function than the judged one gets only those settings of the row that it knows.
             known = {key: value for key, value in row.settings.items() if other == function or key in settings}
             strict = max(usual * min(1.0, tolerance / column.tolerance), MIN_TOLERANCE)
             finer.append(_ask_model(row, other, {**settings, **known, "tolerance": strict}))
@@ -202,7 +202,7 @@ def makes_checkable_claim(reply: ModelAnswer) -> bool:
 
 
 def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> ModelAnswer:
-    """Return a function's answer at the row's phase pairs; functions of the engine take the row's limit of work."""
+    """Return a function's answer at the row's phase pairs; functions of Exudyn get the row's limit of steps."""
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
     try:

@@ -1,6 +1,6 @@
 """Causes why a model has no answer at an extreme, by model and extreme."""
 
-_ENGINE = "translational", "spatial"
+_ENGINE = "translational", "spatial"  # keys of the models of Exudyn
 # Causes in words, and parts of them
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
 _QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"

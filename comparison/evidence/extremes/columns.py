@@ -7,7 +7,7 @@ from typing import Any
 from comparison.study.models import EXACT, TRANSLATIONAL, Model
 from reference.problem.readings import DEFAULT_V_REG
 
-EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
+EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification  # import paths of the functions
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ STATED_ENGINE = "comparison.evidence.extremes.engine:amplification"
 # Finer runs that check a value, in order until one answers: the equations of the same law and geometry, then the engine
 # at a far closer tolerance
 _FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
-_FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
-COLUMNS = (
+_FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)  # finer runs of the spatial model
+COLUMNS = (  # columns of the matrix in their order
     _model_column("small", "small equations", "small", None),
     _model_column("exact", "exact equations", "exact", None),
     _model_column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),

@@ -53,6 +53,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     matrix = judge_matrix(extremes, options, argv, console, executor)
 
     def show() -> None:
+        """Print the reason of every cell that reached a limit or failed."""
         for verdict in (CellVerdict.LIMIT, CellVerdict.FAILED):
             for row, title, entry in matrix.cells_of(verdict):
                 console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)

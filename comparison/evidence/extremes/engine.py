@@ -33,12 +33,12 @@ def amplification(
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
-        for number, level in enumerate(levels):  # penetration between that of the first level and the level's own
+        for number, level in enumerate(levels):  # from the penetration of the stated stiffness to the level's own
             share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
             levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
     if step is not None:  # the largest step grows by `factor`; the smallest stays as it is
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
-        # Number of levels that make up for `factor`, and the error of a second-order method
+        # Further step divisions that make up for `factor`, and the growth of the error of a second-order method
         more, error = math.ceil(math.log(factor, LEVEL_STEP_RATIO)), max(factor, 1.0) ** 2
         for number, level in enumerate(levels):
             changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error)

@@ -65,6 +65,7 @@ class Matrix:
     run: Annotated[Mapping[str, Any], "command, times, provenance, and whether it is the reduced form"]
 
     def __post_init__(self) -> None:
+        """Refuse rows of models that are no column."""
         for row in self.rows:
             for key in row.entries:
                 require(key in self.columns, f"model {key[:40]!r} of a row is none of the columns")

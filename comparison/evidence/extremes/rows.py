@@ -35,8 +35,8 @@ Phases = tuple[tuple[float, float], ...]
 USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs of most rows
 # rad, phase pairs at which symmetry makes forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-# steps of the engine for a phase pair where nothing but their number would stop the translational model, whose steps
-# cost least, and for one of a tower by its number of bodies, whose steps cost more
+# Largest number of steps of Exudyn for a phase pair: in rows that only this number would stop, for the translational
+# model, whose steps cost least; and in rows of towers by their number of bodies, whose steps cost more
 MAX_WORK_OF_LONG_ROWS = 4e6
 MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}
 
@@ -162,7 +162,7 @@ def _chain_cases() -> Iterator[ExtremeCase]:
         "total mass, kg", {total: make_baseline_scene(masses=[0.5 * total, 0.5 * total]) for total in totals}
     )
     group = "platform's share of the mass"
-    # Below mu^2 / 4 the equations reach Painleve's paradox; a compliant contact jams and opens.
+    # At shares below friction^2 / 4 the equations reach Painleve's paradox; a compliant contact jams and opens.
     paradox = ("painleve paradox", "contact lost")
     for share, right in ((1e-6, ()), (1e-3, paradox), (0.999, ()), (0.999999, ())):
         tower = make_baseline_scene(masses=[2.0 * share, 2.0 * (1.0 - share)])

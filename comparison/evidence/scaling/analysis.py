@@ -50,7 +50,7 @@ def fit_scene_trends(task: Arguments) -> list[Trend]:
     """Return both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
     answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
-    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
+    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # by scale, equations, pair, body
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
     halving = small[:-1] / small[1:] - 1.0
@@ -75,7 +75,7 @@ def fit_scene_trends(task: Arguments) -> list[Trend]:
 
 
 def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
-    """Return mu and error, (2, P, N), by the small and the exact equations."""
+    """Return mu and its error by the small and by the exact equations, each (2, P, N) at P phase pairs."""
     cutoff = None if supremum else DEFAULT_V_C * s  # v_c scales with the motion
     answers = [
         reference.amplification(scene, SCALING_PHASES, equations=equations, tolerance=SCALING_TOLERANCE, cutoff=cutoff)

@@ -58,6 +58,7 @@ class SettingResult:
     error_message: str = ""  # what went wrong, or empty
 
     def __post_init__(self) -> None:
+        """Refuse arrays whose sizes disagree."""
         if self.mu.ndim != 2 or self.error_estimate.shape != self.mu.shape:
             raise ValueError(f"mu {self.mu.shape}, error_estimate {self.error_estimate.shape}")
 
@@ -94,7 +95,7 @@ def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -
 
 
 def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:
-    """Return a result with phase pairs without a value, for a task that returned none."""
+    """Return NaN at every phase pair of a measurement that failed, with the reason."""
     nothing = np.full((len(measurement.phases), len(measurement.scene.bodies)), np.nan)
     return SettingResult(nothing, nothing, 0.0, np.nan, failed.reason)
 
@@ -126,6 +127,7 @@ class TradeOff:
         return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
+        """Return every setting to measure for a scene, those of the user's engines last."""
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:

@@ -39,7 +39,7 @@ from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
 
 DEFAULT_SCENE = "fig3-I"
-COMMAND = "comparison.tradeoff"
+COMMAND = "comparison.tradeoff"  # name of the command in the manifest of its files
 WORKER_START_SECONDS = 8.0  # s that a worker takes before its first task: imports, loading of compiled code
 # Functions that the workers call
 WORKER_FUNCTIONS = {REFERENCE, ENGINE, REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN, SCIPY_FACTORS}
@@ -75,6 +75,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     measured = measure_trades(scenes, options, argv, console, executor)
 
     def write() -> list[Path]:
+        """Write the trade-offs, with those already in the folder, and the values of each scene; return the table."""
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
@@ -82,6 +83,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         return files
 
     def show() -> None:
+        """Print the trade-offs that were measured."""
         for each in measured:
             print_trade(console, each.trade)
 
@@ -164,6 +166,7 @@ def measure_trades(
 
 
 def _values_file(scene: str) -> str:
+    """Return the name of the netCDF file with every measured value of a scene."""
     return name_figure_file(scene, "tradeoff", ending=".nc")
 
 

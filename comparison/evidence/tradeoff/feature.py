@@ -111,6 +111,7 @@ GROWTH = make_stored_field(growth.STORED, "growth", "how the cost grows with bod
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
+    """Return the variables that the template of this section reads."""
     measured = GROWTH.get(report.results)
     panels, digests = make_growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
     functions = {"make_tradeoff_panels": make_tradeoff_panels, "word_fastest_methods": word_fastest_methods}

@@ -36,7 +36,7 @@ MAX_WORK = 1e9  # largest number of engine steps: it refuses nothing, because th
 
 
 def split_upper_body(scene: Scene, bodies: int) -> Scene:
-    """Return the scene with its upper body cut into `bodies` - 1, each above the other on links of the same period."""
+    """Return the scene with its upper body cut into `bodies` - 1 stacked ones, on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
     height = second.get("height", TALL_STOREY_HEIGHT)
@@ -51,7 +51,7 @@ def split_upper_body(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """Quantity that grows. scene: makes the scene of a value from the scene of the study."""
+    """Quantity over which cost is measured. scene: returns the scene with a value of it from the scene of the study."""
 
     name: str
     unit: str
@@ -60,11 +60,11 @@ class GrowingQuantity:
     models: tuple[Model, ...]
 
 
-_EACH = EXACT, TRANSLATIONAL, SPATIAL  # models whose cost is measured
-QUANTITIES = (
-    GrowingQuantity("bodies", "", BODY_COUNTS, lambda scene, n: split_upper_body(scene, int(n)), _EACH),
+_MEASURED_MODELS = EXACT, TRANSLATIONAL, SPATIAL  # models whose cost is measured
+QUANTITIES = (  # quantities over which the cost is measured
+    GrowingQuantity("bodies", "", BODY_COUNTS, lambda scene, n: split_upper_body(scene, int(n)), _MEASURED_MODELS),
     GrowingQuantity(
-        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH
+        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _MEASURED_MODELS
     ),
     GrowingQuantity(PHASE_PAIRS, "", PHASE_PAIR_COUNTS, lambda scene, n: scene, (EXACT,)),
 )
@@ -86,6 +86,7 @@ class CostSeries:
     uncertainty: Annotated[float | None, "standard error of the slope"]
 
     def __post_init__(self) -> None:
+        """Refuse a series without values, or with times that do not fit them."""
         require(len(self.values) > 0, "values must be at least one")
         require_size("seconds", self.seconds, len(self.values))
         require((self.slope is None) == (self.uncertainty is None), "slope and uncertainty are known both or not")
@@ -93,7 +94,7 @@ class CostSeries:
 
 @result
 class MeasuredGrowth:
-    """Content of the file."""
+    """Content of growth.json: the cost of each model over bodies, duration, phase pairs and workers."""
 
     schema: Annotated[Literal["phase-resonance/growth"], "what the file is"]
     scene: Annotated[str, "name of the scene that grows"]
@@ -114,7 +115,7 @@ def make_cost_series(
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Return the exponent of the larger half of the values before the first NaN, and its error; NaN for less than 3."""
+    """Return the exponent over the larger half of the values before the first NaN, and its standard error; or NaN."""
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # Values after one without a measurement are not fitted.
     if known < 3:
         return float("nan"), float("nan")

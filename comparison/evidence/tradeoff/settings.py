@@ -16,7 +16,7 @@ from comparison.study.user_models import engine_description
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
 
-REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
+REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification  # import paths of the functions
 # Functions of one run without error control: of the equations, of the engine, of the engine at constant steps
 REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN = (
     f"comparison.evidence.tradeoff.single_runs:{name}"
@@ -38,12 +38,12 @@ DRY_REGULARIZATIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, v_reg of dry 
 # Name of the varied contact compliance: static penetration over the radius of the path
 PENETRATION_PARAMETER = "penetration under the weight, over rho"
 
-Settings = Mapping[str, Any]
+Settings = Mapping[str, Any]  # keyword arguments of a function
 
 
 @dataclass(frozen=True)
 class TradeoffQuestion:
-    """Question with its reference solution: function and settings. points, quick: phase pairs of the sample."""
+    """Equations that methods solve; function and settings of their reference solution. points, quick: sample sizes."""
 
     key: str
     title: str

@@ -15,7 +15,7 @@ from reference.problem.scene import MAX_BODIES
 
 FILE = "tradeoff.json"
 SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
-MEANINGS = {
+MEANINGS = {  # meaning of each variable of the netCDF file
     "mu": "amplification factor (5.1)",
     "reference_solution": "the same by the reference solution of the question",
     "error_estimate": "estimated absolute error of mu",
@@ -85,6 +85,7 @@ class SceneTrade:
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def __post_init__(self) -> None:
+        """Refuse entries that do not fit the bodies or the questions."""
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
         keys = {question.key for question in self.questions}
         for each in self.entries:
@@ -135,7 +136,7 @@ def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
 
 @result
 class TradeFile:
-    """Content of the file."""
+    """Content of tradeoff.json: error against compute time of every setting, for each scene."""
 
     schema: Annotated[Literal["phase-resonance/tradeoff"], "what the file is"]
     trades: Annotated[list[SceneTrade], "one per scene"]

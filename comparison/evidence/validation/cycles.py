@@ -29,7 +29,7 @@ class Cycles(NamedTuple):
 
     @property
     def mean(self) -> Array:
-        """Return the mean cycle about its mean, mm."""
+        """Return the mean of all cycles, less its mean position, mm."""
         mean = self.motions.mean(axis=0)
         about: Array = mean - mean.mean()
         return about

@@ -226,6 +226,7 @@ def limit_memory() -> Iterator[None]:
 
 
 def _rule_of_column(name: str) -> str:
+    """Return the rule that a column of measured numbers must keep, in words."""
     return f"{name} must be one column of 500 to {MAX_SAMPLES} numbers"
 
 

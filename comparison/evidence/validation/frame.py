@@ -44,7 +44,7 @@ UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
 
 class Setup(NamedTuple):
-    """Inputs of the computation: those of the frame, of its base motion and of the disc."""
+    """Inputs of the computation of a frame run: plate and frame, base motion, weight and friction of the disc."""
 
     mass: float = 3.0799  # kg, mass of the plate
     stiffness: float = 1191.0  # N/m, stiffness of the frame

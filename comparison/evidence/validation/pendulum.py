@@ -65,6 +65,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     )
 
     def read(motion: Trajectory) -> Array:
+        """Return the turning points shown, mrad, and the mean half period after the fitted ones, ms, of a motion."""
         passed, angles = _compute_turns(motion)
         return 1e3 * np.array(
             [
@@ -74,6 +75,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
+        """Return the motion by a side, from the half period, the loss of angle per half swing and the first angle."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 
@@ -121,6 +123,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     data = table.MeasuredData(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
     def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
+        """Return the half periods at PREDICTED_ANGLES by a side, from the half period at small angles."""
         motions = [_compute_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in PREDICTED_ANGLES]
         parts = [table.read_motion_values(each, _read_half_period, 1) for each in motions]
         return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
@@ -169,7 +172,7 @@ def _compute_half_swings(
 
 
 def _find_turns(swing: FreeSwing, back: float) -> tuple[Array, Array]:
-    """Return instants, mid encoder step, and angles of the turns by more than `back`, then of the final rest."""
+    """Return instants and angles of the turns, where the angle goes back by more than `back`, and of the final rest."""
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
     for time, angle in zip(swing.time, swing.angle):

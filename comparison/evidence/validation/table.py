@@ -50,6 +50,7 @@ class SideComparison:
     verdict: Annotated[Verdict, "met: |E| is within u_val; not met; not compared: no E or no u_val"]
 
     def __post_init__(self) -> None:
+        """Refuse a verdict that contradicts the errors."""
         if self.verdict != judge_error(self.error, self.validation):
             raise ValueError(f"verdict {self.verdict!r} contradicts E = {self.error} and u_val = {self.validation}")
 
@@ -71,6 +72,7 @@ class MeasuredQuantity:
     ]
 
     def __post_init__(self) -> None:
+        """Refuse a quantity without one of the judged sides."""
         for side in JUDGED_SIDES:
             require(side in self.sides, f"sides must have {side}")
 
@@ -105,6 +107,7 @@ class PlotCurve:
     y: Annotated[Sequence[float], "along the second axis"]
 
     def __post_init__(self) -> None:
+        """Refuse an unknown name, and x and y of different lengths."""
         known = ("measured", EQUATIONS, ENGINE)
         require(self.name in known, f"name of a curve must be one of {', '.join(known)}, not {self.name[:40]!r}")
         require_size("y", self.y, len(self.x))

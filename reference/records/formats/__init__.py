@@ -30,7 +30,7 @@ class Reader(NamedTuple):
     suffix: str = ""
 
 
-READERS = (
+READERS = (  # readers of all formats: the first that recognizes a file reads it
     Reader(at2.FORMAT, at2.recognizes_at2, at2.read_at2, ".at2"),
     Reader(knet.FORMAT, knet.recognizes_knet, knet.read_knet),
     Reader(esm.FORMAT, esm.recognizes_esm, esm.read_esm),
@@ -39,7 +39,7 @@ READERS = (
     Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv, ".csv"),
 )
 READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
-NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # as of raw files
+NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
 OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a table that gives one file
 
 

@@ -14,11 +14,11 @@ from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
 FORMAT = "PEER .AT2"
-MAX_HEADER_LINES = 20
+MAX_HEADER_LINES = 20  # the header ends within so many lines
 MAX_COUNT_DIGITS = 9  # digits of the number of samples, NPTS
 SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit glued to the value of DT
-NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
-UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
+NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)  # words in files of other quantities
+UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)  # header line with a unit
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
 ACCELERATION_LINE = re.compile(r"\bACC(?:EL\w*)?\b", re.IGNORECASE)
 ACCELERATION_IN_G = re.compile(r"ACC(?:EL\w*)?\b[^,;]*?(?:\bIN |, ?|[\[(])[\[(]?G[\])]? ?\.?", re.IGNORECASE)

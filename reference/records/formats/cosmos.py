@@ -13,17 +13,17 @@ from reference.records.samples import RecordError, RecordSamples, make_even_samp
 from reference.support.arguments import quote
 
 FORMAT = "COSMOS V2"
-BLOCK_HEADER = re.compile(
+BLOCK_HEADER = re.compile(  # COSMOS: line above the block of accelerations
     r"\s*(?P<count>[0-9]{1,9}) acceleration pts,.*units ?= ?(?P<unit>[^,(]+)"
     r".*format ?= ?\([0-9]+[fe](?P<width>[0-9]{1,3})\.",
     re.IGNORECASE,
 )
-CSMIP_BLOCK_HEADER = re.compile(
+CSMIP_BLOCK_HEADER = re.compile(  # CSMIP: line above the block of accelerations
     r"\s*(?P<count>[0-9]{1,9}) points of accel data equally spaced at\s+(?P<step>[0-9.]+) sec, in (?P<unit>[^\s.(]+)",
     re.IGNORECASE,
 )
 CSMIP_FIELD_WIDTH = 10  # letters in a field of CSMIP's Fortran format 8F10.3
-REAL_HEADER = re.compile(
+REAL_HEADER = re.compile(  # line above the header's real numbers, with their count and the width of their fields
     r"\s*([0-9]{1,9}) Real-header values follow on +([0-9]{1,9}) lines, Format ?= ?\([0-9]+[FE]([0-9]{1,3})\.",
     re.IGNORECASE,
 )
@@ -65,7 +65,7 @@ def read_cosmos(text: str, name: str = "file.V2") -> RecordSamples:
 
 
 def _header_step(lines: Sequence[str]) -> float:
-    """Return the sampling interval that the real header states, s. Raises RecordError."""
+    """Return the sampling interval, s, from the real numbers of the header. Raises RecordError."""
     for at, line in enumerate(lines):
         if found := REAL_HEADER.match(line):
             rows = lines[at + 1 : at + 1 + int(found[2])]

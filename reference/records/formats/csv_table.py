@@ -47,7 +47,7 @@ ACCELERATION_NAMES = {
 ACCELERATION_NAMES |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
 ACCELERATION_NAMES |= {"aceleración", "aceleracion", "ivme"}
 ACCELERATION_WITH_AXIS = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
-TEXT_IN_BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")
+TEXT_IN_BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")  # a name, its unit in brackets
 DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 
 
@@ -227,7 +227,7 @@ def _header_column(place: int, cell: str) -> HeaderCell:
         return HeaderCell(place, cell, "acceleration", name)
     if len(rest) == 1 and parse_direction(rest[0]) is not None and (told or unit or not rest[0].isdigit()):
         if unit and unit_factor(unit) is None and not told:
-            return HeaderCell(place, cell, "other")  # such as N [counts], v [m/s]
+            return HeaderCell(place, cell, "other")  # its unit is of no acceleration: N [counts], v [m/s]
         return HeaderCell(place, cell, "acceleration", rest[0].upper() if len(rest[0]) < 4 else rest[0])
     return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 

@@ -31,18 +31,18 @@ from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSa
 from reference.support.arguments import as_float, quote
 
 FORMAT = "plain text"
-OPTIONS = ("step", "unit", "skip", "column")
+OPTIONS = ("step", "unit", "skip", "column")  # keys with which a scene states how to read a plain text
 MAX_SKIP = 10_000  # `skip` may leave out at most so many lines
-MAX_COLUMN = 100
-MAX_STEP_VARIATION = 0.01  # relative: steps of a column of times differ by at most this
+MAX_COLUMN = 100  # largest number of the column that `column` chooses
+MAX_STEP_VARIATION = 0.01  # steps of a column of times differ by at most this share of their mean
 MAX_RECORD_COLUMNS = 4  # a line of at most so many values may be a time and three directions, or a run of values
-PROPOSAL_ROWS = 50  # a proposal reads so many lines of numbers
+PROPOSAL_ROWS = 50  # lines of numbers that are read to propose options for a plain text
 MIN_TIME_ROWS = 3  # so many rows at least show that a column is a time
-NAMED_UNIT = re.compile(
+NAMED_UNIT = re.compile(  # unit of acceleration in a header
     r"\b(?:[cm]?m|in|ft) ?/ ?s(?:ec)?(?: ?/ ?s(?:ec)?|\^?\*{0,2}2)|\bgals?\b|[(\[]g[)\]]|(?<=\bin )g\b|(?<=\bof )g\b",
     re.IGNORECASE,
 )
-NAMED_STEP = re.compile(
+NAMED_STEP = re.compile(  # sampling interval or rate in a header
     r"(?:\bd_?t\b|\bdelta ?t\b|\bstep\b|\binterval\b|\bspacing(?: of)?)[^0-9.,;]{0,20}"
     r"(?P<step>[0-9]*\.?[0-9]+(?:e-?[0-9]+)?)"
     r"|(?P<rate>[0-9]+(?:\.[0-9]*)?) ?(?:hz|sps)\b",
@@ -76,7 +76,7 @@ def read_plain_text(
     return replace(_read_stated(text, name, spacing, factor, skip, column), format=f"{FORMAT} in {unit}")
 
 
-@lru_cache(maxsize=64)  # the caller has checked the arguments: other values that a scene file may hold have no hash
+@lru_cache(maxsize=64)  # the caller has checked the arguments: the cache needs their hashes
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
     """Return the values of a text; spacing: step, s; factor: of its unit to m/s^2. Raises RecordError."""
     lines, propose = text.splitlines(), partial(propose_line, text, name)
@@ -113,7 +113,7 @@ def propose_options(text: str) -> Proposal | str:
     body = [line[:MAX_LINE] for line in lines[start : start + PROPOSAL_ROWS]]
     if "." not in "".join(body):  # the text has decimal commas
         body = [line.replace(",", ".") for line in body]
-    rows = [cells for line in body if (cells := _loose_cells(line))]
+    rows = [cells for line in body if (cells := _parse_number_line(line))]
     time = _even_step(rows)
     step, unit = _read_step(header), NAMED_UNIT.search(header)
     known = step if step is not None else time
@@ -152,7 +152,7 @@ def word_guesses(missing: Sequence[str]) -> str:
 def _first_data_line(lines: Sequence[str]) -> int | None:
     """Return the first line, from 0, after which all lines are numbers; a line of count and step is in the header."""
     for number, line in enumerate(lines[:MAX_HEADER_LINES]):
-        if _loose_cells(line) and not _states_count(lines, number):
+        if _parse_number_line(line) and not _states_count(lines, number):
             return number
     return None
 
@@ -164,7 +164,7 @@ def _states_count(lines: Sequence[str], number: int) -> bool:
     return stated is not None and len(stated[1]) < 10 and int(stated[1]) == behind
 
 
-def _loose_cells(line: str) -> list[float] | None:
+def _parse_number_line(line: str) -> list[float] | None:
     """Return the numbers of a line that has nothing else; None for any other line."""
     cells = re.split(r"[\s;,]+", line[:MAX_LINE].strip())
     if not all(cells) or not all(
@@ -264,7 +264,7 @@ def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
 def begins_with_numbers(head: Sequence[str]) -> bool:
     """Return True if the first line that is not blank has numbers only."""
     first = next((line for line in head if line.strip()), "")
-    return _loose_cells(first) is not None
+    return _parse_number_line(first) is not None
 
 
 def has_options(table: Mapping[str, Any]) -> bool:

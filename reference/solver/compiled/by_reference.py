@@ -99,9 +99,11 @@ def structure_from_tuple(kind: type[ByReference]) -> Any:
 
     @intrinsic
     def construct(context: Any, values: Any) -> Any:
+        """Return the signature of the function, and the writer of its code, as numba asks for them."""
         structure = kind(list(zip(values.fields, values.types)))
 
         def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            """Write code that allocates the structure and copies the fields of the tuple into it."""
             reference = _allocate(context, builder, structure)
             for k, (name, field) in enumerate(structure._fields):
                 value = builder.extract_value(arguments[0], k)
@@ -120,7 +122,10 @@ def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
 
     @intrinsic
     def construct(context: Any) -> Any:
+        """Return the signature of the function, and the writer of its code, as numba asks for them."""
+
         def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            """Write code that allocates the structure."""
             return _allocate(context, builder, structure)
 
         return structure(), lower_call

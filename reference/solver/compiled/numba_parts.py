@@ -23,7 +23,7 @@ from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 # Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
 # functions that numba inlines before their types are known, and no variable whose end must be marked.
 UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
-PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}
+PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # such as operator.add
 
 
 class _NoEnvironment:
@@ -87,14 +87,14 @@ class _LowerAsPart(LoweringPass):  # type: ignore[misc]
 
 
 class _RememberedFunctions(Context):  # type: ignore[misc]
-    """Numba's lookup of the types that functions return, with one question per function and types of arguments."""
+    """Numba's lookup of the types of functions, which remembers the answer for every function and its arguments."""
 
     def __init__(self, context: Context) -> None:
         self.__dict__ = context.__dict__
         self._known: dict[Any, Any] = {}
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """Return the signature."""
+        """Return the signature of a function for these types of arguments, from memory where it is known."""
         if kws or not (isinstance(func, types.Function) or func in PYTHON_OPERATORS):
             return super().resolve_function_type(func, args, kws)
         if (func, args) not in self._known:
@@ -102,7 +102,7 @@ class _RememberedFunctions(Context):  # type: ignore[misc]
         return self._known[func, args]
 
 
-remembered_functions = cache(_RememberedFunctions)
+remembered_functions = cache(_RememberedFunctions)  # returns one lookup for each of numba's contexts
 
 
 class PartCompiler(CompilerBase):  # type: ignore[misc]

@@ -14,6 +14,7 @@ def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]
     """Return a function whose first argument is a System: `without` where its `field` is None, else `present`."""
 
     def call(system: Any, *numbers: Any) -> Any:
+        """Call the variant for a system from Python; compiled code gets it by `_type` and `_lower`."""
         return (without if getattr(system, field) is None else present)(system, *numbers)
 
     def choose(system: Any) -> Any:
@@ -22,7 +23,10 @@ def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]
 
     @type_callable(call)
     def _type(context: Any) -> Callable[..., Any]:
+        """Return the function that tells numba the types of a call."""
+
         def resolve(*kinds: Any) -> Any:
+            """Return the signature of a call with arguments of these types."""
             return choose(kinds[0]).get_call_type(context, kinds, {})
 
         resolve.pysig = signature(without.py_func)  # type: ignore[attr-defined]  # where numba looks for it
@@ -30,6 +34,7 @@ def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]
 
     @lower_builtin(call, types.VarArg(types.Any))
     def _lower(context: Any, builder: Any, call: Any, arguments: Any) -> Any:
+        """Write code that calls the variant."""
         function = context.get_function(choose(call.args[0]), call)
         context.add_linking_libs(getattr(function, "libs", ()))
         return function(builder, arguments)

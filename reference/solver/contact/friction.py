@@ -82,7 +82,7 @@ def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy
 @compiled
 def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return how far the squared tangential force exceeds the squared static limit, and the normal reaction, (T4).
+    Return how far the squared tangential force exceeds the squared static limit, and the reaction: T4 of theory.md.
 
     The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
     at most mu times its normal part N > 0, that is while the excess |T|^2 - (mu N)^2 is not positive.

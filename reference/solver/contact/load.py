@@ -83,7 +83,7 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return acceleration, reaction by Newton's method, and as determinant the derivative of its equation."""
+    """Return acceleration, reaction and determinant where friction depends on the reaction, by Newton's method."""
     # A friction coefficient that falls with the load (n < 0) makes the equation for R nonlinear. The derivative of this
     # equation takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's
     # paradox). If the iteration ends far from a solution, no acceleration exists either: the determinant is set to -1,

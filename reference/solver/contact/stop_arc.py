@@ -28,7 +28,7 @@ MAX_ROUNDING_BRAKING = 1e-6
 
 @compiled
 def turning_acceleration(system: System, load: Load, angle: float) -> float:
-    """Return the acceleration across the direction, a . e_perp, m/s^2: a positive one turns it counter-clockwise."""
+    """Return the acceleration across a slip direction, m/s^2: a positive one turns the slide counter-clockwise."""
     ex, ey = cos(angle), sin(angle)
     ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
     return ay * ex - ax * ey
@@ -46,7 +46,7 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return the direction at which the turning from `angle` ends; `angle` itself for accelerations below no_turn."""
+    """Return the direction to which a slide turns from `angle` at its stop; no_turn: negligible share of the drive."""
     # theta' keeps its sign until it vanishes, so the first zero of a . e_perp in the sense of the turning is the end.
     # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
     # up to the distance of two samples, and ends at the first change of sign, or after a full turn.
@@ -79,7 +79,7 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """Return the direction in between that does not turn, by regula falsi (Illinois; Dowell and Jarratt 1971)."""
+    """Return the direction between two in which a slide does not turn, by regula falsi (Dowell and Jarratt 1971)."""
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)

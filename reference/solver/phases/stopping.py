@@ -22,7 +22,7 @@ from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA,
 # "Period" below is RunSettings.period, the time in which forces change; "the loading's velocity" is the size of the
 # loading's acceleration times the period over 2 pi.
 FIRST_STEP = 1.0  # estimated change of the direction, rad, and of ln v in the first step
-# Share of the loading that accelerates the platform at least in the estimate of the first step's length
+# Smallest acceleration in the estimate of the first step's length, as a share of the loading
 MIN_FIRST_ACCELERATION = 1e-3
 MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the last one would have met the tolerance
 MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the chain's fastest vibration in one step
@@ -32,7 +32,7 @@ MIN_LEAVING_TIME = 0.05  # share of the period of the run
 # Speed below which a platform that friction can hold may count as stopped, over the loading's velocity and the root of
 # the tolerance
 MAX_STOPPED_SPEED = 0.03
-# Change of an acceleration by the dampers when rest sets this speed to zero, as a share of the tolerance
+# Largest change of an acceleration by the dampers as the speed jumps to zero at a stop, as a share of the tolerance
 MAX_DAMPED_JUMP = 0.01
 # Accelerations while the direction of a slide turns before its stop (the arc, contact/stop_arc.py) may govern a peak:
 # then the slide is integrated down to MIN_FOLLOWED_SPEED, a share of the loading's velocity. They govern nothing below
@@ -77,7 +77,7 @@ def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> No
 
 @compiled
 def propose_stretched_length(system: System, work: Workspace) -> float:
-    """Return the length of the next step in tau: the longest that resolves time, position and the chain's vibration."""
+    """Return the longest next step, in stretched time, that resolves time, position and the chain's vibration."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)

@@ -48,7 +48,7 @@ from reference.solver.work import (
 # Step of the difference quotients for Newton's method, as a share of radius, speed, gravity or friction force; and the
 # step by the velocity of a platform at rest, m/s
 DIFFERENCE_STEP, MIN_SPEED = 1e-7, 1e-10
-FIRST_NODE = float(NODES[0])
+FIRST_NODE = float(NODES[0])  # theta of the first stage
 LATE_EVENT_SHARE = 1e-10  # share of a step: a later event counts as one at its end
 MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of the step
 
@@ -219,7 +219,7 @@ def correct_unknowns(work: Workspace) -> float:
 
 @compiled
 def expand_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Set powers[0] to a polynomial that is positive past the event that ends the phase; return its first stage."""
+    """Set powers[0] to the polynomial above zero past the event that ends the phase; return its value at stage 1."""
     # Elastic friction yields where its force reaches the friction limit. Plastic friction unloads where the rate of
     # slip, the velocity along the force less the rate of the limit over k, passes zero.
     shear = work.shear
@@ -258,7 +258,7 @@ def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> f
     for k in range(1, STAGES):
         slope += k * work.powers[0, k]
     end = evaluate_polynomial(work.powers[0], 1.0)
-    if not slope > 0.0:  # such as behind a kink of the friction limit, where the value jumps
+    if not slope > 0.0:  # the value jumps, as behind a kink of the friction limit
         return 0.0 if end > 0.0 else NOT_IN_STEP
     return min(max(-end / slope, -MAX_SHIFT), MAX_SHIFT)
 

@@ -10,7 +10,7 @@ import reference
 from comparison.analyses.measured import analysis
 from comparison.analyses.measured.analysis import MeasuredPeaks, _compare_peak, verdict_line, word_measured
 from comparison.study import batches
-from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
+from comparison.study.models import EXACT, EXACT_AS_INTEGRATED, MODEL_HIERARCHY, REGULARIZED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.study.user_models import make_user_model
 from reference.problem import Scene, load_scene
@@ -52,7 +52,7 @@ def test_a_difference_exceeds_the_sum_of_both_uncertainties(noise, exceeds):
 
 def test_both_sides_stand_beside_a_measured_peak():
     absent = replace(EXACT, key="absent", amplification="nowhere:amplification", trajectory="nowhere:trajectory")
-    peaks = compared(synthetic(0.0), SMALL, EXACT, RESOLVED, TRANSLATIONAL, absent)
+    peaks = compared(synthetic(0.0), SMALL, EXACT, EXACT_AS_INTEGRATED, TRANSLATIONAL, absent)
     assert [each.model for each in peaks[0].computed] == ["small", "exact", "resolved", "translational", "absent"]
     *others, engine, bad = peaks[1].computed
     assert [each.model for each in others] == ["small", "exact"], "one motion, read twice"

@@ -11,7 +11,14 @@ from known_analyses import collected
 
 from comparison.evidence.effective import analysis
 from comparison.evidence.effective.analysis import PHASES, read_scene_values, read_values_back, word_effective
-from comparison.study.models import EXACT, MODEL_HIERARCHY, RIGID, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
+from comparison.study.models import (
+    EXACT,
+    MODEL_HIERARCHY,
+    SMALL_RIGID_FRICTION,
+    SOFTENED_SPATIAL,
+    SOFTENED_TRANSLATIONAL,
+    Model,
+)
 from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
@@ -70,7 +77,9 @@ def test_of_friction_that_varies_the_fast_one_under_the_weight_is_read(law: dict
 
 def test_rigid_friction_is_read_from_a_motion_with_it() -> None:
     rigid = load_scene("fig3-I").with_values({"duration": 2.0})
-    expected, found = (read_values_back((scene, RIGID)) for scene in (rigid, rigid.with_yield_displacement(1e-3)))
+    expected, found = (
+        read_values_back((scene, SMALL_RIGID_FRICTION)) for scene in (rigid, rigid.with_yield_displacement(1e-3))
+    )
     assert found.acceleration == expected.acceleration > 1.0, "friction that yields has no force at the start"
 
 

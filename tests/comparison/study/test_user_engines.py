@@ -33,7 +33,7 @@ from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
 from comparison.runner.environment import fingerprint_engine, hash_source
 from comparison.runner.processes import make_process_pool
 from comparison.study.batches import drop_unusable, execute_batch
-from comparison.study.models import MODEL_HIERARCHY, REGULARIZED, RESOLVED, Model, pairs_of
+from comparison.study.models import EXACT_AS_INTEGRATED, MODEL_HIERARCHY, REGULARIZED, Model, pairs_of
 from comparison.study.study import Study
 from comparison.study.user_models import REFERENCE_MODEL_KEYS, amplification, make_user_model, silence_output
 from comparison.surfaces.budget import list_budget_entries
@@ -507,7 +507,7 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
         return [(one.question, one.value, one.against) for one in list_user_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, None) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
-    resolved = "reference:amplification", {**RESOLVED.settings, "tolerance": 1e-10}
+    resolved = "reference:amplification", {**EXACT_AS_INTEGRATED.settings, "tolerance": 1e-10}
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, None)], [("exact", 1e-3, resolved)])
     models = (make_user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
     tasks = TradeOff([SCENE], True, models).tasks()

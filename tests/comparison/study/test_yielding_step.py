@@ -7,8 +7,8 @@ import reference
 from comparison.study.models import (
     EXACT,
     MODEL_HIERARCHY,
-    RIGID,
     SMALL,
+    SMALL_RIGID_FRICTION,
     chain_of,
     effect_pairs_of,
     label_of,
@@ -108,10 +108,10 @@ def test_words_are_those_of_the_law() -> None:
     mixed = {model.key: model for model in with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, SOFT])}
     assert mixed[EXACT.key].title == EXACT.title
     assert mixed[EXACT.key].assumptions["friction"].startswith(f"{EXACT.assumptions['friction']}; where the scene says")
-    assert readings_of([RIGID, small], SOFT) == ["as integrated"]
+    assert readings_of([SMALL_RIGID_FRICTION, small], SOFT) == ["as integrated"]
     assert readings_of([small], SOFT) == []
     assert readings_of([SMALL], PLAIN) == ["literal supremum"]
-    assert readings_of([SMALL, RIGID, SMALL], PLAIN) == ["literal supremum", "as integrated"]
+    assert readings_of([SMALL, SMALL_RIGID_FRICTION, SMALL], PLAIN) == ["literal supremum", "as integrated"]
 
 
 @pytest.mark.parametrize(
