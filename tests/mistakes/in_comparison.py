@@ -811,7 +811,7 @@ MISTAKES = (
     Mistake("comparison/analyses/conditioning/statement.py", "place = curve.v.index(curve.own)", "place = 0",
             "mu_1 at the own yield displacement is that of the largest.",
             (TESTS + "analyses/test_conditioning.py::test_the_sentence_on_a_yield_displacement_follows_from_the_curve",)),
-    Mistake("comparison/evidence/benchmarks/analysis.py", "                for case in self.cases\n            ],", "                for case in self.cases[:1]\n            ],",
+    Mistake("comparison/evidence/benchmarks/analysis.py", "            for case in self.cases\n        ]", "            for case in self.cases[:1]\n        ]",
             "Only the first benchmark is in the table.", (TESTS + "evidence/test_benchmarks.py::test_a_side_that_fails_costs_the_others_nothing",)),
     Mistake("comparison/evidence/extremes/matrix.py", "f\"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}\"", "f\"{', '.join(f'{n} {verdict}' for verdict, n in counts.items())} cells: {sum(counts.values())}\"",
             "The number of cells and the counts are exchanged.", (TESTS + "evidence/test_extremes.py::test_the_command_names_limits_and_failures",)),
