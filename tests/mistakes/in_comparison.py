@@ -835,7 +835,7 @@ MISTAKES = (
             "The error of a later trial is lost.", (OF + "assumptions.py::test_an_error_of_any_trial_is_that_of_its_task",)),
     Mistake(REPORT + "page.py", 'or each in " .,:-" else', 'or each not in " .,:-" else', "A quotation mark ends the style of a page.",
             (TESTS + "report/test_texts_of_scenes.py::test_every_sign_that_could_end_the_style_is_escaped_in_the_header_of_a_page",)),
-    Mistake("comparison/evidence/benchmarks/analysis.py", "                for case in self.cases\n            ],", "                for case in self.cases[:1]\n            ],",
+    Mistake("comparison/evidence/benchmarks/analysis.py", "            for case in self.cases\n        ]", "            for case in self.cases[:1]\n        ]",
             "Only the first benchmark is in the table.", (TESTS + "evidence/test_benchmarks.py::test_a_side_that_fails_costs_the_others_nothing",)),
     Mistake("comparison/evidence/extremes/matrix.py", "f\"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}\"", "f\"{', '.join(f'{n} {verdict}' for verdict, n in counts.items())} cells: {sum(counts.values())}\"",
             "The number of cells and the counts are exchanged.", (TESTS + "evidence/test_extremes.py::test_the_command_names_limits_and_failures",)),

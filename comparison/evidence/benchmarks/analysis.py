@@ -56,15 +56,11 @@ class BenchmarkTable:
 
     def collect(self, results: TaskResults) -> Benchmarks:
         """Return the table of results without the facts of the run, which the command adds."""
-        return Benchmarks(
-            [
-                _make_benchmark(
-                    case, {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
-                )
-                for case in self.cases
-            ],
-            {},
-        )
+        answers = [
+            {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
+            for case in self.cases
+        ]
+        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
         """Return the task that solves one benchmark by one side."""
