@@ -118,6 +118,13 @@ def test_a_line_has_fifty_errors_and_the_number_of_the_others(tmp_path: Path) ->
     assert said.endswith("; and 10 more")
 
 
+def test_a_line_names_the_files_of_its_errors_and_has_no_control_characters() -> None:
+    others = [SceneError("scene", "b", 2, "rule"), SceneError("list", "c", 3, "rule")]
+    assert str(SceneError("scene", "a", 1, "x\x1b\n", others)) == (
+        "scene: a = 1: x\ufffd\ufffd; also b = 2: rule; also list: c = 3: rule"
+    )
+
+
 def test_the_value_that_runs_is_a_coordinate_of_results(tmp_path: Path) -> None:
     family = load_family(_file(tmp_path, "friction = 0.1", "friction = {values = [0.2, 0.02]}"))
     results = [reference.amplification(scene, (0.3, 1.1), tolerance=1e-3) for scene in family.scenes]
