@@ -558,5 +558,8 @@ MISTAKES = (
     Mistake(SOLVER + "events.py", "NEAR_LIMIT = 0.5", "NEAR_LIMIT = 0.0",
             "A slide that begins between two stages of rest is lost.",
             (TESTS + "test_statuses.py::test_a_drive_beyond_the_friction_limit_for_a_moment_moves_the_platform",)),
+    Mistake(SOLVER + "phases/stopping.py", "    elif speed > settings.cutoff:\n        return STOPPING\n", "",
+            "A slide that is faster than a small cutoff counts as stopped.",
+            (TESTS + "test_resolved_peaks.py::test_ever_lower_cutoffs_tend_to_the_literal_supremum_by_a_power_of_the_speed",)),
 )
 # fmt: on
