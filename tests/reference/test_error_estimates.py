@@ -105,6 +105,16 @@ LACKING = {
         ),
         (2.6065706627301535, 0.9463193827363767), {"cutoff": 0.05}, 1e-5,
     ),
+    # the largest acceleration of the middle body is wrong by what the stiff link above it makes of a wrong velocity
+    "place of the body above": (
+        asked(
+            {"radius": float("inf"), "friction": 0.35},
+            [{"mass": 1.326}, {"mass": 1.01, "period": [0.1348, 0.1294]},
+             {"mass": 2.881, "period": [0.0857, 0.0865]}],
+            [[1.5946, -0.2949], [1.7081, -1.4038], [-0.6278, 0.4711]], [1.0378, 1.4321], [0.2299, 0.186], 3.09,
+        ),
+        (0.294, 3.0696), {"equations": "small"}, 1e-5,
+    ),
     # friction that depends on the velocity answers to a wrong one, which is wrong most of all at the stages
     "velocity at a stage of a slow slide": (
         asked(

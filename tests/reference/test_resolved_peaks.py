@@ -35,3 +35,14 @@ def test_a_resolved_peak_is_the_largest_instant_that_counts(friction, phase):
         answer = reference.amplification(scene, [phase], equations="small", cutoff=CUTOFF, tolerance=tolerance)
         assert answer.status[0] == "ok"
         assert answer.mu[0, 1] == pytest.approx(expected, rel=4e-6)
+
+
+def test_ever_lower_cutoffs_tend_to_the_literal_supremum_by_a_power_of_the_speed() -> None:
+    """The direction of a slide turns like a power of its speed down to the stop (T6 of docs/theory.md)."""
+    cutoffs = [None, *(10.0**-exponent for exponent in range(9, 15))]
+    mu = [
+        reference.amplification(load_scene("fig3-I"), [(1.67079633, 3.24159265)], cutoff=cutoff).mu[0, 0]
+        for cutoff in cutoffs
+    ]
+    ways = mu[0] - np.array(mu[1:])
+    np.testing.assert_allclose(ways[1:] / ways[:-1], 0.57, atol=0.015)

@@ -70,6 +70,16 @@ def test_a_drive_that_touches_the_friction_limit_moves_nothing(equations, tolera
 
 
 @BOTH
+def test_a_drive_beyond_the_friction_limit_for_a_moment_moves_the_platform(equations):
+    """On a plane the platform then has the acceleration of friction, mu g, and not that of the ground."""
+    for excess in (1e-4, 4e-4, 1e-3, 3e-3, 1e-2, 3e-2):
+        for start in (-0.7, -1.0, -1.4, -1.9):
+            loading = {"amplitudes": [[0.1 * GRAVITY * (1.0 + excess), 0.0], [0.0, 0.0]], "decay": (0.0, 0.0)}
+            result = reference.amplification(chain(np.inf, 0.1, **loading, duration=0.5), [(start, 0.0)], equations)
+            assert abs(result.mu[0, 0] * (1.0 + excess) - 1.0) <= 2.0 * result.error[0, 0], (excess, start)
+
+
+@BOTH
 def test_loads_beyond_double_precision_or_without_a_motion_are_told_at_once(equations):
     scene = chain(amplitudes=[[1e200, 0.0], [0.0, 1.0]])
     assert refused(scene, Outcome.NON_FINITE_LOAD, equations=equations) == 0.0
