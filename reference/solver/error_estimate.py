@@ -26,8 +26,9 @@ from reference.solver.system import (
 
 # The constants of the estimate and their measurements are in docs/decisions/0002-two-run-error.md.
 TOLERANCE_RATIO = 30.0  # ratio of the tolerance inside a step of the coarser run to that of the finer run
-# Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO would be expected
-DIFFERENCE_FRACTION = 0.4
+# Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO would be expected. Where
+# friction yields or depends on the velocity, the error falls by less between two runs, and all of it counts.
+DIFFERENCE_FRACTION, DIFFERENCE_FRACTION_VARYING_FRICTION = 0.4, 1.0
 # Lower bounds on the error, since closer agreement of two runs is accidental: over the tolerance inside a step, and
 # over the requested tolerance. The third bound replaces the second one where friction yields or depends on the
 # velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
@@ -196,26 +197,26 @@ def _compare_runs(
     before: RunPeaks, after: RunPeaks, tolerance: float, system: System, settings: RunSettings
 ) -> tuple[RunPeaks, Array]:
     """Return the peaks `after` with errors, and True for pairs (M,) at which the runs disagree by too much."""
-    error = _estimate_error(before, after, tolerance, settings.unit)
+    plain = system.rate == 0.0 and system.law != YIELDING
+    share = DIFFERENCE_FRACTION if plain else DIFFERENCE_FRACTION_VARYING_FRICTION
+    error = _estimate_error(before, after, share, tolerance, settings.unit)
     permitted = settings.tolerance * after.value
     solved = (before.code == SOLVED) & (after.code == SOLVED)
     met = solved & (error <= permitted).all(axis=1)
     refused = (before.code == after.code) & (after.code != SOLVED)
-    plain = system.rate == 0.0 and system.law != YIELDING
     fraction = MIN_ERROR_FRACTION if plain else MIN_ERROR_FRACTION_VARYING_FRICTION
     return after._replace(error=np.maximum(error, fraction * permitted)), ~(met | refused)
 
 
-def _estimate_error(before: RunPeaks, after: RunPeaks, tolerance: float, unit: float) -> Array:
+def _estimate_error(before: RunPeaks, after: RunPeaks, share: float, tolerance: float, unit: float) -> Array:
     """
-    Return the estimated error of `after`, (M, N): that of reading the peak plus that of the state of the runs.
+    Return the estimated error of `after`, (M, N): that of reading the peak plus `share` of the runs' difference.
 
     Two runs that differ by less than rounding agree by chance: there the error is that of rounding.
     """
     # Steps do not resolve peaks below MIN_SCALE_FRACTION of the loading: there the whole difference counts. Small
     # accelerations are differences of large ones, so their rounding is relative to the loading.
-    share = np.where(after.value < MIN_SCALE_FRACTION * unit, 1.0, DIFFERENCE_FRACTION)
-    between = share * np.abs(after.value - before.value)
+    between = np.where(after.value < MIN_SCALE_FRACTION * unit, 1.0, share) * np.abs(after.value - before.value)
     rounding = ROUNDING_ERROR * np.maximum(after.value, unit)
     return (
         np.maximum(READING_ERROR_FACTOR * after.error + between, rounding)

@@ -26,10 +26,10 @@ MISTAKES = (
     Mistake(SOLVER + "error_estimate.py", "peaks.code[unfinished[~better]] = NOT_MET", "pass",
             "What a finer run could not confirm is called ok.",
             (ERRORS + "test_what_is_known_remains_where_a_finer_run_fails",)),
-    Mistake(SOLVER + "error_estimate.py", "between = share * np.abs(after.value - before.value)",
+    Mistake(SOLVER + "error_estimate.py", "between = np.where(after.value < MIN_SCALE_FRACTION * unit, 1.0, share) * np.abs(after.value - before.value)",
             "between = 0.0 * np.abs(after.value - before.value)",
             "The difference of the two runs is no part of the error.", (COVERAGE,)),
-    Mistake(SOLVER + "error_estimate.py", "DIFFERENCE_FRACTION = 0.4", "DIFFERENCE_FRACTION = 4.0",
+    Mistake(SOLVER + "error_estimate.py", "VARYING_FRICTION = 0.4, 1.0", "VARYING_FRICTION = 4.0, 1.0",
             "The difference of the two runs counts ten times in the error.", (COVERAGE,)),
     Mistake(SOLVER + "error_estimate.py", "error=np.maximum(error, fraction * permitted)",
             "error=0.1 * np.maximum(error, fraction * permitted)", "Errors are ten times too small.", (COVERAGE,)),
@@ -566,5 +566,8 @@ MISTAKES = (
     Mistake(SOLVER + "phases/stopping.py", "    elif speed > settings.cutoff:\n        return STOPPING\n", "",
             "A slide that is faster than a small cutoff counts as stopped.",
             (TESTS + "test_resolved_peaks.py::test_ever_lower_cutoffs_tend_to_the_literal_supremum_by_a_power_of_the_speed",)),
+    Mistake("reference/solver/error_estimate.py", "share = DIFFERENCE_FRACTION if plain else", "share = DIFFERENCE_FRACTION if True else",
+            "Less than half of the difference of two runs counts where friction rises with the velocity.",
+            (TESTS + "test_error_estimates.py::test_an_error_lacks_nothing", TESTS + "test_error_estimates.py::test_runs_agree_where_all_bodies_do_or_both_end_alike_and_errors_have_a_floor")),
 )
 # fmt: on
