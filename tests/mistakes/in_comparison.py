@@ -897,5 +897,13 @@ MISTAKES = (
             "A method without an estimate is named first.", (TESTS + "report/test_page_plots.py::test_the_answer_is_the_cheapest_method_within_the_error",)),
     Mistake("comparison/evidence/tradeoff/feature.py", 'f": slope {each.slope:.2f} ± {each.uncertainty:.2f}"', 'f": slope {each.uncertainty:.2f} ± {each.slope:.2f}"',
             "Slope and uncertainty are exchanged.", (TESTS + "report/test_page_plots.py::test_the_cost_is_drawn_by_what_grows_with_its_slopes",)),
+    Mistake("comparison/surfaces/missing_values.py", "np.isfinite(select_values(surfaces, \"mu\", scene.name, model)[: len(scene.bodies)]).all(axis=0)", "np.isfinite(select_values(surfaces, \"mu\", scene.name, model)[: len(scene.bodies)]).any(axis=0)",
+            "A phase pair where only some bodies have a value is counted as one with a too large error instead of one without a value.", ("tests/comparison/surfaces/test_alerts.py::test_a_phase_pair_where_one_body_has_no_value_is_one_without_an_answer",)),
+    Mistake("comparison/report/section.py", "(not held or any(held))", "(not held or all(held))",
+            "A section with several fields vanishes from the report where only one of its fields is empty.", ("tests/comparison/report/test_features.py::test_a_section_is_there_if_any_of_its_fields_is",)),
+    Mistake("comparison/analyses/ensemble/limits.py", "found, error = value / per, error / per", "found, error = value / per, error",
+            "A limit on a demand relative to a weight is judged with an error bar that is not divided by it.", ("tests/comparison/analyses/test_ensemble_limits.py::test_base_shear_is_limited_as_a_share_of_the_weight",)),
+    Mistake("comparison/report/junit.py", "sum(model.cost for model in scene.models.values())", "max(model.cost for model in scene.models.values())",
+            "The seconds of a suite in junit.xml are those of the most expensive model instead of all.", ("tests/comparison/report/test_texts_of_scenes.py::test_junit_and_summary_are_well_formed_for_any_name",)),
 )
 # fmt: on

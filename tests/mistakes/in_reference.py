@@ -569,5 +569,7 @@ MISTAKES = (
     Mistake("reference/solver/error_estimate.py", "share = DIFFERENCE_FRACTION if plain else", "share = DIFFERENCE_FRACTION if True else",
             "Less than half of the difference of two runs counts where friction rises with the velocity.",
             (TESTS + "test_error_estimates.py::test_an_error_lacks_nothing", TESTS + "test_error_estimates.py::test_runs_agree_where_all_bodies_do_or_both_end_alike_and_errors_have_a_floor")),
+    Mistake("reference/records/suites.py", "scaled[:, 1:] *= motion.factor", "scaled[:, 1:3] *= motion.factor",
+            "The factor of motions.csv does not scale the vertical component.", ("tests/reference/records/test_unzipped_folders.py::test_a_list_of_motions_overrides_names",)),
 )
 # fmt: on

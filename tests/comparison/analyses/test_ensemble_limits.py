@@ -134,6 +134,10 @@ def test_base_shear_is_limited_as_a_share_of_the_weight() -> None:
         "job[upper bound]: base shear over the weight, largest of 3 motions: 30 % (Imperial Valley), "
         "allowed 25 %: not met (by +20 %)"
     ]
+    uncertain = ensemble_of({("base_shear", None): (3e5, 6e5, 5e5)}, error=4e4)
+    (check,) = check_limits(uncertain, {"job[upper bound]": DemandLimits(base_shear=0.29)})
+    assert (check.found, check.allowed) == pytest.approx((0.3, 0.02))
+    assert word_check(check).endswith("met"), "its error, 2 % of the weight, is larger than the excess"
 
 
 def test_a_drift_ratio_is_that_of_the_governing_story() -> None:

@@ -64,10 +64,12 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     study = Study((scene,), 2, 1e-3, fake_hierarchy(), selection=EVERYTHING)
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
+    surfaces["cost"].loc[{"scene": scene.name}] = 2.0 ** np.arange(len(surfaces["model"]))
     results = make_report(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
     suites = ElementTree.fromstring(format_limits_as_junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
+    assert float(suites[0].get("time") or "nan") == 2.0 ** len(surfaces["model"]) - 1.0, "of all models"
     text = render_summary_text(results)
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
     assert "`` run `a` ``" in text

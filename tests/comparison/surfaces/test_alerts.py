@@ -18,7 +18,7 @@ from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.alerts import list_alerts
 from comparison.surfaces.body_comparison import compare_bodies
-from comparison.surfaces.missing_values import MissingValues, OutcomeNote, advise_on_outcome
+from comparison.surfaces.missing_values import MissingValues, OutcomeNote, advise_on_outcome, list_missing_values
 from reference.problem import Outcome, load_scene
 from reference.problem.outcome import ADVICE
 
@@ -154,3 +154,13 @@ def test_a_pair_counts_the_phases_at_which_either_model_is_not_ok() -> None:
             status[{"alpha1": a, "alpha2": b}] = Outcome.TOLERANCE_NOT_MET.value
     total = compare_bodies(study, surfaces, scene)[0].total
     assert (total.first, total.second, total.not_ok) == ("small-resolved", "spatial", 4)
+
+
+def test_a_phase_pair_where_one_body_has_no_value_is_one_without_an_answer() -> None:
+    scene = load_scene("fig3-I")
+    study = Study((scene,), 2, 1e-3, errors_in({}))
+    surfaces = solved(study)
+    place = {"model": "spatial", "alpha1": surfaces["alpha1"][1], "alpha2": surfaces["alpha2"][0]}
+    surfaces["mu"].loc[{**place, "body": 2}] = np.nan
+    (gap,) = list_missing_values(study, surfaces)
+    assert (gap.model, gap.points, gap.unusable, gap.asked) == ("spatial", 1, 0, 4)

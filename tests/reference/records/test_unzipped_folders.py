@@ -158,11 +158,11 @@ def test_a_list_of_motions_overrides_names(tmp_path):
     place = make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", "other.AT2")
     (place / "whole.csv").write_text("time [s],ax [m/s^2],ay [m/s^2]\n0,1,2\n1,3,4\n")
     (place / FILE_NAME).write_text(
-        "name;x;y;z;factor\nfirst;GM002.AT2;GM001.AT2;;2,5\nsecond;;;other.AT2;\nthird;whole.csv;;;-1\n"
+        "name;x;y;z;factor\nfirst;GM002.AT2;GM001.AT2;;2,5\nsecond;;;other.AT2;-3\nthird;whole.csv;;;-1\n"
     )
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
     assert family.labels == {"excitation.record.motion": ("first", "second", "third")}
-    expected = [[5.0, 2.5, 0.0], [0.0, 0.0, 3.0], [-1.0 / GRAVITY, -2.0 / GRAVITY, 0.0]]
+    expected = [[5.0, 2.5, 0.0], [0.0, 0.0, -9.0], [-1.0 / GRAVITY, -2.0 / GRAVITY, 0.0]]
     for scene, peaks in zip(family.scenes, expected):
         np.testing.assert_allclose(scene.record[0, 1:], GRAVITY * np.array(peaks), rtol=1e-15)
     assert "times 2.5, the factor of motions.csv" in family.scenes[0].excitation.origin
