@@ -126,7 +126,7 @@ def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
     """Return the name of the pair in the study: the translational difference may be the total one."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
-    alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
+    alone = pair == "translational" and engines == [compared["total"].second.key]
     return "total" if alone else pair
 
 

@@ -203,3 +203,7 @@ def test_largest_value_mean_and_fractiles_are_those_of_the_model(key: str, scene
     assert spread["curve"] == pytest.approx(np.percentile(mu, np.linspace(1.0, 99.0, 50), method="hazen"))
     count = round(len(phases) ** 0.5)
     agrees(scene["models"][key], {"phases_per_axis": count, "points": count**2, "cost": 0.001 * count**2})
+    agrees(
+        scene["models"][key], {"cap_share": 0.011 * (1.0 + KEYS.index(key) + 0.3 * np.cos(phases[:, 0] - 0.7).max())}
+    )
+    assert (scene["models"][key]["outcomes"], scene["models"][key]["advice"]) == ({"ok": count**2}, {})
