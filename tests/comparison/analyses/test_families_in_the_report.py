@@ -49,6 +49,7 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
     assert steps["translational", 1].resolved == (True, False, True)
     assert results.unchecked == {scene.name: ["total", "translational"] for scene in family.scenes}
+    assert [limit.scene for limit in results.limits] == [scene.name for scene in family.scenes for _ in range(5)]
 
 
 def test_every_plot_of_a_family_has_the_lines_of_its_body_and_quantity(file: Path) -> None:
