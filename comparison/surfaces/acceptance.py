@@ -126,7 +126,7 @@ def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
     """Return the key of a pair; "total" for "translational" where a single engine model makes both the same."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
-    alone = pair == "translational" and pair not in compared and engines == [compared["total"].second.key]
+    alone = pair == "translational" and engines == [compared["total"].second.key]
     return "total" if alone else pair
 
 

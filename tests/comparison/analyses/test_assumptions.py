@@ -242,6 +242,8 @@ def test_a_range_ends_at_the_first_value_that_fails(
     lines = validity.find_validity_ranges(FIRST, cells)
     [found] = [(each.holds, each.fails) for each in lines if (each.body, each.key, each.share) == (1, key, share)]
     assert found == expected
+    both = replace(WIDE, change=((0.001, -0.03), (-0.004, 0.02)), uncertainty=((0.003, 0.001), (0.002, 0.005)))
+    assert [(both.largest(body), both.error_estimate(body)) for body in (1, 2)] == [(0.004, 0.003), (0.03, 0.005)]
 
 
 BLIND = DirectionTrial("fig3-I", "offset", Variation(offset=0.1), (), (), ONE_PLANE, False)

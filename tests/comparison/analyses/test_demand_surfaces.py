@@ -1,6 +1,8 @@
 """Demands of every phase pair in a study: the surfaces, their symmetry, statistics, gaps, and the report."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,8 +11,10 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces, demand_statistics
+from comparison.report.panels import make_distribution_panels
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
+from comparison.surfaces.distribution import CURVE_PROBABILITIES
 from reference.problem import load_scene
 from reference.problem.phases import phase_axis
 
@@ -46,6 +50,26 @@ def test_every_pair_has_the_demands_of_its_own_motion(study: Study, demands: xr.
         far = np.abs(values - known) > np.asarray(error).reshape(16, -1) + estimates.error.reshape(16, -1)
         assert not far.any(), name
     assert set(demands["status"].sel(scene=scene.name, model=REGULARIZED.key).values.ravel()) == {"ok"}
+
+
+def test_a_distribution_has_a_curve_of_every_model_with_its_color_and_dash() -> None:
+    models = [SimpleNamespace(key=key, title=key.upper()) for key in ("small", "exact", "spatial")]
+    results: Any = SimpleNamespace(models=models)
+    curves = [("exact", [1.0, 2.5]), ("small", [np.nan, 3.0]), ("spatial", [4.0])]
+    for unit, of_axis in (("mm", "drift, mm"), ("", "drift")):
+        [panel] = make_distribution_panels(results, "tower", "drift", unit, curves)
+        share = "share of the phases"
+        assert (panel["title"], panel["plot"]["x"], panel["plot"]["y"]) == (
+            "tower, drift", {"title": of_axis}, {"title": share}
+        )  # fmt: skip
+        assert panel["plot"]["label"] == f"tower, drift: {share} at which it stays below a value, by model"
+        assert panel["plot"]["series"] == [
+            {"name": name, "x": x, "y": CURVE_PROBABILITIES.tolist(), "color": color, "dash": dash}
+            for name, x, color, dash in (
+                ("EXACT", [1.0, 2.5], 1, ""), ("SMALL", [None, 3.0], 0, "7 3"), ("SPATIAL", [4.0], 2, "2 2")
+            )
+        ]  # fmt: skip
+    assert make_distribution_panels(results, "tower", "drift", "mm", []) == []
 
 
 def test_a_record_has_one_value_and_no_phases(study: Study, demands: xr.Dataset) -> None:

@@ -11,7 +11,12 @@ from runs import RUN
 from studies import solved
 
 from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
-from comparison.analyses.families.analysis import list_family_demands_over_phases
+from comparison.analyses.families.analysis import (
+    FamilyCurve,
+    FamilyDemand,
+    FamilyStep,
+    list_family_demands_over_phases,
+)
 from comparison.analyses.families.feature import family_panels
 from comparison.registry import make_report
 from comparison.result_types import UncertainNumber
@@ -43,6 +48,58 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     steps = {(step.model, step.body): step for step in results.families[0].steps}
     assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
     assert steps["translational", 1].resolved == (True, False, True)
+    assert results.unchecked == {scene.name: ["total", "translational"] for scene in family.scenes}
+    assert [limit.scene for limit in results.limits] == [scene.name for scene in family.scenes for _ in range(5)]
+
+
+def test_every_plot_of_a_family_has_the_lines_of_its_body_and_quantity(file: Path) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    results = make_report(study, solved(study), {}, [], RUN, families=[family]).results
+    keys, sides = ("exact", "spatial"), (1, 2)
+    curves = [
+        FamilyCurve(key, body, *[(100.0 * body + 10.0 * n + shift,) * 3 for shift in (0.0, -1.0, 2.0)], (0.1,) * 3)
+        for n, key in enumerate(keys)
+        for body in sides
+    ]
+    steps = [FamilyStep(key, body, (body + 0.1 * n,) * 3, (0.0,) * 3, (True,) * 3)
+             for n, key in enumerate((*keys, "total")) for body in sides]  # fmt: skip
+    demands = [
+        FamilyDemand("exact", quantity, body, *[(value + shift, np.nan, value) for shift in (0.0, -0.5, 0.5)], (1,) * 3)
+        for quantity, body, value in (
+            ("acceleration", 2, 7.0), ("acceleration", 1, 5.0), ("drift", 1, 0.03), ("drift", 2, 0.04)
+        )
+    ]  # fmt: skip
+    known = {"curves": curves, "steps": steps, "demands": demands, "demands_over_phases": True}
+    changed = results.families[0].model_copy(update=known)
+    [listed] = family_panels(results.model_copy(update={"families": [changed]}))
+    values, title = [0.1, 0.15, 0.2], results.titles
+    effect = {model.key: model.effect or model.title for model in results.models}
+    drawn = {
+        panel["title"]: [
+            tuple(line.get(name) for name in ("name", "x", "y", "color", "low", "high"))
+            for line in panel["plot"]["series"]
+        ]
+        for panel in listed["panels"]
+    }
+
+    expected: dict[str, list[Any]] = {}
+    for b in sides:
+        mu = [(100.0 * b + 10.0 * n, n) for n in range(2)]
+        expected[f"mu_{b}"] = [
+            (title[keys[n]], values, [middle] * 3, n, [middle - 1.0] * 3, [middle + 2.0] * 3) for middle, n in mu
+        ]
+        expected[f"what each effect adds to mu_{b}"] = [
+            (name, values, [100.0 * (b + 0.1 * n)] * 3, "ink" if name == "total" else n + 1, None, None)
+            for n, name in enumerate((effect["exact"], effect["spatial"], "total"))
+        ]
+    for name, factor, value in (("platform acceleration", 1.0, 5.0), ("drift of the lowest story", 1e3, 0.04)):
+        scaled = [[factor * (value + shift), None, factor * value] for shift in (0.0, -0.5, 0.5)]
+        expected[f"{name} over all phases"] = [(title["exact"], values, scaled[0], 1, *scaled[1:])]
+    assert drawn == expected
+    assert [panel["plot"]["y"]["title"] for panel in listed["panels"]][-2:] == [
+        "platform acceleration, m/s²", "drift of the lowest story, mm",
+    ]  # fmt: skip
 
 
 def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:

@@ -1,6 +1,8 @@
 """Statistics of a study of pairwise different numbers, made of its surfaces with NumPy: a swap of two fails."""
 
+import json
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -22,10 +24,17 @@ from distinct_models import (
 from known_analyses import analyses_are
 from places import limited_scene
 from report_texts import summary_of
-from runs import quick_figures
+from runs import RUN, quick_figures
+from studies import solved
 
+from comparison.analyses.worst_phases.analysis import LargestOverPhases
+from comparison.registry import make_report
+from comparison.report.page_data import collect_page_data, find_crossings
 from comparison.run import main
+from comparison.study.models import label_of
+from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL
+from reference.problem import load_scene
 
 FEWER = ("translational", "spatial")  # models on COARSE phases
 FRACTILES = 0.05, 0.16, 0.5, 0.84, 0.95
@@ -203,3 +212,71 @@ def test_largest_value_mean_and_fractiles_are_those_of_the_model(key: str, scene
     assert spread["curve"] == pytest.approx(np.percentile(mu, np.linspace(1.0, 99.0, 50), method="hazen"))
     count = round(len(phases) ** 0.5)
     agrees(scene["models"][key], {"phases_per_axis": count, "points": count**2, "cost": 0.001 * count**2})
+    agrees(
+        scene["models"][key], {"cap_share": 0.011 * (1.0 + KEYS.index(key) + 0.3 * np.cos(phases[:, 0] - 0.7).max())}
+    )
+    assert (scene["models"][key]["outcomes"], scene["models"][key]["advice"]) == ({"ok": count**2}, {})
+
+
+def test_the_page_draws_every_value_of_its_scene_model_and_body() -> None:
+    """Two scenes, the second under a record; the engine stands at fewer phases, and one of a user at all of them."""
+    hierarchy, ready = distinct_hierarchy(), {"phases": (1.5, 0.25), "kind": "smooth"}
+    mine = replace(hierarchy[5], key="mine", title="mine", side="user", like="regularised", settings={"key": "exact"})
+    scenes = load_scene("fig3-I"), load_scene("synthetic-pair")
+    study = Study(scenes, GRID, 1e-3, (*hierarchy, mine))
+    largest = [
+        LargestOverPhases("fig3-I", key, "amplification", body, value, **ready)  # type: ignore[arg-type]
+        for key, body, value in (("exact", 2, 7.5), ("exact", 1, 8.123456789), ("spatial", 2, 9.25))
+    ]
+    report = make_report(study, solved(study), {"worst_phases": largest}, [], RUN, families=())
+    first, record = json.loads(collect_page_data(report))["scenes"]
+    assert [(each["name"], each["recorded"], each["flat"], each["duration"]) for each in (first, record)] == [
+        (scene.name, number == 1, False, scene.duration) for number, scene in enumerate(scenes)
+    ]
+    assert (first["title"], first["bodies"], [*first["models"]]) == (scenes[0].title, 2, [*KEYS, "mine"])
+    assert first["labels"] == {model.key: label_of(model, scenes[0]) for model in study.hierarchy}
+    refused = {"through": "regularised", "certificate": "", "difference": False, "mu": None,
+               "reason": "no phase pairs were held out to check an interpolation"}  # fmt: skip
+    for key, drawn in first["models"].items():
+        values = "exact" if key == "mine" else key
+        phases = phases_of(key)
+        count, surface = round(len(phases) ** 0.5), key not in (*FEWER, "mine")
+        assert (drawn["phases"], drawn["computed"], drawn["surface"]) == (count, count**2, surface), key
+        mu = [mu_of(values, body, phases).reshape(count, count) for body in (1, 2)]
+        np.testing.assert_allclose(drawn["mu"], mu, rtol=5e-7)
+        assert (drawn["error"] is None) == surface
+        if not surface:
+            np.testing.assert_allclose(drawn["error"], STEPS[values][-1] * np.array(mu), rtol=0.05)
+        assert drawn["completed"] == [refused if key in FEWER else None] * 2
+    for key, drawn in record["models"].items():
+        assert (drawn["phases"], drawn["surface"], np.shape(drawn["mu"])) == (1, False, (2, 1, 1)), key
+    for key, marks in first["worst"].items():
+        near = [8.123457, "exact"], [7.5, "exact"] if key in ("small", "exact") else [9.25, "spatial"]
+        assert marks == [[1.5, 0.25, *each] for each in near], key
+    assert {str(marks) for marks in record["worst"].values()} == {"[None, None]"}
+    pairs = {pair["key"]: pair for pair in first["pairs"]}
+    assert {key: (pair["first"], pair["second"], pair["user"]) for key, pair in pairs.items()} == {
+        "mine": ("regularised", "mine", True), "total": (CHAIN[0], "spatial", False),
+        "translational": (CHAIN[0], "translational", False), "like-for-like": ("regularised", "translational", False),
+    }  # fmt: skip
+    for pair in pairs.values():
+        one, other = pair["first"], "exact" if pair["second"] == "mine" else pair["second"]
+        shown = phases_of(pair["second"])
+        count = round(len(shown) ** 0.5)
+        both = [(u_d(one, other, body, shown) / level(one, body, shown)).reshape(count, count) for body in (1, 2)]
+        np.testing.assert_allclose(pair["uncertainty"], both, rtol=0.05)
+        assert pair["contours"] == [[], []]
+    alone = Study(scenes[:1], GRID, 1e-3, hierarchy[:6])
+    surfaces = solved(alone)
+    surfaces["error"] *= 900.0  # 3 % of mu, so that the difference crosses it
+    [scene] = json.loads(collect_page_data(make_report(alone, surfaces, {}, [], RUN, families=())))["scenes"]
+    [pair] = scene["pairs"]
+    axis, every = 2.0 * np.pi * np.arange(GRID) / GRID, grid_phases(GRID)
+    one, other = CHAIN[0], "regularised"
+    lines = [
+        find_crossings(*((each / level(one, body, every)).reshape(GRID, GRID) for each in (
+            level(other, body, every) - level(one, body, every), 900.0 * u_d(one, other, body, every)
+        )), axis) for body in (1, 2)
+    ]  # fmt: skip
+    assert (pair["second"], pair["uncertainty"], pair["contours"]) == (other, None, lines)
+    assert [len(each) > 0 for each in lines] == [True, False], "the bodies are told apart"

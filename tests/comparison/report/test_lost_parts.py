@@ -1,6 +1,7 @@
 """Whatever a library raises in one part of a report costs that part alone, and is one line."""
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
@@ -139,6 +140,7 @@ def test_a_report_of_which_every_part_raises_is_written(last_report: Last, capsy
     assert {file.name for file in folder.iterdir()} >= set(WHOLE)
     shown = page_of(folder, "index.html")
     assert all(f"{part} could not be shown" in shown for part in ("verdict", "alerts", "summary", "section claims"))
+    assert not re.search(r"\bNone\b", shown), "nothing stands in their place"
 
 
 @pytest.mark.long

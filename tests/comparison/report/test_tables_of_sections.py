@@ -3,6 +3,7 @@
 import io
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,7 +16,9 @@ from comparison.report import page
 from comparison.report.page import _group_alerts, _make_template_environment, word_measurements
 from comparison.report.results import VALIDATED_BRIEFLY
 from comparison.report.scene_result import ModelOutcome
+from comparison.report.section import Section
 from comparison.report.summary_text import render_summary_text
+from comparison.report.surface_sections import BUDGET, DIFFERENCES, OUTCOMES
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.differences import Difference, GridMean
 from comparison.surfaces.headline import Effect
@@ -176,6 +179,47 @@ def test_the_answers_name_exudyn_only_where_an_engine_takes_part(monkeypatch: py
         models = [SimpleNamespace(side=side) for side in sides]
         monkeypatch.setattr(page, "list_models_in_use", lambda study, models=models: models)
         assert page.name_second_model(SimpleNamespace()) == name  # type: ignore[arg-type]
+
+
+def test_a_section_is_there_if_it_was_asked_for_and_any_of_its_fields_was_found() -> None:
+    section = Section("title", name="mine", shows=("a", "b"))
+    for a, b, absent, shown in (
+        (None, 1, {}, True),
+        (1, None, {}, True),
+        (None, None, {}, False),
+        (1, 1, {"mine": ""}, False),
+    ):
+        results: Any = SimpleNamespace(a=a, b=b, absent=absent)
+        assert section.is_present(results) == shown
+        assert replace(section, shows=()).is_present(results) == (not absent)
+
+
+def test_numbers_of_sections_are_of_every_scene_and_row() -> None:
+    def outcome(cost: float, travel_share: float) -> Any:
+        return SimpleNamespace(cost=cost, travel_share=travel_share)
+
+    other = replace(ROW, mean=0.3, maximum=0.5, grids=(GridMean(6, 0.0, 0.0), GridMean(12, 0.0, 0.0)))
+    scenes = [
+        SimpleNamespace(differences=[ROW, replace(ROW, grids=(GridMean(2, 0.0, 0.0),))], effects=[other],
+                        models={"a": outcome(1.0, NAN), "b": outcome(7.0, NAN)}),
+        SimpleNamespace(differences=[other], effects=[ROW, replace(ROW, grids=(GridMean(16, 0.0, 0.0),))],
+                        models={"a": outcome(3.0, NAN), "b": outcome(5.0, 0.2)}),
+    ]  # fmt: skip
+    for listed, grids, cost, limited in (
+        (scenes, [2, 4, 6, 8, 12, 16], 7.0, True),
+        (scenes[:1], [2, 4, 6, 8, 12], 7.0, False),
+    ):
+        report: Any = SimpleNamespace(
+            results=SimpleNamespace(scenes=listed, scenes_with=lambda name, listed=listed: listed)
+        )
+        assert BUDGET.section.context(report) == {"grids": grids}
+        assert OUTCOMES.section.context(report) == {"limited": limited, "most_cost": cost}
+        found = DIFFERENCES.section.context(report)
+        rows = [row for scene in listed for row in scene.differences]
+        sizes = [0.021, 0.041, *([0.3, 0.5] if len(listed) == 2 else [])]
+        assert (found["rows"], found["dots"]) == (rows, make_log_scale(sizes))
+    nothing: Any = SimpleNamespace(results=SimpleNamespace(scenes=[SimpleNamespace(models={"a": outcome(0.0, NAN)})]))
+    assert OUTCOMES.section.context(nothing)["most_cost"] == 1.0, "no division by zero"
 
 
 def test_a_record_has_value_error_step_and_its_error_below_their_heads() -> None:

@@ -40,6 +40,11 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
 
     row = alike()
     assert [row.ratio, row.beyond_error, row.median] == pytest.approx([2.0, 1.0, 0.1])
+    place = {"alpha1": 0.0, "alpha2": 0.0}
+    for model in (first, second):  # the same without any error: agrees with itself
+        surfaces["mu"].loc[{**model, **place}], surfaces["error"].loc[{**model, **place}] = 1.0, 0.0
+    row = alike()
+    assert (row.ratio, row.beyond_error) == (pytest.approx(2.0), pytest.approx(1.0 - 1.0 / row.asked))
     surfaces["error"].loc[{**second, "alpha1": 0.0}] = np.nan
     assert (alike().beyond_error, np.isnan(alike().ratio)) == (1.0, True), "a share of those that state an error"
 

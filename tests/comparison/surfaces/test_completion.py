@@ -13,6 +13,7 @@ from studies import solved
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import TRANSLATIONAL
 from comparison.study.study import Study
+from comparison.surfaces import completion
 from comparison.surfaces.completion import (
     CONFIDENCE,
     CompletedSurfaces,
@@ -184,7 +185,9 @@ def test_held_out_phases_are_no_mirror_images(scene: str, images: int) -> None:
     assert (np.column_stack(np.divmod(full, FINE)) % 3).any(axis=1).all()
 
 
-def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset]) -> None:
+def test_the_analysis_computes_what_is_held_out(
+    blank: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
+) -> None:
     study, surfaces = blank
     found = collected(CompletedSurfaces(), study)
     (scene,) = study.scenes
@@ -196,6 +199,12 @@ def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset])
     assert CompletedSurfaces().collect(study, surfaces, TaskResults()) is None, "where the time ended before them"
     reasons = {surface.reason for surface in complete_surfaces(study, surfaces, scene, None)}
     assert reasons == {"no phase pairs were held out to check an interpolation"}
+    monkeypatch.setattr(completion, "compute_held_out", lambda task: 1.0 / 0.0)
+    lost = collected(CompletedSurfaces(), study)
+    for part in (part for held_out in lost.values() for part in (held_out.mu, held_out.error)):
+        np.testing.assert_array_equal(part, np.full((59, 2), np.nan), err_msg="tasks that fail")
+    reasons = {surface.reason for surface in complete_surfaces(study, surfaces, scene, lost)}
+    assert reasons == {"0 held-out phase pairs with a value are too few"}
 
 
 def bump(random: np.random.Generator, alpha: tuple[Array, Array]) -> Array:

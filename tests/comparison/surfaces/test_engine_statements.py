@@ -8,6 +8,7 @@ import pytest
 
 from comparison.surfaces.acceptance import Breach, Limit, _list_breaches
 from comparison.surfaces.differences import Difference, GridMean
+from comparison.surfaces.missing_values import MissingValues, OutcomeNote
 from comparison.surfaces.statements import (
     word_breach,
     word_engine,
@@ -93,6 +94,25 @@ def test_a_broken_limit_says_where_and_by_how_much(limit: Limit, breach: Breach,
     assert word_breach(limit, breach) == said
     broken = replace(limit, breaches=(breach,))
     assert (broken.breach_texts, broken.broken) == ([said], [f"tower: {said}"])
+
+
+@pytest.mark.parametrize(
+    ("points", "unusable", "asked", "used", "outcomes", "said"),
+    [
+        (4, 0, 4, False, (("rim reached", 4),), "no value at any of 4 phase pairs: rim reached: help 0. Comparisons leave this model out"),
+        (2, 1, 4, True, (("rim reached", 2),), "no value at 2 of 4 phase pairs, only values with errors above half of them at 1 of 4 phase pairs: 2 × rim reached: help 0"),
+        (4, 0, 4, True, (("step limit", 3), ("rim reached", 1)), "no value at any of 4 phase pairs: 3 × step limit: help 0; 1 × rim reached: help 1"),
+        (0, 4, 4, True, (), "only values with errors above half of them at any of 4 phase pairs"),
+        (1, 0, 1, False, (("rim reached", 1),), "no value: rim reached: help 0. Comparisons leave this model out"),
+        (0, 1, 1, True, (), "only values with errors above half of them"),
+    ],
+)  # fmt: skip
+def test_a_gap_says_where_why_and_what_helps(
+    points: int, unusable: int, asked: int, used: bool, outcomes: tuple[tuple[str, int], ...], said: str
+) -> None:
+    notes = tuple(OutcomeNote(*each, f"help {number}") for number, each in enumerate(outcomes))
+    lacking = MissingValues("tower", "spatial", "spatial engine", points, unusable, asked, used, notes)
+    assert lacking.sentence == f"tower: spatial engine: {said}."
 
 
 REST = "checked, as no limit is stated: total of b; total, like-for-like of a"

@@ -45,7 +45,10 @@ def _solved(gap: float = 0.01) -> tuple[Study, xr.Dataset]:
 
 def test_what_no_worker_draws_is_drawn_at_home() -> None:
     study, surfaces = _solved()
-    assert collected(Pictures(), study, surfaces, lambda jobs: Broken()) == collected(Pictures(), study, surfaces)
+    drawn = collected(Pictures(), study, surfaces)
+    assert [*drawn] == [f"{scene}-{part}.png" for scene in ("fig3-I", "fig4-viscous")
+                        for part in ("paper", "body1-total", "body2-total")]  # fmt: skip
+    assert collected(Pictures(), study, surfaces, lambda jobs: Broken()) == drawn
 
 
 def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:

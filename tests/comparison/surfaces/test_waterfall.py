@@ -114,6 +114,22 @@ STEPS = [WaterfallBar(*bar, 1e-4, True) for bar in (("resolved", 0.02), ("regula
 TOTAL = WaterfallBar("spatial", -0.05, 1e-4, True)
 
 
+def test_the_scale_holds_every_bar_with_both_ends_of_its_error() -> None:
+    """The steps run over 0.02, -0.08 and -0.05; the least and the largest end may be of any bar, and of any body."""
+    for place, error, low, high, ticks in (
+        (0, 0.03, -0.08, 0.05, (-0.05, 0.0, 0.05)), (1, 0.04, -0.12, 0.02, (-0.1, -0.05, 0.0)),
+        (2, 0.09, -0.14, 0.04, (-0.1, -0.05, 0.0)),
+    ):  # fmt: skip
+        steps = [replace(bar, error=error if number == place else 0.0) for number, bar in enumerate(STEPS)]
+        other = [WaterfallBar("spatial", 0.01, math.nan, True)], WaterfallBar("spatial", 0.01, 0.0, True)
+        for waterfalls in ([(steps, TOTAL), other], [other, (steps, TOTAL)]):
+            scale = make_common_scale(waterfalls)
+            room = 0.03 * (high - low)
+            assert (scale.low, scale.high) == pytest.approx((low - room, high + room))
+            assert scale.ticks == pytest.approx(ticks)
+    assert make_common_scale([([], replace(TOTAL, size=-0.05, error=0.2))]).high == pytest.approx(0.15 + 0.03 * 0.4)
+
+
 def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
     steps = [STEPS[0], WaterfallBar("regularised", math.nan, math.nan, False), STEPS[2]]
     scale = make_common_scale([(steps, TOTAL)])
