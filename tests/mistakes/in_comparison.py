@@ -931,7 +931,5 @@ MISTAKES = (
             "A section with several fields vanishes from the report where only one of its fields is empty.", ("tests/comparison/report/test_features.py::test_a_section_is_there_if_any_of_its_fields_is",)),
     Mistake("comparison/analyses/ensemble/limits.py", "found, error = value / per, error / per", "found, error = value / per, error",
             "A limit on a demand relative to a weight is judged with an error bar that is not divided by it.", ("tests/comparison/analyses/test_ensemble_limits.py::test_base_shear_is_limited_as_a_share_of_the_weight",)),
-    Mistake("comparison/report/junit.py", "sum(model.cost for model in scene.models.values())", "max(model.cost for model in scene.models.values())",
-            "The seconds of a suite in junit.xml are those of the most expensive model instead of all.", ("tests/comparison/report/test_texts_of_scenes.py::test_junit_and_summary_are_well_formed_for_any_name",)),
 )
 # fmt: on
