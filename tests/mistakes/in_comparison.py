@@ -931,5 +931,9 @@ MISTAKES = (
             "A section with several fields vanishes from the report where only one of its fields is empty.", ("tests/comparison/report/test_features.py::test_a_section_is_there_if_any_of_its_fields_is",)),
     Mistake("comparison/analyses/ensemble/limits.py", "found, error = value / per, error / per", "found, error = value / per, error",
             "A limit on a demand relative to a weight is judged with an error bar that is not divided by it.", ("tests/comparison/analyses/test_ensemble_limits.py::test_base_shear_is_limited_as_a_share_of_the_weight",)),
+    Mistake(REPORT + "templates/film.js", "cy - size * at(column, 0, 1) / most", "cy + size * at(column, 0, 1) / most",
+            "From above the platform moves down where y grows.", (TESTS + "report/test_page_in_a_browser.py::test_the_film_shows_the_platform_from_above_with_y_upwards",)),
+    Mistake(REPORT + "templates/tables.js", "/^[=@]/.test(text)", "/^[=]/.test(text)",
+            "A cell that begins with @ is copied as a formula.", (TESTS + "report/test_page_in_a_browser.py::test_a_table_is_copied_to_the_clipboard_as_csv",)),
 )
 # fmt: on

@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browsers import CHROMIUM, DESKTOP, LAPTOP, OVERLAPS, PHONE, Scheme, Visit, opened, unfolded, until
@@ -124,6 +125,25 @@ def test_the_film_plays_and_pauses(visit: Visit) -> None:
     assert page.locator("[data-part=start]").inner_text() == "play"
 
 
+def test_the_film_shows_the_platform_from_above_with_y_upwards(visit: Visit) -> None:
+    """The known motions are circles that begin on the x axis and turn towards y."""
+    quarters = visit.page.evaluate("""() => {
+        const drawn = [], kept = dot;
+        dot = (pen, x, y, radius, ...rest) => {
+            if (radius === 4) drawn.push([x, y]);
+            kept(pen, x, y, radius, ...rest);
+        };
+        for (const quarter of [0, 1, 2, 3]) { film.time = quarter * Math.PI / 2; film.draw(); }
+        dot = kept;
+        return drawn;
+    }""")
+    places = np.array(quarters).reshape(4, -1, 2)
+    middle, radius = places.mean(axis=0), (places[0] - places[2])[:, 0] / 2.0
+    assert (radius > 1.0).all()
+    for place, (x, y) in zip(places, ((1, 0), (0, -1), (-1, 0), (0, 1))):  # down the canvas is positive
+        np.testing.assert_allclose(place - middle, np.stack([x * radius, y * radius], axis=1), atol=0.1)
+
+
 def test_keys_alone_reach_motions_tips_and_tables(visit: Visit) -> None:
     page = visit.page
     page.locator("canvas.surface").first.focus()
@@ -158,6 +178,12 @@ def test_a_table_is_copied_to_the_clipboard_as_csv(visit: Visit) -> None:
     assert lines[0].split(",")[:3] == ["scene", "body", "difference"]
     assert len(lines) == 1 + page.locator("#differences tbody").first.locator("tr").count()
     assert page.locator("#differences [role=status]").first.inner_text() == f"{len(lines) - 1} rows copied"
+    texts = page.evaluate("""() => {
+        const table = document.createElement("table");
+        ["=1+1", "@x", "a = b", 'c, "d"'].forEach(text => { table.insertRow().insertCell().textContent = text; });
+        return csvOf(table);
+    }""")
+    assert texts == '\'=1+1\n\'@x\na = b\n"c, ""d"""\n', "no formula"
 
 
 def test_every_plot_is_saved_as_svg_that_needs_nothing_else(browser: Browser, finished: Path) -> None:
