@@ -99,5 +99,8 @@ def test_both_sides_agree_like_for_like_with_softened_bars() -> None:
     engine = multibody.amplification(scene, PHASES, softened=True)
     assert set(equations.status) == set(engine.status) == {"ok"}
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+    effect = multibody.amplification(scene, PHASES, softened=True, regularization_effect=True).regularization_effect
+    finer = multibody.amplification(scene, PHASES, softened=True, regularization=1e-4)
+    np.testing.assert_array_equal(effect, finer.mu - engine.mu)
     unloaded = reference.amplification(scene, PHASES, regularization=1e-3)
     assert (np.abs(unloaded.mu - equations.mu) > 3.0 * equations.error).any(axis=1).all(), "softening shows"
