@@ -435,6 +435,8 @@ def test_what_shortening_changes_is_said() -> None:
     assert line.endswith("change mu_1 by up to 6 ± 0.2 %, mu_2 by up to 2 ± 0.4 %"), "the largest of all phase pairs"
     nothing = [loaded[0], cell(UNDER_LOAD[1], float("nan"))]
     assert assumption_lines(found_of(nothing), FIRST)[-1].startswith("no value says")
+    for alone in (Variation(offset=0.1), Variation()):
+        assert assumption_lines(found_of([cell(alone, 0.02)]), FIRST) == [], "a change is one from the stated scene"
 
 
 def test_the_command_prints_the_change_of_every_body(monkeypatch, capsys, tmp_path):

@@ -11,6 +11,7 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces, demand_statistics
+from comparison.analyses.demands.feature import demand_lines
 from comparison.report.panels import make_distribution_panels
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
@@ -70,6 +71,18 @@ def test_a_distribution_has_a_curve_of_every_model_with_its_color_and_dash() -> 
             )
         ]  # fmt: skip
     assert make_distribution_panels(results, "tower", "drift", "mm", []) == []
+
+
+def test_a_row_of_a_demand_names_its_scene_quantity_body_and_model() -> None:
+    scenes = [
+        SimpleNamespace(name=name, demand_statistics=[SimpleNamespace(quantity=quantity, body=body, model=model)])
+        for name, quantity, body, model in (("tower", "drift", 3, "small"), ("hall", "friction_energy", 0, "exact"))
+    ]
+    results: Any = SimpleNamespace(scenes=scenes, titles={"small": "SMALL", "exact": "EXACT"})
+    assert [(row["scene"], row["name"], row["title"]) for row in demand_lines(results)] == [
+        ("tower", "drift against the body below of body 3, m", "SMALL"),
+        ("hall", "energy dissipated by friction, J", "EXACT"),
+    ]
 
 
 def test_a_record_has_one_value_and_no_phases(study: Study, demands: xr.Dataset) -> None:

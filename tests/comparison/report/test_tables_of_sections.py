@@ -18,7 +18,7 @@ from comparison.report.results import VALIDATED_BRIEFLY
 from comparison.report.scene_result import ModelOutcome
 from comparison.report.section import Section
 from comparison.report.summary_text import render_summary_text
-from comparison.report.surface_sections import BUDGET, DIFFERENCES, OUTCOMES
+from comparison.report.surface_sections import BUDGET, DIFFERENCES, OUTCOMES, list_models_in_use
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.differences import Difference, GridMean
 from comparison.surfaces.headline import Effect
@@ -220,6 +220,9 @@ def test_numbers_of_sections_are_of_every_scene_and_row() -> None:
         assert (found["rows"], found["dots"]) == (rows, make_log_scale(sizes))
     nothing: Any = SimpleNamespace(results=SimpleNamespace(scenes=[SimpleNamespace(models={"a": outcome(0.0, NAN)})]))
     assert OUTCOMES.section.context(nothing)["most_cost"] == 1.0, "no division by zero"
+    hierarchy = [SimpleNamespace(applies=names.__contains__) for names in ("a", "b", "c", "bc")]
+    study: Any = SimpleNamespace(hierarchy=hierarchy, scenes=["a", "b"])
+    assert list_models_in_use(study) == [hierarchy[0], hierarchy[1], hierarchy[3]]
 
 
 def test_a_record_has_value_error_step_and_its_error_below_their_heads() -> None:

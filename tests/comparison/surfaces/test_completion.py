@@ -1,5 +1,6 @@
 """A coarse model is completed through a finer one only where that is right: known ridges, known roughness."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from known_analyses import collected
 from numpy.typing import NDArray
 from studies import solved
 
+from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import TRANSLATIONAL
 from comparison.study.study import Study
@@ -199,6 +201,9 @@ def test_the_analysis_computes_what_is_held_out(
     assert CompletedSurfaces().collect(study, surfaces, TaskResults()) is None, "where the time ended before them"
     reasons = {surface.reason for surface in complete_surfaces(study, surfaces, scene, None)}
     assert reasons == {"no phase pairs were held out to check an interpolation"}
+    part = TaskResults()
+    Runner(part, 2, ThreadPoolExecutor).run(CompletedSurfaces().tasks(study)[:-1])
+    assert set(CompletedSurfaces().collect(study, surfaces, part) or ()) == {(scene.name, "translational")}
     monkeypatch.setattr(completion, "compute_held_out", lambda task: 1.0 / 0.0)
     lost = collected(CompletedSurfaces(), study)
     for part in (part for held_out in lost.values() for part in (held_out.mu, held_out.error)):
