@@ -16,7 +16,7 @@ from reference.support.command import OutputError
 
 # error numbers of a disk that takes nothing more: all later files would fail, so the command ends with code 3
 FULL_DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
-MAX_LINE_LETTERS = 300  # largest number of letters in the line of a lost part
+MAX_LINE_LETTERS = 300  # largest number of characters in the line that says why a part of the report is lost
 
 T = TypeVar("T")
 

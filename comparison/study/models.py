@@ -432,7 +432,7 @@ BESIDE_THE_CHAIN = (
 
 
 def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
-    """Return an engine model whose bars are softened by the weight above, as the model after it."""
+    """Return the model after `model`, whose bars are softened by the weight above, in scenes that `applies` accepts."""
     return _model_after(
         model,
         {"links": "bars as soft as the weight that they carry makes them"},

@@ -101,7 +101,7 @@ def word_causes(numbers: Headline) -> str:
 
 
 def word_effect(effect: Effect) -> str:
-    """Return one cause with its mean, its share of the total, and its mean in another order where that differs."""
+    """Return a cause with its mean, its share of the total, and its mean if causes are added in another order."""
     other = f", {signed(effect.elsewhere)} {effect.order}" if effect.depends_on_order else ""
     return f"{effect.effect} {word_difference(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
 

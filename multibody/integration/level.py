@@ -78,8 +78,8 @@ MIN_PEAK = 0.2
 # stop.
 MAX_TOLERANCE_FOR_ROUNDING = 1e-3
 
-# Loading, in units of g, below which rounding is compared with the loading and not with MIN_PEAK, and the largest
-# penetration under such a loading, in units of rho: the contact force hardly changes.
+# A loading below WEAK_LOADING, in units of g, hardly changes the contact force. Rounding is then compared with the
+# loading, not with MIN_PEAK, and a contact may be so soft that the weight presses it in by MAX_WEAK_PENETRATION rho.
 WEAK_LOADING = 1e-4
 MAX_WEAK_PENETRATION = 4e-4
 
@@ -295,9 +295,9 @@ def _bound_penetration(
 ) -> tuple[float, float]:
     """Return the penetrations of the softest and the stiffest contact that respond within the time `slowest`, s."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
-    # not follow a force before the end. A stiffer contact than the stiffest would have a rounding error of its force,
-    # a position over the penetration, above a share of the tolerance. Under a weak loading that error is compared with
-    # the loading, and the contact may be softer.
+    # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
+    # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that
+    # error is compared with the loading, and the contact may be softer.
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     most = min(most, COMPLIANCE_RATIO * slowest**2)
     rounding = MAX_ROUNDING_SHARE * peak * min(tolerance, MAX_TOLERANCE_FOR_ROUNDING)

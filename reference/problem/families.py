@@ -135,7 +135,7 @@ class Family:
         if not all(hasattr(result, "to_xarray") for result in results):
             raise TypeError(f"results = {quote(results)}: must be what amplification or peak_demands return")
         data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
-        data.attrs = {}  # the results differ in their cost, so no common one is left
+        data.attrs = {}  # attributes differ between the scenes, as the cost does, so the joined data have none
         shorts = [key.rpartition(".")[2] for key in self.columns]
         names = [
             key if re.search(r"\.\d", key) or shorts.count(short) > 1 else short

@@ -82,7 +82,7 @@ def file_name(file: Any) -> Any:
 
 def join_directions(readings: Mapping[str, RecordSamples]) -> Array:
     """
-    Return the samples (K, 4) of files by axis, or of one file under "". Raises RecordError.
+    Return time and acceleration along x, y, z, (K, 4), of one file per axis, or of one file of all axes under "".
 
     A direction that the only file does not name is x. A file that ends early is at rest from there on.
     """

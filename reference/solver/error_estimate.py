@@ -48,9 +48,9 @@ YIELDING_TOLERANCE_FACTOR = 0.01
 EVENT_MARGIN = 0.01
 
 FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: steps, and steps per knot of the loading
-# With heating, runs repeat until peaks and mean k_T change by less than the first share of the tolerance; or by less
-# than the tolerance but more than the second share of the change before: then the change is the error of the steps. In
-# the first runs a change may exceed the one before: runs agree up to an instant that comes later with each run.
+# With heating, runs repeat until peaks and mean k_T change by less than MAX_SETTLED_CHANGE of the tolerance. They also
+# end when a change below the tolerance is more than MIN_CONTRACTION_RATIO of the one before: it is then the error of
+# the steps. Early changes may grow, since runs agree up to an instant that comes later with each run.
 MAX_SETTLED_CHANGE, MIN_CONTRACTION_RATIO = 0.02, 0.5
 MAX_HEATED_RUNS = 30  # largest number of runs in the iteration for the friction factor k_T
 SMALLEST_VALUE = 1e-300  # m/s^2: changes are divided by at least this peak

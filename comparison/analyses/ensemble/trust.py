@@ -55,7 +55,7 @@ class ModelRatio:
 
     @property
     def worst(self) -> tuple[float, str]:
-        """Return the largest difference from 1 of a single motion, and the motion."""
+        """Return the ratio minus 1 of the motion whose ratio is farthest from 1, and that motion."""
         ends = (self.smallest - 1.0, self.smallest_motion), (self.largest - 1.0, self.largest_motion)
         return max(ends, key=lambda end: abs(end[0]))
 

@@ -124,7 +124,7 @@ def _make_family_demand(
 
 
 def _bars_by_effect(waterfall: Waterfall) -> dict[str, WaterfallBar]:
-    """Return the bars of a waterfall by the model after the step, and the total."""
+    """Return the bars of a waterfall by the model that each step leads to, and the bar of the total under TOTAL."""
     return {**{bar.model: bar for bar in waterfall.bars}, TOTAL: waterfall.total}
 
 

@@ -10,7 +10,7 @@ _LIGHT = (
     "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
     "rounding of those which balance at its start"
 )
-# causes, if known, by quantity and extreme, then by key of the model
+# Known causes of answers that are missing or contradicted, by quantity and extreme, then by key of the model
 CAUSES: dict[tuple[str, str], dict[str, str]] = {
     ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
     ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),

@@ -7,7 +7,8 @@ from typing import Any
 from comparison.study.models import EXACT, TRANSLATIONAL, Model
 from reference.problem.readings import DEFAULT_V_REG
 
-EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification  # import paths of the functions
+# Import paths of the functions that compute mu by the equations and by the engine
+EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
 
 
 @dataclass(frozen=True)

@@ -115,7 +115,7 @@ def make_cost_series(
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Return the exponent over the larger half of the values before the first NaN, and its standard error; or NaN."""
+    """Return p of seconds ~ values^p, fit to the larger half of what was measured, and its standard error, or NaN."""
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # Values after one without a measurement are not fitted.
     if known < 3:
         return float("nan"), float("nan")

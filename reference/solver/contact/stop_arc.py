@@ -21,8 +21,9 @@ FIRST_STRIDE = 1e-3
 GOLDEN_SECTIONS = 20  # golden sections around the best sample, which leave 1e-5 of the distance of two samples
 # A peak between two samples exceeds the largest squared sample by at most this share
 MAX_RISE_BETWEEN_SAMPLES = 0.1
-MAX_ROUNDING_TURN = 1e-9  # share of the drive: rounding may make so large a sideways acceleration
-# share of friction: rounding of the instant may make so large a deceleration of a slide that begins
+# Sideways acceleration, as a share of the driving one, that counts as rounding
+MAX_ROUNDING_TURN = 1e-9
+# Deceleration, as a share of friction, that rounding of the instant may give a slide as it begins
 MAX_ROUNDING_BRAKING = 1e-6
 
 

@@ -238,7 +238,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 def limit_step_to_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float
 ) -> tuple[float, int]:
-    """Return the length of the step up to its first event, 0 for one at its start, and the next contact."""
+    """Return the length of the step up to its first event, 0 for one at its start, and the contact's state then."""
     if contact == REST:
         return shorten_step_to_onset(system, work, h)
     if contact == SLIDING:

@@ -71,7 +71,7 @@ BARELY_SLIPPING_EXCESS = 1e-4
 NEGLIGIBLE_STEP = 1e-6
 NEGLIGIBLE_RESPONSE = 1e-3
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP
-MAX_LENGTH_RATIO = 3.0  # ratio of the last step length to one that failed: above it the last polynomial is no guess
+MAX_LENGTH_RATIO = 3.0  # a step so much shorter than the last one does not begin from that one's polynomial
 
 
 @compiled
