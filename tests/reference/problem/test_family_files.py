@@ -100,10 +100,10 @@ def test_all_keys_that_run_wrongly_are_in_one_line_with_all_other_errors_and_not
     )
     top, loading = "duration = -1.0", "scale = {range = [3.0, 1.0], steps = 2}"
     text = file.read_text(encoding="utf-8").replace("[excitation]", f"[excitation]\n{loading}")
-    file.write_text("combine = 7\nnam = 1\n" + re.sub("duration = .*", top, text), encoding="utf-8")
+    file.write_text("combine = 7\nnamed = 1\n" + re.sub("duration = .*", top, text), encoding="utf-8")
     said = str(refusal(load_family, file)).removeprefix(f"{file}: ").split("; also ")
     assert [line.partition(": ")[0] for line in said] == [
-        "combine = 7", "nam = 1", "duration = -1.0", "isolator.friction.values = []", "isolator.bounds = [2, 1]",
+        "combine = 7", "named = 1", "duration = -1.0", "isolator.friction.values = []", "isolator.bounds = [2, 1]",
         "isolator.bound = {'values'",
         "isolator.bound.values = 3", "isolator.travel = -1.0", "excitation.scale.range = [3.0, 1.0]",
     ]  # fmt: skip
