@@ -50,7 +50,8 @@ def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
     batches = [task.argument for task in tasks]
     surfaces = label_surfaces(level.study, batches, collect_batch_results(tasks, runner.results))
     study = leave_out_empty_models(level.study, surfaces)
-    runner.run([task for each in analyses for task in each.tasks(study.restrict_to(each.key), surfaces)])
+    later = [analysis for analysis in analyses if analysis.needs_surfaces]
+    runner.run([task for each in later for task in each.tasks(study.restrict_to(each.key), surfaces)])
     return CompleteLevel(level, study, tasks, surfaces)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from comparison.runner.progress import Deadline, Display, TimeUpError, show_prog
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.study.batches import execute_batch
 from comparison.study.levels import make_levels
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study, levels_of_phases, nested_grids
@@ -157,6 +159,24 @@ def test_an_interrupt_before_the_study_is_one_line(
     monkeypatch.setattr(command_module, "parse_options", stop)
     run = command(*WORDS)
     assert (run.code, run.out, run.err) == (130, "", "interrupted before anything was computed\n")
+
+
+def test_only_analyses_that_need_the_surfaces_have_tasks_after_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[str, bool]] = []
+
+    def analysis(key: str, needs_surfaces: bool) -> Any:
+        def tasks(study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+            asked.append((key, surfaces is not None))
+            return []
+
+        return SimpleNamespace(key=key, needs_surfaces=needs_surfaces, tasks=tasks)
+
+    study = Study(SCENES[:1], 2, 1e-3, fake_hierarchy())
+    runner: Any = SimpleNamespace(run=lambda tasks, *rest: None, results=None)
+    monkeypatch.setattr(reports, "select_analyses", lambda _: [analysis("first", False), analysis("later", True)])
+    monkeypatch.setattr(reports, "collect_batch_results", lambda tasks, _: [execute_batch(t.argument) for t in tasks])
+    reports.compute_level(make_levels(study, {})[-1], runner)
+    assert asked == [("first", False), ("later", True)]
 
 
 def test_finished_analyses_are_in_the_report_of_a_stopped_run(
