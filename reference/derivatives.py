@@ -152,7 +152,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     if isinstance(keys, str):
         raise TypeError(f"keys = {quote(keys)}: must be a list of keys, [{keys!r}]")
     tables, values = scene.model_dump(exclude_none=True), {}
-    if isinstance(keys, str) or not (isinstance(keys, Iterable) and all(isinstance(key, str) for key in keys)):
+    if not (isinstance(keys, Iterable) and all(isinstance(key, str) for key in keys)):
         raise TypeError(f"keys = {quote(keys)}: must be a list of keys, as ['isolator.friction', 'bodies.1.mass']")
     for key in keys:
         value = value_at(tables, key)
