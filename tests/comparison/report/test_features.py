@@ -8,14 +8,10 @@ import sys
 from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from places import HELPERS, ROOT
 from report_texts import page_of, summary_of
-
-from comparison.report.section import Section
 
 REGISTRY = "comparison/registry.py"
 FOLDER = {
@@ -121,18 +117,6 @@ def test_every_folder_is_a_feature_or_a_command_with_a_report_of_its_own() -> No
     rooms = [folder for room in ("analyses", "evidence") for folder in (ROOT / "comparison" / room).glob("*/")]
     rooms = [room for room in rooms if (room / "feature.py").exists() or not (room / "page.py").exists()]
     assert sorted(folders()) == sorted(f"{each.parent.name}.{each.name}" for each in rooms if each.name[0] != "_")
-
-
-def test_a_section_is_there_if_any_of_its_fields_is() -> None:
-    for shows, fields, absent, there in (
-        (("a", "b"), (None, []), (), True),
-        (("a", "b"), (1, None), (), True),
-        (("a", "b"), (None, None), (), False),
-        (("a", "b"), (1, 1), ("here",), False),
-        ((), (None, None), (), True),
-    ):
-        results: Any = SimpleNamespace(absent=absent, a=fields[0], b=fields[1])
-        assert Section("title", name="here", shows=shows).is_present(results) == there
 
 
 def one_by_one(names: list[str]) -> list[list[str]]:

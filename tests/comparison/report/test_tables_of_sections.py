@@ -185,6 +185,7 @@ def test_a_section_is_there_if_it_was_asked_for_and_any_of_its_fields_was_found(
     section = Section("title", name="mine", shows=("a", "b"))
     for a, b, absent, shown in (
         (None, 1, {}, True),
+        (None, [], {}, True),
         (1, None, {}, True),
         (None, None, {}, False),
         (1, 1, {"mine": ""}, False),
