@@ -37,7 +37,7 @@ class ModelDifference:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Return where every value exists; its uncertainty may be unknown, and then no difference is resolved."""
+        """Return the mask of phase pairs with a difference; where its uncertainty is unknown, it is not resolved."""
         return np.isfinite(self.size)
 
     @property

@@ -108,7 +108,7 @@ def _lower_by_instruction(name: str) -> Lower:
     """Return code that calls one instruction of LLVM for a whole row."""
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
-        """Write code that calls the instruction."""
+        """Write the LLVM call of the instruction, and return its result."""
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
 

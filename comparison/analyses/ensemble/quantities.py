@@ -11,7 +11,7 @@ Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the
 
 # Key of the largest floor acceleration by the literal supremum
 SUPREMUM = "acceleration_supremum"
-DIRECTED_DEMANDS = {  # of every story, read along x and y, too
+DIRECTED_DEMANDS = {  # demands of every story that are read along x and y, too
     "story_shear": ("story shear", "N"),
     "drift": ("drift", "m"),
     "overturning_moment": ("overturning moment of the forces", "N m"),

@@ -31,7 +31,7 @@ RAMP_EFFECT = 2e-7  # m, change of the displacement because Newmark's pulse ends
 
 @dataclass(frozen=True)
 class MotionReading:
-    """How a number is read from a motion: `factor` times `function(motion, **arguments)`, one number or several."""
+    """Reader of one number or several from a motion: `factor` times `function(motion, **arguments)`."""
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)

@@ -21,7 +21,7 @@ MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase
 
 @dataclass(frozen=True)
 class Evidence:
-    """What surfaces and motions of one scene show under one definition of the peak, by the printed (4.3)-(4.4)."""
+    """Findings on surfaces and motions of one scene by the printed (4.3)-(4.4), under one definition of the peak."""
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
     error: float = float("nan")  # largest absolute error estimate

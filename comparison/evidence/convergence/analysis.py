@@ -169,7 +169,7 @@ def _fit_trends(
 
 
 class Convergence(MappedAnalysis[list[Trend]]):
-    """Analysis of every limit in every scene that has it, for each body."""
+    """Convergence of mu of each body, for every case of CONVERGENCE_CASES in every scene to which it applies."""
 
     key, stage = "convergence", "convergence"
     seconds = 1.5
