@@ -51,8 +51,8 @@ def find_balanced_start(
     static_penetration = model.bearing_penetration or penetration
     balance = _EquilibriumSolver(model, model.kinematics, start, acceleration, static_penetration, penetration)
     coordinates, closed = balance.solve_under_weight(), np.ones(len(model.kinematics.depressions.ring), dtype=bool)
-    lasts = model.ground.decay_rate * math.sqrt(static_penetration) <= 1.0
-    while coordinates is not None and lasts and acceleration.any():
+    followed = follows_decay(model, static_penetration)
+    while coordinates is not None and followed and acceleration.any():
         loaded = balance.solve_under_loading(coordinates, closed)
         opens = False if loaded is None else closed & (balance.gaps(loaded) > OPENING_GAP * static_penetration)
         if not np.any(opens):
@@ -64,6 +64,11 @@ def find_balanced_start(
     gaps, contact = balance.gaps(coordinates), start.contact.copy()
     contact[0::4] = np.where(closed, np.minimum(gaps, -GAP_TOLERANCE * static_penetration), np.maximum(gaps, 0.0))
     return EngineState(coordinates, start.velocities, contact)
+
+
+def follows_decay(model: EngineModel, penetration: float) -> bool:
+    """Return whether a contact with this penetration under the weight oscillates before the loading has decayed."""
+    return model.ground.decay_rate * math.sqrt(penetration) <= 1.0
 
 
 @dataclass

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.integration.balance import follows_decay
 from multibody.integration.candidate import Candidate
 from multibody.integration.engine_run import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
@@ -174,6 +175,9 @@ class LevelRuns:
             errors = widen_by_impacts(errors + change, [], run, self._count_levels_on_same_springs())
         # after impacts a level before level 0 has other contact forces, so that it confirms no answer
         confirmed = confirmed and not (run.impacts and before.precedes_level_0)
+        if model.kinematics is not None and not (model.bearing_penetration or follows_decay(model, level.penetration)):
+            # no level transmits the vertical loading at the start, so that the levels cannot show what it would add
+            errors = errors + abs(self.pair.ground(np.zeros(1))[0, 2])
         coarser = [(self.runs[-2], error_share_of_change(before, model))]
         if self.real_bearings_run is not None:
             coarser.append((self.real_bearings_run[0], 1.0))

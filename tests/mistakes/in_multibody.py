@@ -356,6 +356,8 @@ MISTAKES = (
             "The forces of a long step start a short one.", (TESTS + "test_single_run.py::test_contact_forces_settle_where_steps_become_smaller",)),
     Mistake(INTEGRATION + "balance.py", "return [0, 1, 5] if self.model.rim == math.inf else []", "return []",
             "A platform on a plane starts aside.", (UNEVEN + "test_friction_holds_a_platform_that_tilts_on_a_plane",)),
+    Mistake(INTEGRATION + "level_runs.py", "not (model.bearing_penetration or follows_decay", "not (follows_decay",
+            "Bearings that give way count as an error.", (UNEVEN + "test_a_push_that_no_contact_follows_is_an_error_of_the_engine",)),
     Mistake(INTEGRATION + "chunk.py", "accelerations[row, bodies[body, 1]] + plate[row, 1]", "accelerations[row, bodies[body, 2]] + plate[row, 1]",
             "Accelerations along y are those along z.", (TESTS + "test_early_end.py::test_what_is_read_from_every_row_is_that_of_numpy",)),
 )

@@ -127,6 +127,17 @@ def test_a_push_that_is_gone_leaves_bearings_at_rest() -> None:
     assert np.ptp(later) < 1e-6
 
 
+def test_a_push_that_no_contact_follows_is_an_error_of_the_engine() -> None:
+    """A rigid contact transmits it at once: the translational model, whose start is exact, lies within the error."""
+    push = {"excitation.amplitudes": [[0.2, 0.0], [0.0, 0.1], [0.6, 0.5]], "excitation.decay": [3e7, 2e7]}
+    scene = ON_BEARINGS.with_values({**push, "duration": 1e-3, "isolator.support_stiffness": None})
+    rigid = multibody.amplification(scene, (0.4, 0.9))
+    soft = multibody.amplification(scene, (0.4, 0.9), "spatial", max_work=3e4)
+    assert (np.abs(rigid.mu - soft.mu) < rigid.error + soft.error).all()
+    stated = scene.with_values({"isolator.support_stiffness": 1e3})  # bearings give way, which is no error
+    assert (multibody.amplification(stated, (0.4, 0.9), "spatial", max_work=3e4).error < 0.1 * soft.error).all()
+
+
 def test_an_eccentric_platform_tilts_and_moves_aside() -> None:
     """One body: the moment of its weight over the springs, and depressions that stay where the spheres are."""
     height, offset, stiffness, ring = 0.7, 0.03, 2e4, 0.6
