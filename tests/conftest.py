@@ -102,10 +102,10 @@ def compile_in_turn() -> None:
 
 @contextmanager
 def alone(what: str) -> Iterator[None]:
-    """Keep other processes that do the same out of the block, by a lock on an empty file."""
+    """Keep other processes that do the same out of the block, by a lock on one of 64 empty files."""
     if fcntl is None:
         yield
         return
-    with open(Path(gettempdir(), f"phase-resonance-{os.getuid()}-{crc32(what.encode()):08x}.lock"), "a") as stream:
+    with open(Path(gettempdir(), f"phase-resonance-{os.getuid()}-{crc32(what.encode()) % 64}.lock"), "a") as stream:
         fcntl.flock(stream, fcntl.LOCK_EX)
         yield

@@ -83,11 +83,15 @@ def test_an_output_that_cannot_be_written_is_one_line() -> None:
 
 
 @POSIX
-def test_a_closed_error_output_does_not_hide_the_exit_code() -> None:
-    environment = {**os.environ, "SCRIPT": BEGIN.format(root=str(ROOT), body="raise ValueError('nobody hears it')")}
+def test_a_closed_error_output_hides_neither_exit_code_nor_log(tmp_path: Path) -> None:
+    script = BEGIN.format(root=str(ROOT), body="raise ValueError('nobody hears it')")
+    environment = {**os.environ, "SCRIPT": script, "TMPDIR": str(tmp_path)}
     for redirection in ("2>&-", ">&- 2>&-", *(["2>/dev/full"] if Path("/dev/full").exists() else [])):
         command = f"'{sys.executable}' -c \"$SCRIPT\" {redirection}"
         assert subprocess.run(["sh", "-c", command], env=environment, check=False).returncode == 3
+        (log,) = tmp_path.glob("*.log")
+        assert log.read_text(encoding="utf-8").endswith("ValueError: nobody hears it\n")
+        log.unlink()
 
 
 @POSIX
