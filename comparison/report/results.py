@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from comparison.json_file import format_json
 from comparison.report.scene_result import SceneResult
@@ -85,6 +85,8 @@ class ModelDescription(Part):
 
 class Results(Part):
     """Everything that a program needs to judge a run. Relative sizes are fractions; a missing number is null."""
+
+    model_config = ConfigDict(defer_build=True)  # the fields of the features are missing
 
     kind: Literal["phase-resonance/summary"] = Field(
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from comparison.result_types import Number, Part, Text, result
 from comparison.surfaces.acceptance import Limit
@@ -43,6 +43,8 @@ class RecordValue:
 
 class SceneResult(Part):
     """Results of one scene."""
+
+    model_config = ConfigDict(defer_build=True)  # the fields of the features are missing
 
     name: Text = Field(description="file stem or built-in name")
     title: Text = Field(description="as the scene states it")
