@@ -118,12 +118,15 @@ def run_command(module: str) -> NoReturn:
 
 def _refuse_environment() -> None:
     """End the process with one line where a library would fail while it loads, for each variable that it reads."""
+    is_wrong = False
     for name, (least, most) in ENVIRONMENT.items():
         text = os.environ.get(name)
         if text is None or (text.isascii() and text.isdigit() and len(text) < 20 and least <= int(text) <= most):
             continue
         rule = f"must be a whole number from {least} to {most}: correct this environment variable, or remove it"
         print(f"environment: {name} = {text[:80]!r}: {rule}", file=sys.stderr)
+        is_wrong = True
+    if is_wrong:
         raise SystemExit(2)
 
 

@@ -383,7 +383,8 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
         row = max(known, key=lambda row: sign * getattr(row, name).value)
         value, error = getattr(row, name).value, getattr(row, name).error
         if name == "uplift":
-            yield f"largest uplift {word_value(value, None, 1e3)} mm" + (f" at support {row.support}" if value else "")
+            place = f" at support {row.support}{word_bound(ensemble, row.structure, ' ({})')}" if value else ""
+            yield f"largest uplift {word_value(value, None, 1e3)} mm{place}"
             continue
         bound = word_bound(ensemble, row.structure, ", {}")
         place = f"support {row.support} at [{row.x:.3g}, {row.y:.3g}] m"

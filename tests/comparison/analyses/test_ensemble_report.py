@@ -607,7 +607,7 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
     ]
     assert sentences.support_sentences(replace(two_bounds(), supports=supports)) == [
         "By the spatial engine, 2 of 4 motions of each bound: largest force 9 ± 0.03 kN, support 2 at [-3.5, 2.5] m "
-        "(m1, c); smallest force -2 ± 0.02 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1."
+        "(m1, c); smallest force -2 ± 0.02 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1 (b)."
     ]
 
 

@@ -399,7 +399,7 @@ def supports_said(labels: Sequence[str]) -> list[str]:
                 structure, _, number, motion, *_ = choose(every, key=lambda at: every[at].value)
                 number_said, place = known(structure, name, number, model)[motion], PLACES[structure][number - 1]
                 where = f"support {number} at [{place.replace(' ', ', ')}] m ({motion}, {labels[structure]})"
-                gap = f"largest uplift {1e3 * number_said.value:.4g} mm at support {number}"
+                gap = f"largest uplift {1e3 * number_said.value:.4g} mm at support {number} ({labels[structure]})"
                 parts.append(gap if name == "gap" else f"{name} force {say(number_said, 1e-3)} kN, {where}")
         of = ", ".join(f"{count} motions of the {label}" for count, label in zip(counts, labels))
         said.append(f"By the {by}, {of}: {'; '.join(parts)}.")
