@@ -23,7 +23,7 @@ class ForcedRatio:
 
 
 def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """Return the ratios by axis, harmonic and body above the platform; none under a recorded motion."""
+    """Return the amplitude ratios by axis, harmonic and body above the platform; none under a recorded motion."""
     if scene.recorded or len(scene.bodies) == 1:
         return []
     return [

@@ -4,7 +4,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from reference.problem import Trajectory
 
-# Keys of the sides; smoothed: equations with the engine's regularized friction law
+# Keys of the codes that are compared (sides); smoothed: equations with the engine's regularized friction law
 EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"
 
 

@@ -17,7 +17,7 @@ def make_trend_feature(
     **texts: Any,
 ) -> Feature:  # fmt: skip
     """
-    Return the feature of an analysis that makes trends.
+    Return the feature (result field and section of the page) of an analysis that fits power laws to differences.
 
     title: of its section. scenes: those that have it. meaning: of its field. column: title of the column of medians.
     parameter: title of the axis of the panels, where all have one. texts: what else its template reads.

@@ -17,7 +17,7 @@ from comparison.surfaces.model_difference import RESOLVED_RATIO
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, count_verdicts, word_counts
 
 NO_VALUES: Array = np.empty((0, 1))  # sizes and errors if no phase pair has a value
-MAX_FITTED_ERROR = 1.0 / RESOLVED_RATIO  # largest error of a fitted value, as a fraction of it
+MAX_FITTED_ERROR = 1.0 / RESOLVED_RATIO  # largest error of a difference that enters the fit, as a fraction of it
 MAX_EXPONENT_UNCERTAINTY = 0.25  # largest uncertainty of an exponent that is judged
 MIN_EXPONENT = 0.3  # A difference with a smaller exponent hardly falls over the parameters in use.
 # Largest deviation of an exponent from theory: the largest parameters are not yet in the asymptotic range
@@ -25,7 +25,7 @@ MAX_EXPONENT_DEVIATION = 0.15
 
 
 class FittedSlope(NamedTuple):
-    """Fit size ~ parameter^exponent with uncertainty, NaN for too few values; points used, of how many phase pairs."""
+    """Exponent of size ~ parameter^exponent with uncertainty, NaN for too few values; numbers of points and pairs."""
 
     exponent: float
     uncertainty: float
@@ -35,7 +35,7 @@ class FittedSlope(NamedTuple):
 
 @result
 class Trend:
-    """How a difference falls with a parameter."""
+    """Power law by which a relative difference of mu falls with a parameter, and the verdict on its exponent."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -124,7 +124,7 @@ def _judge_trend(each: Trend) -> Verdict:
 
 
 def _word_slope_verdict(slope: FittedSlope, expected: float | None) -> str:
-    """Return what a fitted exponent tells; |difference| ~ parameter^exponent."""
+    """Return in words whether |difference| ~ parameter^exponent has the expected exponent, or why that is not known."""
     if not np.isfinite(slope.exponent):
         return "within the error bars: no slope can be told"
     if slope.uncertainty > MAX_EXPONENT_UNCERTAINTY:

@@ -102,7 +102,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
 
 
 def _word_uneven_variation(variation: Variation, radius: float) -> str:
-    """Return the unevenness of a variation in words; radius: of the ring of supports, m."""
+    """Return in words how a variation narrows the ring, moves bodies or turns them. radius: of the ring, m."""
     towards = f"at {math.degrees(variation.direction):.0f}°"
     parts = [f"oval {variation.oval:.2g} {towards}"] if variation.oval else []
     parts += [f"{variation.offset * radius:.2g} m {towards}"] if variation.offset else []

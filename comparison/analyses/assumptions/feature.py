@@ -34,7 +34,7 @@ BANDS = [
 
 
 def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
-    """Return one plot for each quantity whose variation has an effect: the largest change of every mu over it."""
+    """Return a plot of the largest change of every mu_i over each varied quantity that has an effect."""
     told = {each.key for each in found.ranges if each.scene == scene.name and not each.no_effect}
     panels = []
     for key in (key for key in AXES if key in told):
@@ -59,7 +59,7 @@ FOUND = ResultField(Assumptions.key, Validity, "how far the paper's assumptions 
 
 
 def section_context(report: Report) -> Mapping[str, Any]:
-    """Return what the template reads, for every scene whose assumptions were tried."""
+    """Return the variables that the section's template reads: plots and lines of every scene that was varied."""
     found = FOUND.read_from(report.results)
     shown = []
     for scene in report.study.scenes:
@@ -78,7 +78,7 @@ def section_context(report: Report) -> Mapping[str, Any]:
 
 
 def assumption_verdict(results: Results) -> str:
-    """Return the verdict in the section's title: how much bodies that turn change mu."""
+    """Return the verdict in the section's title: how much mu changes when bodies may turn."""
     return describe_verdict(FOUND.read_from(results))
 
 

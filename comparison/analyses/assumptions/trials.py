@@ -37,7 +37,7 @@ BISECTION_RATIO = 1.25
 
 @dataclass(frozen=True)
 class Trial:
-    """mu (M, N) at M phase pairs under a variation (None: by the translational model), errors, statuses, cost in s."""
+    """mu of N bodies at M phase pairs (M, N) under a variation (None: translational model), errors, cost in s."""
 
     variation: Variation | None
     mu: Array
@@ -54,7 +54,7 @@ class Trial:
 
 @result
 class DirectionTrial:
-    """One direction in which an assumption was tried, at one phase pair and a larger v_reg, to find the worst."""
+    """Change of mu by a variation in one direction, at one phase pair with a larger v_reg: to find the worst one."""
 
     scene: Annotated[Text, "name of the scene"]
     key: Annotated[Axis, "what varies"]
@@ -79,9 +79,9 @@ Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | Non
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
-    """Return the trials of a variation, or of sizes along the worst directions. Runs inside a worker process."""
+    """Compute mu under one variation, or under several sizes along the worst directions, in a worker process."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
-    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # the name is the key
+    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # results go by name
     pairs = np.array(phases)
     if what is None:
         return TaskTrials((amplification_of(short, translational, None, tolerance, pairs),))
@@ -112,7 +112,7 @@ def amplification_of(
 
 def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
     """
-    Return a trial of every direction of each axis; the worst has the largest change of any body.
+    Return a trial of mu for every direction of each varied quantity; the one with the largest change is marked worst.
 
     A direction without effect by symmetry is listed and not computed.
     """
@@ -159,7 +159,7 @@ def follow_direction(
 
 def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
     """
-    Return the next size to try: smaller until a limit is met, then between, then larger; None at the end.
+    Return the next size of a variation to try: smaller until a limit on mu is met, then between, then larger; or None.
 
     tried: sizes, each with the largest change of mu of every body, uncertainty included, NaN for no value.
     """

@@ -71,7 +71,7 @@ MANY = (  # variations that `phase-resonance assumptions` tries in each scene
 )
 UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # variations of scenes with compliant bars
 
-Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # what a variation changes in the building
+Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # quantity of the building that a variation changes
 DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # variations that are first tried in several directions
 # First size tried of each variation, in several directions
 FIRST_SIZE = {
@@ -83,7 +83,7 @@ FIRST_SIZE = {
 SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}
 # Largest size tried of each variation: beyond it the building is another one, or supports lift off
 LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}
-DIRECTIONS = 4  # number of directions in half a turn, no two of which a symmetry of the scene makes equivalent
+DIRECTIONS = 4  # number of directions tried in half a turn, or in a quarter of a turn where symmetry makes that enough
 
 
 def with_size(variation: Variation, key: Axis, size: float) -> Variation:
@@ -94,7 +94,7 @@ def with_size(variation: Variation, key: Axis, size: float) -> Variation:
 
 def trials_of(scene: Scene, key: Axis) -> list[Variation]:
     """
-    Return the variations of one assumption in all directions that the scene's symmetries leave different.
+    Return variations of one quantity in several directions, no two of which a symmetry of the scene makes equivalent.
 
     An offset has a full turn of directions and an oval half a one. A half turn of the loading makes opposite offsets
     equivalent, mirror images about both axes or about the plane of the motion make a quarter of a turn enough. An angle

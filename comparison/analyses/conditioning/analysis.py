@@ -43,7 +43,7 @@ SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, values of v_reg
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
 MAX_YIELDING_GRID = 8  # largest number of phases per axis for the exact equations with friction that yields
-OTHER_DAMPING = 0.05  # damping ratio of all links in a second curve; 0 where the scene's links are damped
+OTHER_DAMPING = 0.05  # damping ratio of the links in a second curve over u_y; 0 where the scene's links are damped
 # rad, phase pairs of the engine: no two related by a symmetry
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
 ENGINE_PERIODS = 3.0  # duration in periods of the slower harmonic: the loading is strongest in them
@@ -51,7 +51,7 @@ ENGINE_PERIODS = 3.0  # duration in periods of the slower harmonic: the loading 
 
 @result
 class ConditioningCurve:
-    """mu of one body by one model over falling speeds, or its literal supremum, which is the limit at speed 0."""
+    """Statistics of mu of one body by one model over falling v_c, v_reg or u_y, or of its literal supremum, at 0."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -93,7 +93,7 @@ def has_yielding_friction_below_links(scene: Scene) -> bool:
 
 class Question(NamedTuple):
     """
-    Model whose mu is computed over falling speeds, and the keyword argument that sets the speed.
+    Model whose mu is computed at ever smaller v_c, v_reg or u_y, and the keyword argument that sets these.
 
     max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a grid. otherwise: whether the links
     are damped by another ratio than the scene's.
@@ -115,7 +115,7 @@ class Question(NamedTuple):
         return self.speeds if own is None else tuple(sorted({*self.speeds, own}, reverse=True))
 
     def own_yield(self, scene: Scene) -> float | None:
-        """Return the scene's own yield displacement, m, where yield displacements vary; else None."""
+        """Return the scene's own yield displacement, m, if this question varies yield displacements; else None."""
         return float(f"{scene.yield_displacement:.9g}") if self.argument == "yield_displacement" else None
 
     def damping_of(self, scene: Scene) -> float | None:
@@ -123,7 +123,7 @@ class Question(NamedTuple):
         return (0.0 if scene.damping.any() else OTHER_DAMPING) if self.otherwise else None
 
     def with_damping(self, scene: Scene) -> Scene:
-        """Return the scene, of the same name, with the damping of the links that is asked for."""
+        """Return the scene, of the same name, with the ratio of `damping_of` in every link, or unchanged for None."""
         damping = self.damping_of(scene)
         if damping is None:
             return scene
@@ -131,7 +131,7 @@ class Question(NamedTuple):
         return scene.with_values(links | {"name": scene.name})
 
     def choose_grid(self, study: Study) -> int:
-        """Return the phases per axis: largest nested grid of a study up to `max_grid`, else that; 0: ENGINE_PHASES."""
+        """Return the phases per axis: the study's largest nested grid up to `max_grid`; 0 stands for ENGINE_PHASES."""
         affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
         return max(affordable, default=self.max_grid)
 
@@ -144,10 +144,10 @@ class Question(NamedTuple):
 
 # Keyword arguments of the models: equations by the reference, and the multibody engine with and without rotation
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
-EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
-YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # its errors are in fact a tenth of that
-TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}
-SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
+EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # for reference.amplification
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # with friction that yields: errors a tenth of that
+TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
+SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
 OVER_YIELDS = Question(  # mu over the yield displacement of elastic friction
     "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
 )
@@ -168,12 +168,12 @@ SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
     "yield_displacement": "u_y",
 }
 
-Arguments = tuple[Scene, int, int]  # scene, number of the question, phases per axis; 0 for ENGINE_PHASES
+Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases per axis (0 for ENGINE_PHASES)
 
 
 class _Answers(NamedTuple):
     """
-    mu and error of a model (S, P, N) at S speeds, the literal supremum (P, N) at P phase pairs.
+    mu and error (S, P, N) of N bodies at S speeds and P phase pairs, and the literal supremum (P, N).
 
     independent: pairs with a value that no symmetry relates. lost: the first status without a value.
     """
@@ -200,7 +200,7 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return mu of every body over v_c or v_reg; with set-valued friction also its literal supremum, at speed 0."""
+    """Return curves of mu of every body over v_c, v_reg or u_y; for v_c and u_y also of the literal supremum, at 0."""
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
@@ -213,7 +213,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
-    """Return mu at every speed and the literal supremum by the equations; NaN at pairs that lack any of it."""
+    """Return mu at every speed and the equations' literal supremum; NaN at phase pairs where either is missing."""
     phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
@@ -305,7 +305,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return the scenes with the numbers of their questions and the phases per axis."""
+        """Return for each task the scene, the index in QUESTIONS of a question for it, and the phases per axis."""
         return [
             (scene, number, question.choose_grid(study))
             for scene in study.phased

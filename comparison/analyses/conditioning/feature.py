@@ -20,11 +20,11 @@ NAMES = {  # names of the models in plots and tables
 # Number of the color of a model's curve
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
 UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of each speed, in the order of the tables
-QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
+QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}  # stats of mu
 
 
 def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
-    """Two panels of mu_1 for each scene: the small equations over a grid; the engine and the exact equations."""
+    """Return up to three plots of mu_1 per scene: small equations, engine and exact equations, friction that yields."""
     panels = []
     for scene in dict.fromkeys(curve.scene for curve in curves):
         every = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
@@ -55,7 +55,7 @@ def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Pan
 
 
 def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
-    """Mean and largest over the yield displacement, a color for each damping; literal suprema as level lines."""
+    """Plot mean and largest mu_1 over the yield displacement; the literal suprema are level lines."""
     dampings = [*dict.fromkeys(curve.damping for curve in curves)]
     series: list[dict[str, Any]] = []
     ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]
@@ -74,7 +74,7 @@ def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
 
 
 def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) -> dict[str, Any]:
-    """One curve over the speeds; the literal supremum, which has none, as a broken level line."""
+    """Return the plot line of a statistic of mu over the speeds; the literal supremum is a dashed level line."""
     values = replace_nan(getattr(curve, quantity))
     named = {"name": f"{name}, {_name_reading(curve)}", "color": color}
     if curve.reading == LITERAL_SUPREMUM:
@@ -83,12 +83,12 @@ def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) 
 
 
 def _name_reading(curve: ConditioningCurve) -> str:
-    """Return the definition of the peak, with the speed v_c where it has one."""
+    """Return the reading of (5.1) in which a curve takes mu, with the symbol of its speed unless it has none."""
     return curve.reading if curve.reading == LITERAL_SUPREMUM else f"{curve.reading} at {curve.speed}"
 
 
 def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, Any]]:
-    """One table for each list of speeds: a row for each curve and quantity, the literal supremum in the last column."""
+    """Return a table per list of speeds: a row per curve and statistic, the literal supremum in the last column."""
     suprema = {_owner_of_curve(curve): curve for curve in curves if curve.reading == LITERAL_SUPREMUM}
     tables = []
     integrated = [curve for curve in curves if curve.reading != LITERAL_SUPREMUM]

@@ -7,7 +7,7 @@ from comparison.analyses.conditioning.analysis import ConditioningCurve
 from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
-# m/s, values of v_c below which no instrument, and no computation, resolves sliding
+# m/s, values of v_c below which no instrument (first) and no computation (second) resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
 ILL_CONDITIONED_CHANGE = 1e-3  # relative change of mu below LOW_V_C from which mu is ill-conditioned
 MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
@@ -15,7 +15,7 @@ MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that t
 
 def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return the sentence of the first screen, about the scene and body with the largest part of mu below LOW_V_C.
+    Return a sentence for the page's top on the scene and body whose mu at LOW_V_C is farthest from its supremum.
 
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
@@ -41,7 +41,7 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return what mu_1 is at the yield displacement of every scene that has one, and how it changes with that.
+    Return sentences: mu_1 at the yield displacement of every scene that has one, and its range over other values.
 
     Empty without such a scene. Sizes of the mean are relative to the literal supremum of rigid friction at the same
     phases.
@@ -73,7 +73,7 @@ def _word_yielding(curve: ConditioningCurve) -> str:
 
 
 def _word_other_damping(curve: ConditioningCurve) -> str:
-    """Return the range of the mean over the yield displacements, with other damping of the links."""
+    """Return a sentence: range of the mean mu_1 over the yield displacements with another damping of the links."""
     return f"With {name_damping(curve)}, {_word_range(curve)}."
 
 
@@ -100,7 +100,7 @@ def name_damping(curve: ConditioningCurve) -> str:
 
 def speed_text(speed: float) -> str:
     """
-    Write a speed without a leading zero in its exponent.
+    Return a speed as text, without a leading zero in its exponent.
 
     >>> speed_text(1e-6), speed_text(0.0003)
     ('1e-6', '3e-4')
@@ -109,7 +109,7 @@ def speed_text(speed: float) -> str:
 
 
 def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
-    """Return whether the mean is known at each of the three speeds v_c that the statement names."""
+    """Return whether the mean is known at each of the three speeds v_c that `conditioning_line` states."""
     return curve.reading == AS_INTEGRATED and all(
         math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, LOW_V_C, LOWEST_V_C)
     )

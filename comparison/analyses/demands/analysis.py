@@ -27,7 +27,7 @@ from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_mot
 from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
 
-MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # motions of one task, by side: they take about two seconds
+MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # number of motions that a code computes in about two seconds
 VARIABLE_PREFIX = "demand_"  # prefix of the variables of demands in surfaces.nc
 
 # arguments of a task: scene, model, asked relative error, phase pairs (M, 2) in rad
@@ -37,7 +37,7 @@ TaskDemands = tuple[dict[str, Estimates], list[str]]  # demands of a task's moti
 
 @result
 class PhaseExtreme:
-    """Largest or smallest value of a demand on the phases that were computed."""
+    """Largest or smallest value of a demand over the computed phase pairs, with its error and its phases."""
 
     value: Annotated[Number, "largest or smallest value, in the unit of the demand"]
     error: Annotated[Number, "estimated absolute error; null where it is not known"]

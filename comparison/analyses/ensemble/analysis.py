@@ -66,7 +66,7 @@ class EnsemblePoints:
 
     @property
     def all_points(self) -> list[MotionDemandsAtScale]:
-        """Return the points of all models, those of the exact equations first."""
+        """Return the demands of every motion by all models, those of the exact equations first."""
         return [*self.equations, *(point for points in self.compared.values() for point in points)]
 
 

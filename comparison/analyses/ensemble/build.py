@@ -27,7 +27,7 @@ from reference.problem.tables import Record
 from reference.records.description import describe_samples
 from reference.records.motion_lists import Motion
 
-GROUND_PERIODS = np.geomspace(0.05, 5.0, 40)  # s, of the motions' spectra
+GROUND_PERIODS = np.geomspace(0.05, 5.0, 40)  # s, periods of the ground motions' response spectra
 
 
 def build_result(
@@ -38,7 +38,7 @@ def build_result(
     listed: Mapping[str, Motion] | None = None,
 ) -> result.EnsembleResult:
     """
-    Return building, motions, statistics of the points, curves of the motions and extremes of the supports.
+    Return the result of an ensemble: buildings, motions, statistics and curves of demands, extremes of the supports.
 
     listed: motions of the suite by name, with the factors and magnitudes that its list states.
     """
@@ -105,7 +105,7 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
 
 
 def describe_ground(member: EnsembleMember) -> dict[str, Any]:
-    """Return what a motion is at scale 1, with its factor: files, step, components, digest of samples, spectrum."""
+    """Return the description of a motion at scale 1, its factor included: files, step, peaks, digest, spectrum."""
     samples = member.scene.record / np.array([1.0, *[member.scale] * 3])
     origin = member.scene.excitation.origin if isinstance(member.scene.excitation, Record) else ()
     read, moving = describe_samples(member.motion, origin, samples), samples[:, 1:3][:, samples[:, 1:3].any(axis=0)]

@@ -188,7 +188,7 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
 def make_demand_check(
     options: argparse.Namespace, members: Sequence[EnsembleMember]
 ) -> Callable[[EnsembleResult], list[DemandCheck]]:
-    """Return the function that checks the demands the command line limits. Raises SceneError."""
+    """Return the function that checks demands against limits and, if asked, a stored ensemble. Raises SceneError."""
     limits = read_demand_limits({member.structure: member.scene for member in members})
     within = read_number(
         "--within",
@@ -215,7 +215,7 @@ def make_demand_check(
 
 def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
     """Print on standard error, as the last lines, the demands that are not met; return the exit code."""
-    sys.stdout.flush()  # In a file that takes both outputs these lines come last, too.
+    sys.stdout.flush()  # Where standard output and error go to one file, these lines still come last.
     lines = word_checks(checks)
     if asked:
         for line in lines or [f"--check: {NO_LIMITS}"]:
@@ -255,7 +255,7 @@ def write_ensemble(
 
 
 def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
-    """Return junit.xml of the demand checks, a suite for each bound; a check not met or not compared is a failure."""
+    """Return junit.xml of the demand checks, a suite per structure; a check not met or not compared is a failure."""
     suites = [
         JUnitSuite(
             bound,

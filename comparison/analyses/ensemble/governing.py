@@ -27,16 +27,16 @@ GOVERNING = {  # demands whose worst value chooses a motion (over bodies, if the
     "support_force_max": "largest support force",
     "support_force_min": "smallest support force",
 }
-GOVERNING_OF_LIMITS = {  # demands of GOVERNING that govern a demand that the engine alone has, where they are known
+GOVERNING_OF_LIMITS = {  # by demand that only the engine computes: demands in GOVERNING that stand in for it
     "uplift": ("support_force_max", "support_force_min"),
     "support_displacement": ("displacement",),
 }
-MEDIAN_REASON = "nearest the median displacement"
+MEDIAN_REASON = "nearest the median displacement"  # reason for the choice of a motion
 ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # reasons for the choice of a motion
 MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
 EXPECTED_GOVERNING_COUNT = 3  # governing motions of a structure as assumed before the equations have found them
 
-# Number of motions per structure, names of motions, or None for the governing ones
+# Motions asked of the engine: their number per structure, their names, or None for the governing ones
 EngineRequest = int | tuple[str, ...] | None
 
 

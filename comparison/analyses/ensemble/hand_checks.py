@@ -109,6 +109,6 @@ def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator
 
 
 def list_hand_check_rows(ensemble: EnsembleResult) -> list[tuple[str, HandCheck]]:
-    """Return every hand check with the bound of its structure."""
+    """Return every hand check with the label of its structure."""
     named = label_structures(ensemble)
     return [(named[each.name], check) for each in ensemble.structures for check in list_hand_checks(ensemble, each)]

@@ -32,8 +32,8 @@ from reference.problem.acceptance import DemandLimits
 from reference.support.arguments import Range
 from reference.support.scene_error import printable
 
-LIMIT_KEY_PREFIX = "acceptance.demands."
-MEAN_STATISTIC, LARGEST_STATISTIC = "mean", "largest"
+LIMIT_KEY_PREFIX = "acceptance.demands."  # beginning of the key of a limit in a scene file
+MEAN_STATISTIC, LARGEST_STATISTIC = "mean", "largest"  # statistics over the motions that a limit can be on
 WEIGHT_SHARE_KEY = "base_shear"  # demand whose limit is a share of the weight
 MAX_NAMED_MOTIONS = 3  # largest number of motions that a reason names
 EVENT_COUNT_KEY = "stops"  # demand that counts events, to which a relative tolerance does not apply
@@ -43,13 +43,13 @@ WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)  # verdicts from the worst to the bes
 NOT_COMPUTED = (
     "no model that was computed has it; the spatial engine has it, and needs supports, heights and sizes of bodies"
 )
-NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"
+NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"  # printed without limits
 
 
 @dataclass(frozen=True)
 class DemandCheck:
     """
-    A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
+    Comparison of a demand of a structure with a stated number: its limit, or its value in a stored ensemble.
 
     key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. statistic:
     what `found` is over the motions. on: the statistic and its motions in words. found, stated: in SI; None without a
@@ -86,7 +86,7 @@ class DemandCheck:
 
 
 def word_check(check: DemandCheck) -> str:
-    """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
+    """Return the verdict on a demand in words: structure, demand, motion, both numbers, how much it is not met by."""
     found, stated = (_word_number(value, check.unit) for value in (check.found, check.stated))
     under = f" ({check.motion})" if check.motion else ""
     least = "at least " if check.is_least else ""
@@ -109,7 +109,7 @@ def _word_check_verdict(check: DemandCheck) -> str:
 
 
 def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
-    """Return demand, bound, computed and stated number, ratio, statistic, motion and verdict of every limit."""
+    """Return a table row per limit: demand, structure, computed and stated number, ratio, statistic, motion, words."""
     rows: list[tuple[str, ...]] = []
     for each in limits:
         least = "≥ " if each.is_least else ""
@@ -122,7 +122,7 @@ def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
 
 
 def _word_stated(check: DemandCheck) -> str:
-    """Return what a value is compared with: an allowed one of the scene, or a stored one of an earlier run."""
+    """Return "allowed" if a value is compared with a limit of the scene, "stored" if with that of an earlier run."""
     return "allowed" if check.key.startswith(LIMIT_KEY_PREFIX) else "stored"
 
 
@@ -144,7 +144,7 @@ def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
 
 
 def _rank_of_check(check: DemandCheck) -> tuple[int, float, float]:
-    """Return the rank of a check, worst first: by the excess as a share of the stated number."""
+    """Return the sort key of a check, worst first: verdict, then excess as a share of the stated number."""
     share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
     return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
 
@@ -225,7 +225,7 @@ def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
 
 
 def _explain_lacking_demand(ensemble: EnsembleResult, key: str) -> str:
-    """Return why no motion of any model has a limited demand."""
+    """Return why no model has computed a demand that has a limit."""
     if key == "drift_ratio":
         return "heights of the bodies are needed"
     if ensemble.engine.pending:
@@ -234,7 +234,7 @@ def _explain_lacking_demand(ensemble: EnsembleResult, key: str) -> str:
 
 
 def _word_demand(structure: Structure, key: str, body: int | None) -> str:
-    """Return the limited demand in words, with the body or story that has it."""
+    """Return the name of a demand that has a limit, with its body or story."""
     what = "base shear over the weight" if key == WEIGHT_SHARE_KEY else demand_title(key)
     place = locate_demand(structure, key, body)
     return ", ".join(filter(None, [what, place])) if key == "acceleration" else f"{what} {place}".rstrip()
@@ -250,7 +250,7 @@ def _word_statistic(
     ensemble: EnsembleResult, statistic: str, known: int, model: str, part: bool, governing: bool
 ) -> str:
     """
-    Return in words the limited statistic and the motions that it is taken over.
+    Return in words the statistic that has a limit and the motions that it is taken over.
 
     model: of the engine, where it alone has the demand. part: whether it computed a part of the motions; governing:
     those that govern among them.
@@ -265,7 +265,7 @@ def _word_statistic(
 
 
 def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, key: str, computed: set[str]) -> str:
-    """Return why the engine's motions say nothing about the others; "" if all governing ones are computed."""
+    """Return why the engine may have missed a demand's governing motions; "" if it computed all of them."""
     moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     if ended := [motion for motion, number in moved.items() if number.value is None]:
         return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
@@ -319,7 +319,7 @@ def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within
     ]
 
 
-# Structure, demand, body and scale
+# Key of a demand in a stored ensemble: structure, demand, body (None for the isolator) and scale
 DemandKey = tuple[str, str, int | None, float]
 
 

@@ -15,7 +15,7 @@ from reference.problem.tables import Record
 SCALE_KEY = "excitation.scale"  # key of the scale factor of the motion in a scene file
 RECORD_KEY = "excitation.record"  # key of the recorded motion in a scene file
 
-Row = TypeVar("Row")
+Row = TypeVar("Row")  # any type whose items `group_rows_by` groups
 
 
 @dataclass(frozen=True)

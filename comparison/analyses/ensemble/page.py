@@ -173,7 +173,7 @@ def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return statistics of all motions by the equations, times the ratios of engine to equations in its motions."""
+    """Return the equations' statistics over all motions, times the ratios of engine to equations, for the template."""
     rows = list(extrapolate_ratios(ensemble))
     some = any(ratio.motions >= MIN_SPREAD_MOTIONS for _, ratio, _ in rows)
     return {

@@ -20,18 +20,18 @@ from comparison.analyses.ensemble.sentences import TRAVEL_REACHED, word_motion_c
 from comparison.report.panels import Panel, make_panel
 from reference.problem import GRAVITY
 
-PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
-PERIOD_TICKS = 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0  # s
+PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")  # demands that are drawn
+PERIOD_TICKS = 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0  # s, numbers at the axis of periods
 STRIP_WIDTH = 0.3  # width of the strip of one structure, as a share of the distance between structures
 # Name of a fractile, its index in FRACTILES, and the dash pattern of its line
 FRACTILE_LINES = (("16 %", 0, "2 2"), ("50 %", 1, ""), ("84 %", 2, "7 3"))
 MEDIAN_MARK, MEAN_MARK, ARROW_MARK = 7, 3, 2  # a flat bar, a diamond and an arrow upwards: marks of plot.js
 MAX_STRETCH = 2.0  # A limit within so many times the largest value of a profile stretches its axis.
-HEIGHT_AXIS = "height above the sliding contact, m"
+HEIGHT_AXIS = "height above the sliding contact, m"  # label of the vertical axis
 
 
 def make_isolator_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return the makers of plots of the isolator's demands over the scale, or as strips of one dot per motion."""
+    """Return functions that draw each demand of the isolator over the scale, or as a strip of one dot per motion."""
     # A quantity that is zero in every motion is not plotted.
     moved = {curve.quantity for curve in ensemble.curves if any(curve.values)}
     shown = [quantity for quantity in PLOTTED_QUANTITIES if quantity in moved]
@@ -39,7 +39,7 @@ def make_isolator_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
 
 
 def make_height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return the makers of plots of accelerations, drifts, shears and moments over the height: fractiles."""
+    """Return functions that draw fractiles of accelerations, drifts, shears and moments over the height."""
     shown = [
         name
         for name in PROFILE_QUANTITIES
@@ -53,19 +53,19 @@ def make_height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
 
 
 def make_floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return the makers of plots of the floor spectra of platform and uppermost body: median and band."""
+    """Return functions that draw the floor spectra of platform and uppermost body: median and band."""
     tallest = max(ensemble.structures, key=lambda each: each.bodies)
     names = {name_floor(tallest, body): body == PLATFORM_BODY for body in (PLATFORM_BODY, tallest.bodies)}
     return [partial(_floor_spectrum, ensemble, *each) for each in names.items() if ensemble.spectra]
 
 
 def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return the makers of plots of the motions' response spectra at scale 1 with their factors, and the target."""
+    """Return functions that draw the motions' response spectra at scale 1, factor included, and the target."""
     return [partial(_ground_spectra, ensemble)] if ensemble.target or any(m.spectrum for m in ensemble.suite) else []
 
 
 def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
-    """Return a plot of a demand under every motion, with fractiles: by bound at one scale, else over the scales."""
+    """Return a plot of a demand under every motion, with fractiles: by structure, or over several scales."""
     one = len(ensemble.scales) == 1
     series: list[dict[str, Any]] = []
     by_engine: list[dict[str, Any]] = []
@@ -160,7 +160,7 @@ def is_mean_limited(ensemble: EnsembleResult, quantity: str) -> bool:
 
 
 def plots_note(ensemble: EnsembleResult) -> str:
-    """Return what dots, lines and marks of the plots of demands are."""
+    """Return the note that explains dots, lines and marks of the plots of demands."""
     means = any(is_mean_limited(ensemble, quantity) for quantity in PLOTTED_QUANTITIES)
     diamond = " A diamond is the mean, where a limit is on it." * means
     if len(ensemble.scales) > 1:
@@ -172,7 +172,7 @@ def plots_note(ensemble: EnsembleResult) -> str:
 
 
 def _strip_place(place: float, number: int, count: int) -> float:
-    """Return where a motion stands in the strip of its structure."""
+    """Return the horizontal position of motion `number` of `count` in the strip of dots around `place`."""
     return place + STRIP_WIDTH * ((number + 0.5) / count - 0.5)
 
 
@@ -203,7 +203,7 @@ def _median_line(
     factor: float,
     **look: Any,
 ) -> dict[str, Any]:
-    """Return the median of a structure with its band, from low, median and high value at every x."""
+    """Return the plot line of a structure's median with its band, from low, median and high value at every x."""
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scale_value(each.value, factor) for each in column] for key, column in columns}
     name = f"{label_structures(ensemble)[ensemble.structures[place].name]}: median, 16 to 84 %"

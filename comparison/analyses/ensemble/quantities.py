@@ -78,7 +78,7 @@ def display_unit(quantity: str, weight: float) -> tuple[str, float]:
 
 
 def unit_of_check(unit: str) -> tuple[str, float]:
-    """Return the unit in which a checked demand of an SI unit is read, and its factor; a pure number is in percent."""
+    """Return the display unit of a checked demand with this SI unit, and the factor to it; "%" for a pure number."""
     return DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit else ("%", 100.0)
 
 

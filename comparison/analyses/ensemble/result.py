@@ -19,7 +19,7 @@ SCHEMA: Literal["phase-resonance/ensemble/4"] = "phase-resonance/ensemble/4"
 
 @result
 class Statistic:
-    """A statistic of a demand over the motions."""
+    """Value of one statistic of a demand over the motions, with its error."""
 
     value: Annotated[float | None, "in the unit of the demand; null where it rests on a motion without an answer"]
     error: Annotated[float | None, "largest change within the errors of the motions"]
@@ -52,7 +52,7 @@ class LinearIsolator:
 
 @result
 class BuildingRead:
-    """The building as it was read; axis 0 is x, 1 is y."""
+    """Properties of the building as read from its scene; axis 0 is x, 1 is y."""
 
     supports: Annotated[int | None, "number of supports; null where the scene states none"]
     load_per_support: Annotated[float | None, "weight over their number, N"]
@@ -153,7 +153,7 @@ class DemandAtScale(DemandOfStructure):
 
     @property
     def motions(self) -> int:
-        """Return the number of motions, with and without the demand."""
+        """Return the number of all motions, those without a value of the demand included."""
         return self.answered + sum(self.reasons.values())
 
     @property
@@ -230,7 +230,7 @@ class EngineMotions:
 
 @result
 class GroundComponent:
-    """A component of a motion at scale 1, with the factor."""
+    """Peaks of one component of a ground motion at scale 1, its factor included."""
 
     axis: Annotated[str, "x, y or z"]
     peak: Annotated[float, "largest acceleration, m/s^2"]
@@ -239,7 +239,7 @@ class GroundComponent:
 
 @result
 class GroundMotion:
-    """A motion of the suite at scale 1."""
+    """Ground motion of the suite at scale 1: peak, factor, files, step, components and spectrum."""
 
     motion: Annotated[str, "name"]
     duration: Annotated[float, "s"]
@@ -255,7 +255,7 @@ class GroundMotion:
 
 @result
 class MatchedMotion:
-    """A motion with its factor to the target spectrum."""
+    """Ground motion with the factor that scales it to the target spectrum."""
 
     motion: Annotated[str, "what runs beside the scale"]
     factor: Annotated[float, "of the motion as it was recorded, at scale 1"]
@@ -265,7 +265,7 @@ class MatchedMotion:
 
 @result
 class TargetSpectrum:
-    """A target spectrum at 5 % damping."""
+    """Target response spectrum at 5 % damping, with the motions that are scaled to it."""
 
     low: Annotated[float, "shortest period of the least squares, s"]
     high: Annotated[float, "longest period of the least squares, s"]
@@ -285,7 +285,7 @@ class TargetSpectrum:
 
 @result
 class LimitVerdict:
-    """The verdict on a limit, or on a demand against that of a stored ensemble."""
+    """Verdict on a demand: against its limit, or against its value in a stored ensemble."""
 
     key: Annotated[str, "of the limit as in the scene file, or of the demand"]
     bound: Annotated[str, "what tells the structure apart"]

@@ -35,7 +35,7 @@ WORST_COLUMN = 4  # index of the column of the worst value, after mean and fract
 
 @dataclass(frozen=True)
 class DemandColumn:
-    """A column of the demand table: in every motion the largest value over `bodies`, or that of the isolator."""
+    """Demand that a table shows: the largest value over `bodies` under every motion, or that of the isolator."""
 
     name: str
     quantity: str
@@ -72,7 +72,7 @@ MOTION_TABLE_QUANTITIES = (
 
 @dataclass(frozen=True)
 class DemandRow:
-    """One row of a table: a demand of one bound, or the envelope of all bounds."""
+    """Row of a table: a demand at one bound of the bearing properties, or its worst over all bounds (envelope)."""
 
     name: str
     unit: str
@@ -86,14 +86,14 @@ class DemandRow:
 
     @property
     def every_bound(self) -> str:
-        """Return the bound that governs all cells of an envelope; "" where several do."""
+        """Return the bound of the bearing properties that governs all cells of an envelope; "" where several do."""
         return self.bounds[0] if len({*self.bounds}) == 1 else ""
 
 
 @dataclass(frozen=True)
 class DemandSummary:
     """
-    Mean, fractiles and worst value of a demand of a structure over the motions, with marks for bounds.
+    Mean, fractiles and worst value of a demand of a structure over the motions, each marked where it is only a bound.
 
     marks: of each, "" of what is known, "≥ " or "≤ " before what is a bound of it, " (of 3)" behind a mean of the
     motions that have the demand. motion: of the worst value.
@@ -186,7 +186,7 @@ def summarize_over_bodies(
 
 
 def make_demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
-    """Return the main table at a scale: every demand of every bound, then its envelope."""
+    """Return the rows of the main table at a scale: each demand by structure, then its worst over the structures."""
     rows: list[DemandRow] = []
     for shown in MAIN_TABLE_COLUMNS:
         rows += _make_rows(ensemble, shown, partial(statistics_of_column, ensemble, shown, scale), scale)
@@ -211,7 +211,7 @@ def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> 
 
 def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[DemandRow, list[tuple[str, str]]]]:
     """
-    Return mean and largest value along x, then y, by story and bound, with the row along x.
+    Return for each story and structure the table row along x, with mean and largest value along x, then along y.
 
     Each value with the motion of a largest one, and in an envelope its bound.
     """
@@ -223,13 +223,13 @@ def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[Dem
 
 
 def _word_source(row: DemandRow, column: int) -> str:
-    """Return the motion of a worst value and, in an envelope, the bound: what a table cell stems from."""
+    """Return what a table cell stems from: the motion of a worst value and, in an envelope, the structure."""
     motion = row.motion if column == WORST_COLUMN else ""
     return ", ".join(filter(None, [motion, row.bounds[column] if row.bounds else ""]))
 
 
 def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
-    """Return the demand columns of the table of motions: base shear in kN, demands of bodies as their largest."""
+    """Return the demand columns of the table of motions: base shear in kN, of bodies the largest over them."""
     known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
     return [
         next(each for each in reversed(MAIN_TABLE_COLUMNS) if _is_motion_column(each, name))
@@ -250,7 +250,7 @@ def make_motion_heads(ensemble: EnsembleResult) -> list[str]:
 
 
 def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
-    """Return motion, bound, demands by the equations at the largest scale, and outcome, by bound and motion."""
+    """Return a row per structure and motion: motion, structure, demands by the equations (largest scale), outcome."""
     named, rows = label_structures(ensemble), []
     ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
     for structure in ensemble.structures:
@@ -274,7 +274,7 @@ def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str]
 def _make_rows(
     ensemble: EnsembleResult, shown: DemandColumn, read: Callable[[Structure], DemandAtScale | None], scale: float
 ) -> Iterator[DemandRow]:
-    """Yield the rows of one demand."""
+    """Yield the table rows of one demand: one of each structure, then the envelope of several."""
     named, found = label_structures(ensemble), []
     for structure in ensemble.structures:
         stripe = read(structure)
@@ -329,7 +329,7 @@ def find_worst_value_and_motion(stripe: DemandAtScale) -> tuple[Statistic, str]:
 
 def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSummary:
     """
-    Return the statistics of a demand; where motions have no value, as bounds.
+    Return the statistics of a demand, marked as bounds where motions have no value.
 
     The worst value is at least that of the motions that have one. A displacement under a motion that reached the
     travel is at least the travel.
@@ -354,7 +354,7 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """Return "≥ " or "≤ ", `mark`, for mean, unknown fractiles and worst value, which are bounds; "" for the others."""
+    """Return `mark` ("≥ " or "≤ ") for mean, worst value and unknown fractiles, which are bounds; "" for the others."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 
@@ -366,7 +366,7 @@ def add_mark(text: str, mark: str) -> str:
 
 
 def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: bool) -> DemandRow:
-    """Return the row of a demand of one bound; is_first: whether no row above names the demand."""
+    """Return the table row of a demand of one structure; is_first: whether no row above names the demand."""
     structure, stripe = told.structure, told.stripe
     unit, factor = unit_of_column(shown, structure)
     motions = f"{stripe.answered} of " * (stripe.answered < stripe.motions) + str(stripe.motions)
@@ -399,7 +399,7 @@ def word_cell(number: Statistic, factor: float, column: int, motions: int, quant
 
 
 def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: dict[str, str]) -> DemandRow:
-    """Return the row of the worst bound in every statistic; it is a bound where one of a structure is unknown."""
+    """Return the row with each statistic's worst value over the structures, marked as a bound where one is unknown."""
     sign, bound = (-1.0, "≤ ") if shown.quantity in SMALLEST_IS_WORST else (1.0, "≥ ")
     cells, bounds, at = [], [], found[0]
     for column in range(len(at.numbers)):
@@ -427,7 +427,7 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
 
 
 def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator[DemandRow]:
-    """Yield the rows of a demand that only the engine has: the worst of its motions, without statistics."""
+    """Yield the rows of a demand that only the engine computes: its worst value over the motions, no statistics."""
     first = True
     for structure in ensemble.structures:
         values = ensemble.values_at_largest_scale(structure.name, shown.quantity, None, ensemble.engine.model)

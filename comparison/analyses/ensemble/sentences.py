@@ -22,7 +22,7 @@ from reference.plausibility import implausible_drift
 from reference.problem import Outcome
 from reference.support.arguments import name_some
 
-TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value
+TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value  # outcome of a motion that ends where the isolator meets its rim
 MAX_LISTED_MOTIONS = 12  # largest number of motions that are listed by name
 MAX_LISTED_IN_SENTENCE = 3  # largest number of motions listed by name in a sentence that states other facts, too
 DIGITS = 12  # number of digits shown of a file digest
@@ -108,7 +108,7 @@ def word_motion_count(count: int) -> str:
 
 
 def answer_sentence(ensemble: EnsembleResult) -> str:
-    """Return the mean and largest displacement and base shear of the bound where each is largest."""
+    """Return the answer in words: limits, then mean and largest displacement and base shear of the worst structure."""
     said = []
     for quantity, words in (("displacement", "isolator displacement"), ("base_shear", "base shear")):
         found, unknown = [], []
@@ -161,7 +161,7 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
-    """Return the limits that have this verdict, with bounds and by how much they are not met; "" if none has."""
+    """Return the limits that have this verdict, with structures and by how much they are not met; "" if none has."""
     found: dict[str, list[str]] = {}
     for each in ensemble.limits:
         if each.verdict == verdict:
@@ -181,7 +181,7 @@ def _word_excess(limit: LimitVerdict) -> str:
 
 
 def pending_sentence(ensemble: EnsembleResult) -> str:
-    """Return that the result is written before the engine has computed its motions; "" for any other."""
+    """Return a note that the engine still computes its motions while this is written; "" once it has finished."""
     if not (pending := ensemble.engine.pending):
         return ""
     count = word_motion_count(pending)
@@ -189,7 +189,7 @@ def pending_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
-    """Return at which bounds the displacement is at least the travel; "" where none reaches it."""
+    """Return for which structures the displacement is at least the travel; "" where none reaches it."""
     named = label_structures(ensemble)
     found: dict[float, list[str]] = {}
     for structure in ensemble.structures:
@@ -198,7 +198,7 @@ def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
             found.setdefault(building.travel, []).append(named[structure.name])
 
     def bounds_of(bounds: list[str]) -> str:
-        """Return the bounds in parentheses; "" where the ensemble has a single structure."""
+        """Return the labels of structures in parentheses; "" where the ensemble has a single structure."""
         return f" ({', '.join(bounds)})" if len(ensemble.structures) > 1 else ""
 
     return "; ".join(
@@ -261,7 +261,7 @@ def isolator_sentence(structure: Structure) -> str:
 
 
 def restoring_sentence(ensemble: EnsembleResult) -> str:
-    """Return what the re-centering ratio is, and at which bounds it is below 1; "" without an isolator."""
+    """Return what the re-centering ratio is, and for which structures it is below 1; "" without an isolator."""
     ratios = {each.name: each.isolator.restoring for each in ensemble.structures if each.isolator}
     named = label_structures(ensemble)
     below = [named[name] for name, ratio in ratios.items() if ratio < 1.0]
@@ -271,7 +271,7 @@ def restoring_sentence(ensemble: EnsembleResult) -> str:
 
 
 def supremum_sentence(places: Collection[str], differing: Collection[str]) -> str:
-    """Return at which of the places the literal supremum is the acceleration as integrated; "" where at none."""
+    """Return at which places the literal supremum equals the acceleration as integrated; "" if at none."""
     if len(differing) == len(places):
         return ""
     where = "At the floors that are left out" if differing else "At every floor"
@@ -309,7 +309,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
 
 
 def _word_status(status: str) -> str:
-    """Return an outcome other than ok as an appended clause."""
+    """Return the outcome of a motion as a clause to append; "" if it is ok."""
     return "" if status in ("ok", "") else f"; {status}"
 
 
@@ -429,7 +429,7 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
 
 
 def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return which motions of every bound lack which demands, each sentence after the name of its bound."""
+    """Return which motions of every structure lack which demands, each sentence after the structure's label."""
     return [
         f"{word_bound(ensemble, each.name, '{}: ')}{line}"
         for each in ensemble.structures

@@ -14,11 +14,11 @@ from comparison.json_file import finite_or_none
 from reference.measures import Estimate
 from reference.measures.distribution import fractile
 
-MEDIAN_INDEX = FRACTILES.index(0.5)
+MEDIAN_INDEX = FRACTILES.index(0.5)  # index of the median in FRACTILES
 
 
 def list_quantities(points: Sequence[MotionDemandsAtScale]) -> list[Quantity]:
-    """Return the demands that any point has, in the order of `DEMANDS`."""
+    """Return the demands that are known under any motion, in the order of `DEMANDS`."""
     order = {name: place for place, name in enumerate(DEMANDS)}
     names = {quantity for point in points for quantity in point.values}
     return sorted(names, key=lambda quantity: (order[quantity[0]], quantity[1]))
@@ -38,6 +38,7 @@ def summarize_demands(points: EnsemblePoints) -> Iterator[result.DemandAtScale]:
 def _group_by_structure_and_scale(
     points: Sequence[MotionDemandsAtScale],
 ) -> dict[tuple[str, float], list[MotionDemandsAtScale]]:
+    """Return the points by name of the structure and scale."""
     groups: dict[tuple[str, float], list[MotionDemandsAtScale]] = {}
     for point in points:
         groups.setdefault((point.member.structure, point.member.scale), []).append(point)
@@ -45,7 +46,7 @@ def _group_by_structure_and_scale(
 
 
 def _summarize_points(points: Sequence[MotionDemandsAtScale]) -> Iterator[result.DemandAtScale]:
-    """Yield the statistics of points; a motion without a value counts as worse than all others."""
+    """Yield the statistics of demands over the motions; a motion without a value counts as worse than all others."""
     for name, own in group_rows_by(points, "member.structure").items():
         for quantity in list_quantities(own):
             for scale, at_scale in sorted(group_rows_by(own, "member.scale").items()):
@@ -100,7 +101,7 @@ def make_statistic(number: Estimate) -> result.Statistic:
 def compute_mean_and_fractiles(
     numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf
 ) -> list[result.Statistic]:
-    """Return the mean of numbers with errors, which needs all of them known, and their fractiles."""
+    """Return the mean of numbers with errors, unknown unless all of them are known, and their fractiles at `shares`."""
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
     fractiles = [compute_fractile_with_error(numbers, share, worst) for share in shares]
     return [make_statistic(each) for each in (Estimate(value, error), *fractiles)]

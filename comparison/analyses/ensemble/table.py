@@ -17,11 +17,11 @@ CONTROL_STARTS = ("\t", "\r", "\n")  # A plain cell never begins with one of the
 
 
 def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[dict[str, object]]:
-    """Return a row of all demands and errors for every motion, bound, scale and model; None without a value."""
+    """Return a row of all demands and errors for every motion, structure, scale and model; None without a value."""
     named = label_structures(ensemble)
     listed = list_quantities(points.all_points)
     units = {quantity: f" [{unit_of_demand(quantity[0]) or '-'}]" for quantity in listed}
-    # For example drift_2 for the drift of body 2
+    # Names of the columns, for example drift_2 for the drift of body 2
     names = {quantity: "_".join(map(str, filter(None, quantity))) for quantity in units}
     rows = []
     for point in points.all_points:
@@ -46,7 +46,7 @@ def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[di
 
 
 def format_table(points: EnsemblePoints, ensemble: EnsembleResult) -> str:
-    """Return the content of the file; a text that a spreadsheet takes for a formula begins with an apostrophe."""
+    """Return the content of ensemble.csv; an apostrophe precedes a text that a spreadsheet takes for a formula."""
 
     def cell(value: object) -> object:
         """Return a value of the table; an apostrophe keeps a spreadsheet from taking a text for a formula."""

@@ -16,10 +16,10 @@ from reference.records.numerals import UNITS
 from reference.support.arguments import Range
 from reference.support.files import read_file
 
-# Number of periods, evenly spaced in their logarithm: in the least squares, in the plot
+# Numbers of periods, evenly spaced in their logarithm: for the least-squares fit to the target, for the plot
 FITTED_PERIODS, DRAWN_PERIODS = 40, 60
-MAX_FILE_BYTES = 2**20  # largest size of a file in bytes
-ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
+MAX_FILE_BYTES = 2**20  # largest size of a target file in bytes
+ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}  # factor to m/s^2 by heading
 PERIODS, LARGEST = Range(1e-3, 1e3, "s"), 1e6  # admissible periods besides zero; largest acceleration, m/s^2
 FILE_RULE = (
     "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods, "
@@ -48,7 +48,7 @@ def read_target(file: str) -> tuple[Array, Array]:
 def match_spectrum(
     members: Sequence[EnsembleMember], file: str, ends: Sequence[str] | None
 ) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum]:
-    """Return the members with factors that fit them to the target, and that; ends: periods, s. Raises SceneError."""
+    """Return the members scaled to fit a target spectrum between two periods, s, and the target. Raises SceneError."""
     period, wanted = read_target(file)
     unit = "s: a period of the target spectrum"
     low, high = (read_number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])

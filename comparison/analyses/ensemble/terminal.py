@@ -30,7 +30,7 @@ from comparison.study.models import EXACT
 
 
 def print_equations(console: Console, ensemble: EnsembleResult) -> None:
-    """Print the demands of every bound by the equations and the outcomes; a part that fails becomes one line."""
+    """Print the demands of every structure by the equations, and the outcomes; a part that fails becomes one line."""
     parts: dict[str, Callable[[], None]] = {
         "factors of the motions": partial(_print_factors, console, ensemble),
         "demands": partial(_print_demands, console, ensemble),
@@ -70,7 +70,7 @@ def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
-    """Print the demands at the largest scale, in a table for each bound and for their envelope."""
+    """Print the demands at the largest scale, in a table for each structure and for the worst of all (envelope)."""
     print_lines(console, [f"{word_heading(ensemble)}."])
     shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
     for bound, rows in group_rows_by(make_demand_rows(ensemble, ensemble.largest_scale), "bound").items():
@@ -82,7 +82,7 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _cells_of_row(row: DemandRow) -> list[str]:
-    """Return the cells of a row without errors, with the motion and place of the largest value."""
+    """Return the cells of a table row, numbers without their errors, then motion and place of the worst value."""
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
     return [row.name, row.unit, mean, *values, ", ".join(filter(None, [row.motion, row.where, *row.bounds[-1:]]))]
@@ -103,7 +103,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _print_model_ratios(console: Console, ensemble: EnsembleResult) -> None:
-    """Print the mean difference of every model from the exact equations, by demand and bound."""
+    """Print the mean difference of every model from the exact equations, by demand and structure."""
     models = {key: title for key, title in MODEL_TITLES.items() if key != EXACT.key}
     for bound, rows in group_rows_by(make_model_ratio_rows(ensemble), "bound").items():
         print_lines(

@@ -55,19 +55,19 @@ class ModelRatio:
 
     @property
     def worst(self) -> tuple[float, str]:
-        """Return the ratio minus 1 of the motion whose ratio is farthest from 1, and that motion."""
+        """Return the largest relative difference between the two models, with sign, and the motion that has it."""
         ends = (self.smallest - 1.0, self.smallest_motion), (self.largest - 1.0, self.largest_motion)
         return max(ends, key=lambda end: abs(end[0]))
 
     @property
     def text(self) -> str:
-        """Return the mean difference from 1 and its range over the motions."""
+        """Return the relative difference between the two models, %: mean over the motions, and range."""
         ends = in_percent(self.smallest - 1.0), in_percent(self.largest - 1.0)
         return self.brief + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
 
     @property
     def brief(self) -> str:
-        """Return the mean difference from 1 without its range."""
+        """Return the relative difference between the two models, %: mean over the motions."""
         return f"{in_percent(self.mean - 1.0)} %"
 
 
@@ -109,7 +109,7 @@ class ModelRatioRow:
 
     @property
     def text(self) -> str:
-        """Return the mean by the exact equations in the display unit."""
+        """Return the demand's mean over the motions by the exact equations, with its display unit."""
         unit, factor = self.read
         return f"{word_value(self.value, None, factor)} {unit}".strip()
 
@@ -173,7 +173,7 @@ def _make_model_ratio_row(
 def _find_largest_deviation(
     ensemble: EnsembleResult, rows: Sequence[ModelRatioRow], pick: str
 ) -> tuple[float, str, str] | None:
-    """Return the largest difference of a single motion over all rows, with its demand, bound and motion."""
+    """Return the largest relative difference between two models under one motion, its demand, structure and motion."""
     found = []
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
@@ -184,13 +184,13 @@ def _find_largest_deviation(
 
 
 def _word_largest_size(size: float) -> str:
-    """Return an upper bound of the size of a difference in words."""
+    """Return in words how large a relative difference is at most."""
     return f"up to {percent(size)}" if size >= HIDDEN_BY_ROUNDING else f"less than {percent(HIDDEN_BY_ROUNDING)}"
 
 
 def model_ratio_sentence(ensemble: EnsembleResult) -> str:
     """
-    Return the sentence that keeps geometry, codes, friction law and turning of the bodies apart; "" without an engine.
+    Return how much geometry, codes, friction law and turning of the bodies each change a demand; "" without an engine.
 
     Each is the largest of single motions over every demand of the table. The smallest support force has a clause of
     its own: close to zero, a small force is a large share of it.
@@ -220,7 +220,7 @@ def model_ratio_sentence(ensemble: EnsembleResult) -> str:
 
 def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow, ModelRatio, list[str]]]:
     """
-    Yield the demands of all motions by the equations, times the engine's ratio to the equations in its own motions.
+    Yield the equations' demands over all motions, times the mean ratio of engine to equations in the engine's motions.
 
     Each comes with the ratio and the texts of mean, 84 % fractile and largest value times the mean ratio, with a range
     from its spread; of a smallest force they are mean, 16 % fractile and smallest value.
@@ -247,7 +247,7 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
 
 
 def extrapolation_sentence(rows: Sequence[tuple[ModelRatioRow, ModelRatio, list[str]]]) -> str:
-    """Return what the extended ratios are, or that ratios of one motion, which have no spread, make no estimate."""
+    """Return the note on the extrapolated demands, or that ratios of one motion allow no estimate."""
     if all(ratio.motions < MIN_SPREAD_MOTIONS for _, ratio, _ in rows):
         return (
             f"A ratio of fewer than {MIN_SPREAD_MOTIONS} motions has no spread: it makes no estimate of the suite. "

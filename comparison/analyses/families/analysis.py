@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # types of the results of other features, which a study need 
 
 @result
 class FamilyCurve:
-    """mu of one model and body over the key that varies in a family; null where there is no value."""
+    """mu of one model and body over the key of the scene file that varies in a family; null where there is no value."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -39,7 +39,7 @@ class FamilyCurve:
 
 @result
 class FamilyStep:
-    """One bar of the waterfalls of a body over the key that varies, relative to mu of the first model."""
+    """Change of mu of a body by one step between models (bar of a waterfall), over the key that varies in a family."""
 
     model: Annotated[str, "key of the model that the step leads to, or total"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -60,7 +60,7 @@ def compute_family_curves(study: Study, surfaces: xr.Dataset, family: Family) ->
 
 
 def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
-    """Return one entry per waterfall bar and body, then the total of the body."""
+    """Return for each body the change of mu by every step between models, over the scenes, then their total."""
     steps = []
     for body in range(1, family.bodies + 1):
         bars = [_bars_by_effect(waterfalls[scene.name][body - 1]) for scene in family.scenes]
@@ -74,7 +74,7 @@ def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfal
 
 @result
 class FamilyDemand:
-    """One demand of the motions of a model over the key that varies: median, smallest and largest value."""
+    """One demand by one model over the key of the scene file that varies in a family: median, smallest and largest."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
@@ -86,7 +86,7 @@ class FamilyDemand:
 
 
 def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
-    """Return one entry per model, quantity and body with a stored motion, in the order of `Demands`."""
+    """Return a demand over the varied key for each model, quantity and body with a stored motion."""
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
@@ -105,7 +105,7 @@ def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list
 def list_family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
-    """Return one entry per model, quantity and body, computed from all phases."""
+    """Return a demand over the varied key for each model, quantity and body, computed from all phases."""
     found: dict[tuple[str, str, int], dict[str, tuple[float, float, float, int]]] = {}
     for scene in family.scenes:
         for row in statistics.get(scene.name, ()):
@@ -118,7 +118,7 @@ def list_family_demands_over_phases(
 def _make_family_demand(
     family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
 ) -> FamilyDemand:
-    """Return the demand with its rows in place: median, lowest, highest and number of motions, by scene."""
+    """Return a demand over the varied key. rows: median, lowest, highest and number of motions, by scene."""
     numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
     return FamilyDemand(*key, *map(tuple, zip(*numbers)))
 

@@ -107,8 +107,8 @@ def _panel_over_values(
     family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]
 ) -> Panel:
     """
-    Return a panel over the varied value. lines: name, color and values, with smallest and largest values if any: these
-    make a band for the first and the last model alone, since the bands of all models hide each other.
+    Return a plot over the varied key. lines: name, color and values, and smallest and largest values if there are any.
+    These make a band for the first and the last model alone, since the bands of all models hide each other.
     """
     places, axis = _value_axis(family)
     series = []

@@ -97,7 +97,7 @@ def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
 
 
 def phases_of_peak(peak: Measured) -> tuple[float, float]:
-    """Return the phases, rad, at which a model is asked for a peak; a record has none, and any will do."""
+    """Return the phases, rad, at which a measured peak is computed; (0, 0) under a record, which has no phases."""
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
 
 

@@ -36,7 +36,7 @@ def half_range(values: Array) -> Array:
 
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
-    Return the indices to keep of `values` (T, C) at `time` (T,).
+    Return the indices of the instants at which a decimated motion keeps its `values` (T, C) at `time` (T,).
 
     They are both ends, `peaks`, and as many more as it takes for straight lines between them to miss no value by more
     than MAX_DECIMATION_ERROR of `half_range` of its component.
@@ -75,7 +75,7 @@ def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.boo
 
 @dataclass(frozen=True)
 class MotionPlace:
-    """A phase pair of the grid, by its indices, and why it was chosen, "" for one of an even spread."""
+    """Phase pair whose motion is stored: its indices on the grid, and why it was chosen ("" in the even spread)."""
 
     scene: str
     row: int
@@ -84,7 +84,7 @@ class MotionPlace:
 
 
 def _empty_series() -> Array:
-    """Return the series of a motion that lacks this quantity."""
+    """Return an empty time history, for a quantity that a motion lacks."""
     return np.zeros(0)
 
 
@@ -134,7 +134,7 @@ class StoredMotion:
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
-Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # third: relative error; last: phases, rad
+Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # task; float: error; last: phases, rad
 
 
 def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:

@@ -17,7 +17,7 @@ from reference.problem import Scene
 
 
 class ResidualDisplacement(UncertainNumber):
-    """A displacement at rest, which a motion may not have."""
+    """Displacement at which the platform comes to rest for good, m, or the reason why a motion has none."""
 
     reason: Text
     """why there is no value although the motion lasts as long as the scene; empty otherwise"""
@@ -50,7 +50,7 @@ class _StoredMotionDemandsSchema(Part):
 
 
 def _type_of_demand(annotation: str) -> Any:
-    """Return the type of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
+    """Return the schema type of a field of `Demands`: a number, or a list by body; or null if models may lack it."""
     kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
     return kind | None if annotation.endswith("None") else kind
 
@@ -71,7 +71,7 @@ _DEMANDS: dict[str, Any] = {  # type and schema entry of every demand, by name
     if each.name in QUANTITIES
 }
 _DEMANDS["spectra"] = MotionSpectra | None, Field(description="null where the motion ended early")
-MotionDemands: Any = create_model(
+MotionDemands: Any = create_model(  # form in which summary.json holds the demands of a stored motion
     "MotionDemands", __base__=_StoredMotionDemandsSchema, __doc__=_StoredMotionDemandsSchema.__doc__, **_DEMANDS
 )
 

@@ -112,7 +112,7 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Return the positions of the contact points.
+    Return the positions of the contact points of the supports, and the lever of a sphere.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.
@@ -125,7 +125,7 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
 
 
 def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
-    """Return the exponents of two that the columns of a motion are rounded to."""
+    """Return for each column of a motion the exponent n of its rounding unit 2^n."""
     values = _motion_columns(motion)
     steps = MAX_COLUMN_ROUNDING * half_range(values)
     steps[:1] = MAX_TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
@@ -139,7 +139,7 @@ def _motion_columns(motion: StoredMotion) -> NDArray[np.float64]:
 
 
 def _encode_motion(motion: StoredMotion) -> bytes:
-    """Return the columns of a motion as integers of their units: the first value, then the changes."""
+    """Return the columns of a motion in integer multiples of their rounding units: first value, then the changes."""
     values = np.round(_motion_columns(motion) / 2.0 ** _rounding_exponents(motion))
     return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
 

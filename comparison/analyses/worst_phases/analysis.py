@@ -42,7 +42,7 @@ Quantity = Literal["amplification", "displacement"]  # what is searched for its 
 
 @result
 class LargestOverPhases:
-    """Largest value of one model over all phases."""
+    """Largest mu of a body, or largest displacement of the platform, over all phases by one model."""
 
     scene: Annotated[str, "name of the scene"]
     model: Annotated[str, "key of the model"]
@@ -66,7 +66,7 @@ class LargestOverPhases:
 
 # An engine model without a search of its own, and the largest value on its phase grid
 UnsearchedEngine = tuple[Model, GridMaximum]
-# arguments of a task: scene, model, its engine, unsearched engine, quantity, body, engine tolerance, starts (K, 2)
+# Arguments of a task: scene, model, its engine, unsearched engine, quantity, body, engine tolerance, start phases, rad
 SearchTaskArguments = tuple[Scene, Model, Model | None, UnsearchedEngine | None, Quantity, int, float, Array | None]
 
 
@@ -83,7 +83,7 @@ def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str,
 
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Return model, engine with the same equations, quantity and body of every search."""
+    """Return for every search its model, the engine with the same equations or None, the quantity and the body."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -97,7 +97,7 @@ def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None
 def _starting_phases(
     study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
 ) -> Array | None:
-    """Return the local maxima of the surface if its grid is as fine as that of the search."""
+    """Return the phases, rad, (K, 2), of the surface's local maxima; None if its grid is coarser than the search's."""
     if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
@@ -124,7 +124,7 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
 
 
 def _without_value(task: SearchTaskArguments, failed: TaskResult) -> list[LargestOverPhases]:
-    """Return a largest value for each model of a search that failed, with the reason."""
+    """Return a result without a value for each model of a search that failed, with the reason."""
     scene, model, engine, on_grid, quantity, body, *_ = task
     models = [model, *([engine] if engine else []), *([on_grid[0]] if on_grid else [])]
     return [LargestOverPhases(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
@@ -173,7 +173,7 @@ def _compute_engine_nearby(
 
 
 def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> UnsearchedEngine | None:
-    """Return the spatial engine model with its largest value on its grid; None without one."""
+    """Return the spatial engine model with the largest mu of a body on its phase grid; None without such a model."""
     model = study.compared(scene)[-1]
     if surfaces is None or not model.is_spatial:
         return None
@@ -184,7 +184,7 @@ def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, bo
 def _larger_of_grid_and_worst(
     worst: LargestOverPhases, scene: Scene, on_grid: UnsearchedEngine, tolerance: float
 ) -> LargestOverPhases:
-    """Return the larger of an engine's values on its grid and at the worst phases of the equations."""
+    """Return the larger of two values of mu by the engine: largest on its grid; at the equations' worst phases."""
     model, largest = on_grid
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
@@ -204,7 +204,7 @@ def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -
 def _estimate_engine_by_ratio(
     center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
 ) -> ComputedPhases:
-    """Return the engine's mu at 3 x 3 phase pairs: the equations' times a ratio that five of these give."""
+    """Return an estimate of the engine's mu at 3 x 3 phase pairs: the equations' mu times a ratio known at five."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]

@@ -30,13 +30,13 @@ from reference.problem import State, Trajectory
 MODEL_OF_SIDE = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
 TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked of each code
 READ_SAMPLES = 100_001  # number of instants at which a motion by the equations is read
-SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by side
+SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by each code
 TASK_TIME_LIMIT = 300.0  # s, largest processor time of one task
 
 
 @dataclass(frozen=True)
 class SideNumbers:
-    """The numbers that one side computes with their errors, and how its motion ended."""
+    """Numbers that one code computes for a benchmark, with their errors, and how its motion ended."""
 
     values: list[float]
     errors: list[float]
@@ -51,7 +51,7 @@ class BenchmarkTable:
     cases: Sequence[BenchmarkCase]
 
     def tasks(self) -> list[Task]:
-        """Return one task for each benchmark and side."""
+        """Return one task for each benchmark and code."""
         return [self._task(case, side) for case in self.cases for side in MODEL_OF_SIDE]
 
     def collect(self, results: TaskResults) -> Benchmarks:
@@ -63,7 +63,7 @@ class BenchmarkTable:
         return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
-        """Return the task that solves one benchmark by one side."""
+        """Return the task that solves one benchmark by one code."""
         seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
         return Task(
             solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
@@ -71,7 +71,7 @@ class BenchmarkTable:
 
 
 def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
-    """Return the numbers that one side computes. Runs inside a worker process."""
+    """Return the numbers that one code computes for a benchmark. Runs inside a worker process."""
     case, side = benchmark_and_side
     settings = dict(MODEL_OF_SIDE[side].settings)
     if side != EQUATIONS:
@@ -88,7 +88,7 @@ def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
 
 
 def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
-    """Return the numbers and their estimated absolute errors; none for a motion that ended early."""
+    """Return the numbers read from a motion and their estimated absolute errors; none if it ended early."""
     if motion.status not in FULL_LENGTH_OUTCOMES or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.read(motion), motion.accuracy
@@ -108,7 +108,7 @@ def halve_samples(motion: Trajectory) -> Trajectory:
 
 
 def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
-    """Return a benchmark with the numbers of every side."""
+    """Return a benchmark with the published numbers and those of every code."""
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -123,7 +123,7 @@ def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> 
 
 
 def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
-    """Return a published number with that of every side; NaN if a side has fewer values than are published."""
+    """Return a published number with that of every code; NaN if a code has fewer values than are published."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
     for side, answer in answers.items():

@@ -85,7 +85,7 @@ def list_cases() -> list[BenchmarkCase]:
 
 
 def _wear_power_cases() -> list[BenchmarkCase]:
-    """Return a sliding block under a harmonic force from always sliding to held (code_aster SDND104)."""
+    """Return benchmarks of a block under a harmonic force, from always sliding to stuck (code_aster SDND104)."""
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
@@ -185,7 +185,7 @@ def _pulse_case() -> BenchmarkCase:
 
 
 def _linear_cases() -> list[BenchmarkCase]:
-    """Return natural periods and responses of linear structures."""
+    """Return the benchmarks of linear structures: natural periods and responses."""
     stories = (2.0, 0.6852, 0.4346, 0.3383, 0.2966)
     return [
         BenchmarkCase(
@@ -225,7 +225,7 @@ def _linear_cases() -> list[BenchmarkCase]:
     ]
 
 
-MASTODON_OPTION = "--mastodon"
+MASTODON_OPTION = "--mastodon"  # option that names the file with MASTODON's input motion
 MASTODON_RULE = "must be the CSV file with the input of MASTODON's friction pendulum test: time [s], ax, ay, az"
 READING_ERROR = 3.0  # mm, error of reading the published loops
 MASTODON_RADIUS = 2.2352  # m, radius of the friction pendulum
@@ -239,7 +239,7 @@ INPUT_TOLERANCE = 1e-3  # relative deviation that a copy of the MASTODON input i
 MASTODON_EXTREMES = -432.0, 330.0, -197.0, 152.0
 # Friction of the MASTODON benchmark: it falls with pressure and temperature and grows with the slip velocity
 MASTODON_FRICTION = {
-    "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)
+    "slow": 0.03 * 0.789 / 0.79,  # MASTODON's factor at T degrees C is 0.789 (0.7^(0.02 T) + 0.4), here 0.79 (...)
     "fast": 0.06 * 0.789 / 0.79,
     "rate": 100.0,
     "load_exponent": -0.357,  # log-log slope of MASTODON's 0.7^(0.02 (p - 50)) at p = 50 MPa, under the weight

@@ -30,7 +30,7 @@ MODEL_EXPLANATION = "the source models something else, which its benchmark names
 
 @result
 class SideNumber:
-    """Number that one side computes for a published one, with its error and verdict."""
+    """Number that one code computes for a published one, with its error and verdict."""
 
     value: Annotated[float | None, "in the unit of the published number; null without an answer"]
     error: Annotated[float | None, "estimated absolute error; null where it is not known"]
@@ -40,7 +40,7 @@ class SideNumber:
 
 @result
 class PublishedNumber:
-    """One published number with its uncertainty and the numbers of every side."""
+    """One published number with its uncertainty, and the number that every code computes for it."""
 
     quantity: Annotated[str, "what it is"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -64,12 +64,12 @@ class PublishedNumber:
         return judge_error(value - self.published, error + self.uncertainty + VALUE_ROUNDING * abs(value))
 
     def error_of(self, side: str) -> float | None:
-        """Return the comparison error of a side, None without a value."""
+        """Return the computed number of one code minus the published one; None without a value."""
         value = self.numbers[side].value
         return None if value is None else value - self.published
 
     def word(self, side: str, explained: bool = False) -> str:
-        """Return the verdict on one side in words, with its explanation if asked."""
+        """Return the verdict on the number of one code in words, with its explanation if asked."""
         number = self.numbers[side]
         why = (number.explanation or "not explained") if explained else ""
         return word_verdict(number.verdict, self.error_of(side), self.published, self.unit, why)
@@ -77,7 +77,7 @@ class PublishedNumber:
 
 @result
 class Benchmark:
-    """The published numbers of one scene."""
+    """One benchmark: the published numbers of a scene, and those of every code."""
 
     name: Annotated[str, "name of the scene"]
     title: Annotated[str, "what is solved"]

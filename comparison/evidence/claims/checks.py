@@ -12,15 +12,15 @@ from comparison.result_types import Text, result
 from comparison.surfaces.budget import compute_torus_distance
 from comparison.verdicts import MET, NOT_MET, Verdict
 
-EPSILON = 0.1  # the paper's epsilon: T_1, T_2 = T_c (1 -+ epsilon)
-ROUNDING = 1e-9  # relative rounding error; T_c (1 -+ epsilon) itself is close to T_c
+EPSILON = 0.1  # the paper's epsilon: periods of the loading T_1, T_2 = T_c (1 -+ epsilon), with T_c of the platform
+ROUNDING = 1e-9  # relative rounding error that is allowed, so that T_c (1 -+ epsilon) itself counts as close to T_c
 # Correlation from which two surfaces are similar: each explains half of the variance of the other
 MIN_CORRELATION = 0.7
 # |x - y| over the largest displacement below which a motion is along one line, within the solver's tolerance
 MAX_PLANE_DEVIATION = 1e-6
 MIN_AXIS_DIFFERENCE = 0.1  # |x - y| over the largest displacement above which motions along x and y differ
 SMALL_SWING_RATIO = 0.1  # largest squared displacement over rho^2 that counts as small
-# Prominence over the range; at 20 % the count of mu_1 depends on the grid and on the integration
+# Prominence of a counted peak over the range of mu; at 20 % the count of mu_1 depends on grid and integration
 COMPLEX_PROMINENCE = 0.25
 OTHER_PROMINENCES = 0.15, 0.35  # other prominences, at which the count may contradict the statement
 MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, distance from a corner within which a peak counts as near it
@@ -71,7 +71,7 @@ def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> St
 
 
 def find_folds(*cases: Evidence) -> StatementVerdict:
-    """Return whether every surface has a fold or a jump at its sharpest curvature."""
+    """Return whether every surface of mu has a fold or a jump at its sharpest curvature."""
     rough = all(not (flat or bend.smooth) for case in cases for _, flat, bend in _list_curvatures(case))
     return verdict_with_reason(rough, "; ".join(map(_describe_curvatures, cases)))
 
@@ -150,7 +150,7 @@ def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict
 
 
 def compare_complexity(case: Evidence) -> StatementVerdict:
-    """Return whether mu_2 has several peaks and valleys, and more than mu_1; with prominences that contradict."""
+    """Return whether mu_2 has several peaks and valleys, and more than mu_1; name prominences at which this differs."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
         """Return peaks and valleys of mu_1 and of mu_2 at a prominence, as a share of the range of mu."""

@@ -39,8 +39,8 @@ _PEAKS_AND_VALLEYS = (
     f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square, or both as drawn or"
     " on the drawn profile over α_1 - α_2"
 )
-_SIMILAR = f"correlation over the phases at least {checks.MIN_CORRELATION:g}"
-_ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"
+_SIMILAR = f"correlation over the phases at least {checks.MIN_CORRELATION:g}"  # rule for similar surfaces
+_ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"  # rule for folds
 # Scenes of the paper's figures
 _I, _II, _DRY, _WET = "fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"
 

@@ -21,7 +21,7 @@ MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase
 
 @dataclass(frozen=True)
 class Evidence:
-    """Findings on surfaces and motions of one scene by the printed (4.3)-(4.4), under one definition of the peak."""
+    """Findings on surfaces and motions of one scene by (4.3)-(4.4) as printed, in one reading of (5.1)."""
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
     error: float = float("nan")  # largest absolute error estimate

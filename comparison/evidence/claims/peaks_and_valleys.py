@@ -41,7 +41,7 @@ class PeakCounts(NamedTuple):
 
 def count_periodic_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
     """
-    Return the numbers of peaks and valleys on the square that closes at 2 pi.
+    Return the numbers of peaks and valleys of mu on the square of phases, which closes at 2 pi.
 
     mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
     """
@@ -119,7 +119,7 @@ def _root_of_node(parent: list[int], node: int) -> int:
 
 @cache
 def _neighbors(rows: int, columns: int, closed: bool) -> list[list[int]]:
-    """Return the nodes in the square around each node: a ridge may run along the diagonal of the grid."""
+    """Return the eight neighbors of each grid point, as indices: a ridge may run along the diagonal of the grid."""
     numbers = np.arange(rows * columns).reshape(rows, columns)
     padded = np.pad(numbers, 1, mode="wrap") if closed else np.pad(numbers, 1, constant_values=-1)
     squares = np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).reshape(-1, 9).tolist()

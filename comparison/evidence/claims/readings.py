@@ -18,7 +18,7 @@ class PeakReading:
     cutoff: float | None
 
 
-# The two definitions of the peak in (5.1): faster than v_c alone, or the limit at stops included
+# The two readings of (5.1): rest and sliding faster than v_c count alone, or also the limit just before a stop
 AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)

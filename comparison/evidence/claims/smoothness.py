@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # steps on the grid of phases
+DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # grid steps along which mu is differenced
 SEARCHED_PLACES = 2  # number of grid points from which a zoom starts on each surface
 STEP_HALVINGS = 5  # number of halvings of the step in a zoom, which ends at 1/32
 FITTED_HALVINGS = 3  # The exponent is fitted to the last halvings: earlier steps still show the shape of the peak.
@@ -75,7 +75,7 @@ def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tupl
 
 
 def _second_differences(values: Array) -> Array:
-    """Return the second differences of three equally spaced values, (K, 3), (K,)."""
+    """Return the second differences (K,) of three equally spaced values (K, 3)."""
     difference: Array = values[:, 0] - 2.0 * values[:, 1] + values[:, 2]
     return difference
 

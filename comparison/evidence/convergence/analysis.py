@@ -44,14 +44,14 @@ MAX_STEPS = 20_000  # largest number of constant steps of a motion
 EQUATION_TOLERANCE = 1e-7  # relative error of mu by the equations
 # Tolerances of the Newton iteration and of its residual in the engine's steps
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
-STEP_ERROR_FACTOR = 1.5  # factor on the difference of two steps, which is half to once the error of the coarser one
+STEP_ERROR_FACTOR = 1.5  # error estimate over the change of mu by halved steps, which is 0.5 to 1 coarse errors
 
 
 def _compare_at_speeds(
     side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float], resolved: bool,
     scene: Scene,
 ) -> RelativeDifferences:  # fmt: skip
-    """Return the relative difference of mu at each v_reg from set-valued friction, as resolved peak or supremum."""
+    """Return the relative difference of mu at each v_reg from mu with set-valued friction, as resolved or supremum."""
     short = shorten_scene(scene, periods)
     return _relative_differences(
         (
@@ -104,7 +104,7 @@ def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: floa
 
 
 class ConvergenceCase(NamedTuple):
-    """One limit: what converges to what, with which parameter, and with which power of it."""
+    """Limit in which a difference of mu vanishes: its name, the parameter that goes to zero, the expected exponent."""
 
     what: str
     parameter: tuple[float, ...]
@@ -144,7 +144,7 @@ CaseArguments = tuple[Scene, int]  # scene, and index of the limit in CONVERGENC
 
 
 def fit_limit_trends(task: CaseArguments) -> list[Trend]:
-    """Return the trend of every body in one limit of one scene. Runs inside a worker process."""
+    """Return how mu of every body tends to one limit in one scene. Runs inside a worker process."""
     scene, number = task
     sizes, errors = CONVERGENCE_CASES[number].measure(scene)
     return _fit_trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))
@@ -159,7 +159,7 @@ def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
 def _fit_trends(
     task: CaseArguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
 ) -> list[Trend]:
-    """Return the trend of every body. sizes, errors: for each body, by phase pair and parameter value."""
+    """Return the fitted power law of every body. sizes, errors: differences of mu by phase pair and parameter value."""
     scene, number = task
     what, parameter, expected, *_ = CONVERGENCE_CASES[number]
     return [

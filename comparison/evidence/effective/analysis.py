@@ -28,7 +28,7 @@ MEASURED_SPEED_SHARE = 0.9  # share of the platform's largest speed above which 
 
 @result
 class EffectiveModelValues:
-    """Values read back from one motion of a model, or stated by the scene; null if the motion cannot tell."""
+    """Radius, friction, mass and top link as one motion of a model shows them, or as the scene states; else null."""
 
     scene: Annotated[Text, "name of the scene"]
     model: Annotated[str, "key of the model, or scene"]
@@ -44,7 +44,7 @@ class EffectiveModelValues:
 
 
 def word_effective(values: Sequence[EffectiveModelValues]) -> str:
-    """Return the largest deviation of the values read back from those that the scenes state."""
+    """Return the largest deviations of radius, friction and mass read from motions from what the scenes state."""
     known = {each.scene: each for each in values if each.model == "scene"}
     parts = []
     for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
@@ -57,7 +57,7 @@ def word_effective(values: Sequence[EffectiveModelValues]) -> str:
 
 
 def read_scene_values(scene: Scene) -> EffectiveModelValues:
-    """Return the values that the scene states; the platform starts at rest relative to the plate."""
+    """Return radius, friction, mass and top link as the scene states them; the platform starts at rest on the plate."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return EffectiveModelValues(
         scene=scene.name,
@@ -73,7 +73,7 @@ def read_scene_values(scene: Scene) -> EffectiveModelValues:
 
 
 def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
-    """Return the values of one model; `error_message` states what goes wrong, and no value is made up."""
+    """Return radius, friction, mass and top link read from a motion of one model, or the message of its failure."""
     scene, model = task
     nothing = EffectiveModelValues(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
@@ -87,7 +87,7 @@ def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
 
 
 class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
-    """Analysis of the values that each scene states and that the motion of each model shows."""
+    """Analysis of radius, friction, mass and top link: as each scene states them and as each model's motion shows."""
 
     key, stage, level = "effective", "effective values", 2
     seconds = 1.0
@@ -173,7 +173,7 @@ def _measure_friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     fast = speed > MEASURED_SPEED_SHARE * speed.max()
     ratio = across[fast] / along[fast]
     law = scene.dry_friction
-    if law.exponent:  # Convert the ratio to a contact force equal to the weight.
+    if law.exponent:  # Convert the friction ratio to that under a contact force equal to the weight.
         ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:
         share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast friction

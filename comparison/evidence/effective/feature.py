@@ -13,7 +13,7 @@ from reference.problem import Scene
 
 
 def _effective_of_scene(findings: Findings, scene: Scene) -> list[EffectiveModelValues]:
-    """Return the values read back from the models of one scene."""
+    """Return radius, friction, mass and top link of one scene: as stated, then as each model's motion shows them."""
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 

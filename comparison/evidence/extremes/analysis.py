@@ -44,7 +44,7 @@ GROUPS_QUICK_BY_ENGINE = {"lubrication, s/m", "start at the friction limit", "ou
 STAGE = "extremes"  # name of the stage of these tasks on the terminal
 # s of processor time of one cell with its finer runs: twice what the most expensive takes on a busy machine
 CELL_TIME_LIMIT = 300.0
-SECONDS_OF_LONG_ROWS = 30.0  # s, cost of a long row with the equations, in place of the usual cost of its column
+SECONDS_OF_LONG_ROWS = 30.0  # s, predicted processor time of a cell in a row that is not quick
 # Words for the failures of processes; every other failure is an exception
 PROCESS_FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}
 MIN_TOLERANCE = 1e-10  # smallest relative error that a model can be asked for
@@ -52,7 +52,7 @@ MIN_TOLERANCE = 1e-10  # smallest relative error that a model can be asked for
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """Answer of a model: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (its error)."""
+    """Answer of a model: mu, error and status; or the rule that the scene breaks (`invalid`), or the error `raised`."""
 
     mu: Array
     error: Array
@@ -99,7 +99,7 @@ def _judge_point(
 
 
 def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoint], tolerance: float) -> MatrixEntry:
-    """Return the verdict on a value with its error estimate."""
+    """Return the verdict on mu with its error estimate at one phase pair, by finer runs."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
     unconfirmed = MatrixEntry(CellVerdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
@@ -153,7 +153,7 @@ def _judge_without_error(status: str, mu: Array, value: Array, tolerance: float)
 
 @dataclass(frozen=True)
 class MatrixCell:
-    """One extreme by one model."""
+    """Cell of the matrix: one extreme case (row) computed by one model (column)."""
 
     row: ExtremeCase
     column: ModelColumn
@@ -218,7 +218,7 @@ def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> 
 
 
 def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
-    """Return the scene of tables and keys, in which None stands for an absent key. Raises SceneError."""
+    """Return the scene that the tables in `stated` describe; None stands for an absent key. Raises SceneError."""
     try:
         return Scene.model_validate({**stated, "name": "extreme"})
     except ValidationError as error:

@@ -3,7 +3,7 @@
 _ENGINE = "translational", "spatial"  # keys of the models of Exudyn
 # Causes in words, and parts of them
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
-_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"
+_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"  # end of a cause
 _FRICTION = f"friction stops so light a platform {_QUICK}"
 _RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
 _LIGHT = (

@@ -52,7 +52,7 @@ COLUMNS = (  # columns of the matrix in their order
     ModelColumn("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
     ModelColumn("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
 )
-ALL_MODELS = tuple(column.key for column in COLUMNS)
+ALL_MODELS = tuple(column.key for column in COLUMNS)  # keys of the built-in models
 
 
 def make_user_column(model: Model) -> ModelColumn:
@@ -64,8 +64,8 @@ def make_user_column(model: Model) -> ModelColumn:
 
 
 PLANAR_MODELS = ALL_MODELS[:4]  # models whose bodies do not rotate
-# Subsets of the models: the equations, those with regularized friction, the engine's, the engine's in space
+# Models of the equations: small, exact, and exact with regularized friction
 REFERENCE_MODELS = ALL_MODELS[:3]
-REGULARIZED_MODELS = ALL_MODELS[2:]
-ENGINE_MODELS = ALL_MODELS[3:]
-SPATIAL_MODELS = ALL_MODELS[4:]
+REGULARIZED_MODELS = ALL_MODELS[2:]  # models with friction linear below v_reg
+ENGINE_MODELS = ALL_MODELS[3:]  # models of Exudyn
+SPATIAL_MODELS = ALL_MODELS[4:]  # model of Exudyn whose bodies rotate

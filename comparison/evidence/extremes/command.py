@@ -40,7 +40,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         "--limit", metavar="SECONDS", help=f"most processor time of one cell (default {CELL_TIME_LIMIT:g})"
     )
     parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
-    parser.add_argument("--only", help=argparse.SUPPRESS)  # the refusal names the option that replaces it
+    parser.add_argument("--only", help=argparse.SUPPRESS)  # former option: its refusal names the one in its place
     keys = [column.key for column in COLUMNS]
     parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
     add_models(parser)

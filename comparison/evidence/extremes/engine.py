@@ -14,7 +14,7 @@ import multibody
 from reference.problem import GRAVITY, Amplification, Scene
 from reference.problem.readings import DEFAULT_V_REG
 
-MAX_LEVELS = 6  # largest number of levels: more could cost much after a bad start, and would not change the answer
+MAX_LEVELS = 6  # largest number of levels of accuracy: more could cost much and would not change the answer
 LEVELS_TO_USUAL_CONTACT = 3  # number of levels from the given stiffness to that of the study, by equal factors
 LEVEL_STEP_RATIO = 4  # ratio of the largest steps of two successive levels
 
@@ -29,7 +29,7 @@ def amplification(
     step: float | None = None,
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
-    """Return `multibody.amplification` with few levels, from a contact stiffness, N/m, or a largest step, s."""
+    """Return mu by the engine whose levels of accuracy start at a contact stiffness, N/m, or a largest step, s."""
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)

@@ -65,7 +65,7 @@ class Matrix:
     run: Annotated[Mapping[str, Any], "command, times, provenance, and whether it is the reduced form"]
 
     def __post_init__(self) -> None:
-        """Refuse rows of models that are no column."""
+        """Refuse a verdict on a model that has no column."""
         for row in self.rows:
             for key in row.entries:
                 require(key in self.columns, f"model {key[:40]!r} of a row is none of the columns")
@@ -99,7 +99,7 @@ STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extre
 
 
 def describe_entry(entry: MatrixEntry) -> str:
-    """Return the text of a field of the matrix: the error claimed, or the status in its own words."""
+    """Return the text of a cell of the matrix: the relative error that the model claims, or the outcome."""
     if entry.verdict == CellVerdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"
     return "FAILED" if entry.verdict == CellVerdict.FAILED else entry.status or "against a rule"

@@ -30,15 +30,15 @@ from comparison.evidence.extremes.scenes import (
     raise_bodies,
 )
 
-Phases = tuple[tuple[float, float], ...]
+Phases = tuple[tuple[float, float], ...]  # phase pairs (alpha1, alpha2), rad
 
 USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs of most rows
 # rad, phase pairs at which symmetry makes forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-# Largest number of steps of Exudyn for a phase pair: in rows that only this number would stop, for the translational
-# model, whose steps cost least; and in rows of towers by their number of bodies, whose steps cost more
+# Largest number of Exudyn's steps for a phase pair: in rows that MAX_WORK would end too early, which of
+# Exudyn's models the translational one alone computes; and in rows of towers by their number of bodies
 MAX_WORK_OF_LONG_ROWS = 4e6
-MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}
+MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # by number of bodies
 
 
 @dataclass(frozen=True)
@@ -233,7 +233,7 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
 
 
 def _direction_cases() -> Iterator[ExtremeCase]:
-    """Yield loadings along one axis or one line, and nearly so."""
+    """Yield extremes of the direction of loading: along one axis or one line, exactly and nearly."""
     lines = {
         "x alone": make_baseline_scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
         "y alone": make_baseline_scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),

@@ -51,7 +51,7 @@ def add_vertical_harmonic(amplitude: float) -> list[list[float]]:
 
 
 def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
-    """Return the scene with bodies as high above the contacts as in the baseline scene; heights count from there."""
+    """Return the scene with heights raised by its extra radius: bodies stay as high above the contacts as before."""
     rise = max(stated["isolator"]["radius"] - BASELINE_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 

@@ -23,8 +23,8 @@ from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_C
 
 LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)  # factors s on the loading
-SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs
-SCALING_TOLERANCE = 1e-8  # relative error of mu: the step at the smallest scale is 1e-5
+SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs computed at each scale
+SCALING_TOLERANCE = 1e-8  # relative error of mu: at the smallest scale exact and small equations differ by 1e-5
 EXACT_MINUS_SMALL = "exact minus small"  # name of the difference between exact and small equations
 SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of the change of mu when the loading is halved
 
@@ -32,7 +32,7 @@ Arguments = tuple[Scene, bool]  # scene, and whether the supremum is taken
 
 
 def scale_scene(scene: Scene, s: float) -> Scene:
-    """Return the scene with loading, dry friction and travel times s, and the rate of friction with speed over s."""
+    """Return the scene with loading, dry friction and travel times s; the rate of friction with speed is over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
     if not law.constant or law.elastic:
@@ -47,10 +47,10 @@ def scale_scene(scene: Scene, s: float) -> Scene:
 
 
 def fit_scene_trends(task: Arguments) -> list[Trend]:
-    """Return both trends of one scene for each body. Runs inside a worker process."""
+    """Return for each body of a scene how two differences of mu fall with the scale. Runs inside a worker process."""
     scene, supremum = task
     answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
-    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # by scale, equations, pair, body
+    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (scale, small or exact, P, N)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
     halving = small[:-1] / small[1:] - 1.0
@@ -95,7 +95,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
 
 
 def _name_peak(scene: Scene, supremum: bool) -> str:
-    """Return the definition of the peak in words."""
+    """Return which peak of the acceleration mu is taken from, in words for the name of a trend."""
     return "peak" if not has_dry_friction(scene) else "supremum" if supremum else "resolved peak"
 
 

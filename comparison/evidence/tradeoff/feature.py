@@ -16,7 +16,7 @@ TARGET_ERRORS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the fastest 
 
 
 def make_tradeoff_panels(trade: SceneTrade) -> list[Panel]:
-    """Return one panel for each question, of the platform and of the last body."""
+    """Return plots of error over processor time: for each question one of the platform and one of the last body."""
     bodies = sorted({0, trade.bodies - 1})
     return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
 
@@ -47,7 +47,7 @@ def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
 
 
 def make_growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
-    """Return one panel for each quantity that grows: seconds over it, the slopes in the legend."""
+    """Return a plot of seconds over each quantity that grows, with the slopes in the legend."""
     panels: list[Panel] = []
     titles = list(dict.fromkeys(each.model for each in listed))
     for quantity, group in groupby(listed, key=lambda each: each.quantity):

@@ -24,9 +24,9 @@ FILE = "growth.json"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
 BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies of a growing scene
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion
-PHASE_PAIRS = "phase pairs"
-PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)
-PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations, by side
+PHASE_PAIRS = "phase pairs"  # name of a quantity over which the cost is measured
+PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)  # numbers of phase pairs in one call
+PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations, by code
 TALL_DURATION = 5.0  # s, duration of motion of scenes with many bodies
 # Factor on the loading of the scene: with a smaller one friction holds a tall platform, which costs nothing
 TALL_LOADING_FACTOR = 3.0
@@ -51,7 +51,7 @@ def split_upper_body(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """Quantity over which cost is measured. scene: returns the scene with a value of it from the scene of the study."""
+    """Quantity over which processor time is measured. scene: function that puts a value of it into a scene."""
 
     name: str
     unit: str
@@ -72,7 +72,7 @@ QUANTITIES = (  # quantities over which the cost is measured
 
 @result
 class CostSeries:
-    """Cost of one model over the values of one quantity."""
+    """Processor time of one model over the values of one quantity that grows, with the fitted slope."""
 
     quantity: Annotated[str, "what grows"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -115,7 +115,7 @@ def make_cost_series(
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Return p of seconds ~ values^p, fit to the larger half of what was measured, and its standard error, or NaN."""
+    """Return the exponent p of seconds ~ values^p, fitted to the larger half, and its standard error; or NaN."""
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # Values after one without a measurement are not fitted.
     if known < 3:
         return float("nan"), float("nan")

@@ -22,7 +22,7 @@ REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN = (
     f"comparison.evidence.tradeoff.single_runs:{name}"
     for name in ("run_reference_once", "run_engine_once", "run_at_constant_step")
 )
-SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"
+SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"  # function that computes mu by SciPy
 
 REFERENCE_SOLUTION_TOLERANCE = 1e-10  # smallest relative error that the equations can be asked for
 SPATIAL_SOLUTION_TOLERANCE = 1e-5  # relative error of the spatial engine's reference solution
@@ -43,7 +43,7 @@ Settings = Mapping[str, Any]  # keyword arguments of a function
 
 @dataclass(frozen=True)
 class TradeoffQuestion:
-    """Equations that methods solve; function and settings of their reference solution. points, quick: sample sizes."""
+    """Equations that several methods solve, with a reference solution. points, quick: numbers of phase pairs."""
 
     key: str
     title: str
@@ -90,7 +90,7 @@ QUESTIONS = (
 
 
 def list_questions(scene: Scene) -> list[TradeoffQuestion]:
-    """Return the questions that a scene allows."""
+    """Return the questions (equations to solve) that a scene has the data for."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
@@ -135,7 +135,7 @@ def _make_curve_settings(
 
 
 def _reference_settings(scene: Scene) -> Iterator[Setting]:
-    """Yield the equations with error control, in single runs, and regularized against rigid friction."""
+    """Yield settings of the equations: with error control, in single runs, regularized against rigid friction."""
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
         controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(REFERENCE_RUN, "step_tolerance", law)
@@ -157,7 +157,7 @@ def _reference_settings(scene: Scene) -> Iterator[Setting]:
 
 
 def _scipy_settings(quick: bool) -> Iterator[Setting]:
-    """Yield general-purpose integrators of SciPy on the equations with regularized friction."""
+    """Yield settings of SciPy's general-purpose integrators on the equations with regularized friction."""
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
     # LSODA goes to tighter tolerances because its finest run checks the reference solution.
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
@@ -169,7 +169,7 @@ def _scipy_settings(quick: bool) -> Iterator[Setting]:
 
 
 def _engine_settings(quick: bool) -> Iterator[Setting]:
-    """Yield the engine as the package runs it, with error control, and single runs with one parameter changed."""
+    """Yield settings of the engine: as the package runs it, with error control; single runs, one parameter changed."""
     parameters = (
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
         ("contact compliance", PENETRATION_PARAMETER, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
@@ -192,7 +192,7 @@ def _engine_settings(quick: bool) -> Iterator[Setting]:
 
 
 def _constant_step_settings(quick: bool) -> Iterator[Setting]:
-    """Yield the engine's own integrators at constant time steps, s."""
+    """Yield settings of the engine's own integrators at constant time steps, s."""
     for solver, steps in STEPS_OF_INTEGRATOR.items():
         call = _VariedCall(CONSTANT_STEP_RUN, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
         few = steps[:: 2 if quick else 1]

@@ -24,7 +24,7 @@ MEANINGS = {  # meaning of each variable of the netCDF file
 
 @result
 class StatedSetting:
-    """A setting of a method before it is measured."""
+    """Setting of a method (its varied parameter at one value), before its error and time are measured."""
 
     question: Annotated[str, "key of the question that it answers"]
     method: Annotated[str, "the curve that it belongs to"]
@@ -42,7 +42,7 @@ class StatedSetting:
 
 @result
 class MeasuredSetting(StatedSetting):
-    """One setting of a method with its measured errors and time."""
+    """Setting of a method (its varied parameter at one value) with its measured errors and processor time."""
 
     points: Annotated[int, "phase pairs asked for"]
     answered: Annotated[int, "phase pairs with a value"]
@@ -62,7 +62,7 @@ class MeasuredSetting(StatedSetting):
 
 @result
 class SolvedQuestion:
-    """One question with its reference solution."""
+    """One question (equations to solve) with its reference solution and the checks of this solution."""
 
     key: Annotated[str, "key of the question"]
     title: Annotated[str, "equations and law of friction"]
@@ -74,7 +74,7 @@ class SolvedQuestion:
 
 @result
 class SceneTrade:
-    """Measured trade-off of one scene."""
+    """Relative error against processor time of every setting for one scene, as measured."""
 
     scene: Annotated[str, "name of the scene"]
     title: Annotated[str, "title of the scene"]
@@ -98,7 +98,7 @@ class SceneTrade:
         return [entry for entry in self.entries if entry.question == question]
 
     def methods(self, question: str) -> dict[str, list[MeasuredSetting]]:
-        """Return the curves of one question, from the cheapest value to the most expensive."""
+        """Return the entries of one question by method; those of a method run from cheap to expensive."""
         curves: dict[str, list[MeasuredSetting]] = {}
         for entry in self.entries_of(question):
             curves.setdefault(entry.method, []).append(entry)
@@ -106,7 +106,7 @@ class SceneTrade:
 
 
 def find_error_quantile(errors: Array, share: float) -> float | None:
-    """Return the occurring error that a share of the points does not exceed; None if no error is known."""
+    """Return the smallest of the errors that a share of the points does not exceed; None if no error is known."""
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 

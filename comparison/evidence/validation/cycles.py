@@ -12,7 +12,7 @@ from comparison.result_types import Array
 CYCLE_SAMPLES = 250  # samples per cycle, as in the measurement
 MIN_CYCLES = 3  # smallest number of whole cycles in a run
 BASE_HARMONICS = 6  # number of harmonics fitted to the base motion
-MAX_UNEXPLAINED_SHARE = 0.1  # largest rms share of the base motion outside these harmonics; 0.003 in the published runs
+MAX_UNEXPLAINED_SHARE = 0.1  # largest rms share of the base motion outside BASE_HARMONICS; published runs have 0.003
 MAX_DRIFT_SHARE = 0.1  # largest shift of the plate's middle position between cycles, as a share of its range
 REST_SPEED = 2.0  # mm/s, speed below which the plate is at rest
 VELOCITY_HALF_WIDTH = 4  # samples on either side of the instant at which a velocity is computed

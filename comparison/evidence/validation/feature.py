@@ -11,7 +11,7 @@ from comparison.report.panels import Panel, make_panel
 from comparison.report.section import Section
 from comparison.verdicts import MEANING_OF_VERDICT, STYLE_CLASSES
 
-LINE_STYLES: dict[str, dict[str, Any]] = {
+LINE_STYLES: dict[str, dict[str, Any]] = {  # look of measured and computed lines in the plots
     "measured": {"color": "ink", "width": 2.4},
     EQUATIONS: {"color": 0},
     ENGINE: {"color": 1, "dash": "5 3"},

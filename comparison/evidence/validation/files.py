@@ -34,16 +34,16 @@ MAX_READING_SECONDS = 30.0  # s of processor time that reading a file may take: 
 MAX_READING_BYTES = 2**29  # bytes that reading a file may take: a column of MAX_SAMPLES takes 2^24
 DURATION_RANGE = (1.0, 1e4)  # s, shortest and longest motion that is compared
 MAX_READINGS = {"mm": 1e4, "rad": 1e3}  # largest credible reading in each unit
-# Types of numbers in a file; booleans are none
+# Types that count as numbers in a MATLAB file; logical values do not
 NUMERIC_TYPES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
-FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")
+FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")  # weight of the disc, g; x: plate, y: base
 DECAY_FILE, LARGE_SWING_FILE = "SingleDataFreeSwing_1_Dt_0_0001.mat", "SinglePendulumDataForParameterEstimation.mat"
 FRAME_SOURCE = (
     "single-storey frame with a brass-to-steel contact, Marino, Cicirello, Data-Centric Engineering 2023 "
     "(arXiv 2303.03858), rig in Nonlinear Dynamics 99 (2020) 1781-1799: github.com/l-marino/switching-GPLFM, commit "
     "01dc3d9 (GPL-3.0), files s_b_<weight>g_x.mat and s_b_<weight>g_y.mat"
 )
-LARGE_SWING_VARIABLES = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # variables in the file of large swings
+LARGE_SWING_VARIABLES = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # times, then angles, in the file of large swings
 PENDULUM_SOURCE = (
     "swinging pendulum: github.com/dynamicslab/MultiArm-Pendulum, commit e99a7e1 (MIT), files "
     f"{DECAY_FILE} and {LARGE_SWING_FILE}"
@@ -141,7 +141,7 @@ def _read_swing(
 
 
 def select_decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return times and angles of the structure in the file of the decay."""
+    """Return times and angles from the MATLAB structure Theta1 in the file of the decay."""
     try:
         return {"Theta1.time": content["Theta1"]["time"], "Theta1.values": content["Theta1"]["signals"]["values"]}
     except (KeyError, IndexError, TypeError):
@@ -149,7 +149,7 @@ def select_decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def select_large_swing_columns(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return times and angles of the cells in the file of large swings."""
+    """Return times and angles joined from the MATLAB cells in the file of large swings."""
     try:
         return {
             shown: np.concatenate([np.atleast_2d(part)[0] for name in names for part in content[name]])

@@ -29,15 +29,15 @@ from comparison.result_types import Array
 from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import GRAVITY, Scene, Trajectory
 
-# Mass of the second body over that of the platform; period of its link, s
+# Mass of a second body, which only lends its weight, over that of the platform; period of its soft link, s
 SHAKER_MASS_RATIO, SHAKER_LINK_PERIOD = 10.0, 1e4
-FRICTION_GROWTH = 1.0  # growth of friction at infinite speed: only its slope at zero speed matters
+FRICTION_GROWTH = 1.0  # rise of friction at infinite speed; its slope at zero speed is the frame's viscous damping
 COMPUTED_CYCLES = 12  # cycles that are computed, of which the last one is read
 ENGINE_V_REG = 1e-4  # m/s, v_reg of the engine
 FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run to which the friction ratio is fitted, if the folder has it
 # kg, disc of the second run to which load-dependent friction is fitted, if the folder has it
 SECOND_FITTED_WEIGHT = 0.450
-DIFFERENCE_STEP = 0.005  # relative step of ratio and scale in difference quotients
+DIFFERENCE_STEP = 0.005  # relative step of friction ratio and base scale in difference quotients
 # Quantities of a cycle of the plate that are compared, and their units
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
@@ -105,20 +105,20 @@ def read_last_cycle(motion: Trajectory, frequency: float) -> Array:
 
 
 def compute_frame_motion(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
-    """Return the motion of a run by one side, from the largest position of the base on."""
+    """Return the motion of a run by one code, from the largest position of the base on."""
     scene, phases = make_frame_scene(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
     return table.compute_released_motion(side, scene, phases, place, ENGINE_V_REG, STUDY_TOLERANCE, "small")
 
 
 def read_quantities(cycles: Cycles, motion: Trajectory) -> table.ComputedValues:
-    """Return the quantities of a computed motion of a run."""
+    """Return the compared quantities, `NAMES`, of a computed motion of a run."""
     rate = cycles.frequency
     return table.read_motion_values(motion, lambda each: measure_cycle(read_last_cycle(each, rate), rate), len(NAMES))
 
 
 def solve_quantities(cycles: Cycles, setup: Setup) -> Array:
-    """Return the quantities of a run by the equations."""
+    """Return the compared quantities, `NAMES`, of a run by the equations."""
     return read_quantities(cycles, compute_frame_motion(EQUATIONS, cycles, setup)).values
 
 
@@ -163,7 +163,7 @@ class FittedRun(NamedTuple):
 
 
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
-    """Return a run with its fitted friction ratio; shift: base motion of `shifted`, None to fit that of this run."""
+    """Return a run with its fitted friction ratio. shift: setup whose base scale `shifted` takes; None to fit it."""
     setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = table.COVERAGE_FACTOR * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + INPUT_UNCERTAINTIES[name][0]} for name in REFITTED_INPUTS)
@@ -243,7 +243,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
 def _compare_run(
     cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
 ) -> table.ExperimentFindings:
-    """Return the comparison of one run. other: fit to the first run; own: ratio fitted to this one."""
+    """Return the comparison of one run. other: setup with fitted base scale; own: setup with the ratio of this run."""
     title = cycles.run.name + law
     found = [measure_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.MeasuredData(

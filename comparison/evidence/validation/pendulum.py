@@ -75,7 +75,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
-        """Return the motion by a side, from the half period, the loss of angle per half swing and the first angle."""
+        """Return the motion by one code from half period, s, loss of angle per half swing and first angle, rad."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 
@@ -123,7 +123,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     data = table.MeasuredData(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
     def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
-        """Return the half periods at PREDICTED_ANGLES by a side, from the half period at small angles."""
+        """Return the half periods at PREDICTED_ANGLES by one code, from the half period at small angles."""
         motions = [_compute_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in PREDICTED_ANGLES]
         parts = [table.read_motion_values(each, _read_half_period, 1) for each in motions]
         return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
@@ -157,7 +157,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
 def _compute_half_swings(
     side: str, half: float, friction: float, start: float, swings: float, equations: str = "exact"
 ) -> Trajectory:
-    """Return a motion of so many half swings from rest at an angle."""
+    """Return the motion of the pendulum by one code: `swings` half swings from rest at the angle `start`, rad."""
     scene = {
         "title": "Swinging pendulum",
         "name": "pendulum",
@@ -191,7 +191,7 @@ def _find_turns(swing: FreeSwing, back: float) -> tuple[Array, Array]:
 
 
 def _compute_uncertainty_of_mean(values: Array) -> float:
-    """Return the uncertainty of a mean, from the scatter."""
+    """Return the expanded uncertainty of the mean of values, from their scatter."""
     return table.COVERAGE_FACTOR * float(values.std(ddof=1)) / float(np.sqrt(len(values)))
 
 

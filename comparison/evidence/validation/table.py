@@ -41,7 +41,7 @@ ABSOLUTE_UNITS = (DEGREES, CYCLE)  # units for which a relative error has no mea
 
 @result
 class SideComparison:
-    """One measured quantity as computed by one side."""
+    """One measured quantity as computed by one code: value, errors and verdict."""
 
     value: Annotated[float | None, "S; null without an answer"]
     error: Annotated[float | None, "E = S - D"]
@@ -57,7 +57,7 @@ class SideComparison:
 
 @result
 class MeasuredQuantity:
-    """One measured quantity compared with both sides."""
+    """One measured quantity with its uncertainties, compared with equations and engine."""
 
     experiment: Annotated[str, "frame or pendulum, and the run"]
     name: Annotated[str, "what it is"]
@@ -72,7 +72,7 @@ class MeasuredQuantity:
     ]
 
     def __post_init__(self) -> None:
-        """Refuse a quantity without one of the judged sides."""
+        """Refuse a quantity that lacks the comparison with the equations or with the engine."""
         for side in JUDGED_SIDES:
             require(side in self.sides, f"sides must have {side}")
 
@@ -82,7 +82,7 @@ class MeasuredQuantity:
         return None if self.unit in ABSOLUTE_UNITS else self.measured
 
     def word(self, side: str) -> str:
-        """Return the verdict on one side in words."""
+        """Return the verdict on one code in words."""
         found = self.sides[side]
         return word_verdict(found.verdict, found.error, self.base, self.unit)
 
@@ -150,13 +150,13 @@ STORED = StoredFile("validation.json", Validation, "a table of measured quantiti
 
 
 def find_worse_side(each: MeasuredQuantity) -> str:
-    """Return the side with the worse verdict on a quantity; of equal verdicts, that with the larger error."""
+    """Return the code with the worse verdict on a quantity; of equal verdicts, that with the larger error."""
     rank = {side: VERDICTS_BEST_FIRST.index(each.sides[side].verdict) for side in JUDGED_SIDES}
     return max(JUDGED_SIDES, key=lambda side: (rank[side], abs(each.sides[side].error or 0.0)))
 
 
 def worse_verdict(each: MeasuredQuantity) -> Verdict:
-    """Return the worse verdict of both sides on a quantity: met if both meet it."""
+    """Return the worse of the verdicts on equations and engine for a quantity: met if both meet it."""
     return each.sides[find_worse_side(each)].verdict
 
 
@@ -177,14 +177,14 @@ def load_record() -> Validation:
 
 
 class ComputedValues(NamedTuple):
-    """Values that one side computes, (Q,), with their numerical errors."""
+    """Values of Q quantities that one code computes, (Q,), with their numerical errors."""
 
     values: Array
     errors: Array
 
 
 class ExperimentFindings(NamedTuple):
-    """Findings of one experiment: its part of the table."""
+    """Findings of one experiment: compared quantities, inputs, facts, residuals over a cycle, curves to plot."""
 
     quantities: list[MeasuredQuantity]
     inputs: list[str]
@@ -237,7 +237,7 @@ def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], 
 
 
 def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
-    """Return an input as a sentence."""
+    """Return an input of a computation in words: name, value, uncertainty, unit and source."""
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
 
@@ -249,7 +249,7 @@ def compare_quantities(
     explain: Callable[[int, float], str],
 ) -> list[MeasuredQuantity]:
     """
-    Return the comparisons of one run, one for each quantity.
+    Return the comparisons of measured and computed values in one run, one for each quantity.
 
     varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
     changes. explain: why quantity k has an E beyond this u_val.
