@@ -41,6 +41,7 @@ def replace_unstorable(content: Any) -> Any:
 
 @cache
 def _make_type_adapter(kind: Any) -> TypeAdapter[Any]:
+    """Return pydantic's reader of a type, made once for each type."""
     return TypeAdapter(kind)  # Made once: making it takes a hundred times as long as reading a small file.
 
 
@@ -54,15 +55,15 @@ class StoredFile(Generic[T]):
     command: str
 
     def word_field(self, meaning: str) -> str:
-        """Return the meaning of the field of the results that holds the file."""
+        """Return the description of the results field that holds this file, with the command that writes the file."""
         return f"{meaning}; null unless {self.command} left it next to the report"
 
     def word_how_to_make(self, argument: str = "") -> str:
-        """Return the command that makes the section; argument: argument of the command, in words."""
+        """Return a sentence with the command that writes this file; argument: argument of the command, in words."""
         return f"{self.command}{argument} makes it, next to the report; the next run of the study shows it"
 
     def as_json(self, results: T) -> bytes:
-        """Return the content of the file, which `load` reads."""
+        """Return results as the JSON content of the file, which `load` reads."""
         return format_json(asdict(results)).encode()  # type: ignore[call-overload]
 
     def read(self, content: bytes) -> T:

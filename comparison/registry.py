@@ -30,7 +30,7 @@ def _load_feature(folder: str) -> Feature:
     return feature
 
 
-FEATURES: tuple[Feature, ...] = (
+FEATURES: tuple[Feature, ...] = (  # all features; the sections of the report stand in this order
     core.AMPLIFICATION_SECTION,
     _load_feature("analyses.records"),
     _load_feature("analyses.motions"),
@@ -57,9 +57,11 @@ FEATURES: tuple[Feature, ...] = (
     core.COMPLETION,
     core.PICTURES,
 )
+# computations of the features; a feature that only shows a section has none
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
+# analyses that --only, --skip and --also may name
 SELECTABLE = tuple(feature.selectable_entry for feature in FEATURES if feature.selectable)
-EVERYTHING = Selection(SELECTABLE)  # all analyses but those made on request, for every scene
+EVERYTHING = Selection(SELECTABLE)  # selection of all analyses, except those made on request, for every scene
 
 
 def _make_results_type(features: Sequence[Feature]) -> type[Results]:
@@ -81,8 +83,8 @@ def _make_results_type(features: Sequence[Feature]) -> type[Results]:
     return results
 
 
-StudyResults = _make_results_type(FEATURES)
-make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)
+StudyResults = _make_results_type(FEATURES)  # class of the results with the fields of all features
+make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)  # makes a report of all features
 
 
 def select_analyses(study: Study) -> list[Analysis[Any]]:

@@ -34,6 +34,7 @@ def _replace_surrogates(value: Any) -> Any:
 
 
 Array = NDArray[np.float64]
+# number that JSON holds as null if it is NaN or infinite
 Number = Annotated[float, BeforeValidator(_null_as_nan), PlainSerializer(finite_or_none, return_type=float | None)]
 Radius = Annotated[  # number that may be infinite, as the radius of a plane
     float,
@@ -41,7 +42,7 @@ Radius = Annotated[  # number that may be infinite, as the radius of a plane
     PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
 ]
 Text = Annotated[str, BeforeValidator(_replace_surrogates)]  # text that UTF-8 can hold
-Phases = tuple[Number, Number]  # (alpha1, alpha2), rad
+Phases = tuple[Number, Number]  # phase pair (alpha1, alpha2), rad
 
 
 class Part(BaseModel):
@@ -89,7 +90,7 @@ def result(cls: type[Class]) -> type[Class]:
         properties = TypeAdapter(base).json_schema()["properties"]
         for field in fields(base):  # pydantic reads the attribute texts of a class itself, not of its base
             field.metadata = MappingProxyType({"description": properties[field.name]["description"]})
-    # A file also has the computed fields
+    # A file also has the computed fields, so that unknown keys in it are ignored if there are such fields.
     computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())
     cls.__pydantic_config__ = {**RESULT_CONFIG, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
     made = dataclass(frozen=True)(cls)

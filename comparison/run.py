@@ -121,6 +121,7 @@ class StudyRun:
     """
 
     def __init__(self, options: Options, words: Sequence[str], hierarchy: Sequence[Model], began: Clock) -> None:
+        """Make the study that the options describe, and open the cache next to its report."""
         self._options, self._words, self._began = options, words, began
         self._study, self._console = _make_study(options, hierarchy), make_wide_console()
         self._cache = Cache(locate_store(options.out))

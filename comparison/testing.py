@@ -24,7 +24,7 @@ from reference.problem.keys import range_of
 from reference.problem.ranges import TOLERANCE_RANGE
 from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
-# Admissible relative differences, phases per axis, and numbers of phase pairs without a value
+# Admissible values of `assert_consistent`: relative differences, phases per axis, number of pairs without a value
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
 STATISTICS = ("largest", "mean")  # statistics over the motions that limits may be on
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine

@@ -10,13 +10,14 @@ from reference.support.drawing import escape_for_matplotlib
 MAX_PERCENT_DECIMALS = 4  # largest number of decimals of a percentage: smaller sizes are shown as zero
 MIN_SHOWN_ERROR = 0.01  # share of a size below which its error does not show in two digits
 MAX_AXIS_NAMES = 12  # largest number of names on an axis; with more values every n-th is named
-# What a text holds that HTML writes in another way: powers, percentages, indices and Greek letters
+# Patterns of what HTML or mathtext writes in another way. First: a power such as l^3.
 POWER_PATTERN = re.compile(r"\^(\w)")
-PERCENT_PATTERN = re.compile(r"(?<=\d) %")
-SUBSCRIPT_PATTERN = re.compile(r"(?<=[\w>])_(\w+)")
-INDEX_PATTERN = re.compile(r"\b([^\W\d_]+)_(\w+)")
+PERCENT_PATTERN = re.compile(r"(?<=\d) %")  # percent sign after a number and a space
+SUBSCRIPT_PATTERN = re.compile(r"(?<=[\w>])_(\w+)")  # index after an underscore, without its symbol
+INDEX_PATTERN = re.compile(r"\b([^\W\d_]+)_(\w+)")  # symbol and its index, such as v_reg
+# names of small Greek letters in texts, and the letters
 SMALL_GREEK = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
-GREEK_LETTERS = {**SMALL_GREEK, "Delta": "Δ", "Phi": "Φ"}
+GREEK_LETTERS = {**SMALL_GREEK, "Delta": "Δ", "Phi": "Φ"}  # names of all Greek letters in texts, and the letters
 GREEK_PATTERN = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK_LETTERS)})(?![a-zA-Z])")
 
 

@@ -77,10 +77,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    """Return a public name of the package; its module is imported when the name is first used."""
     if name in _MODULE_OF_NAME:
         return getattr(import_module(_MODULE_OF_NAME[name]), name)
     raise AttributeError(f"module 'multibody' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
+    """Return the names in the module and the public names that are not imported yet, sorted."""
     return sorted({*globals(), *__all__})

@@ -145,7 +145,7 @@ def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
 
 
 def main(words: list[str] | None = None) -> int:
-    """Return exit code 0; after one line 2 for a wrong scene or option, 3 for a film that cannot be written."""
+    """Run the command; return exit code 0, 2 for a wrong scene or option, or 3 if the film cannot be written."""
     try:
         options = _parse_arguments(words)
         phase = np.array(options.phases)

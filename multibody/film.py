@@ -28,23 +28,23 @@ from reference.support.drawing import escape_for_matplotlib
 
 Array = NDArray[np.float64]
 
-# Radii of the ring of supports and of the spheres, m, and places of the supports (K, 2), m, of the drawing of a scene
-# without spatial data.
+# Radii, m, of the ring of supports and of the spheres with which a scene without spatial data is drawn.
+# DEFAULT_SUPPORTS: places (K, 2), m, of its supports.
 SUPPORT_RING_RADIUS, SPHERE_RADIUS = 1.0, 0.05
 DEFAULT_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * SUPPORT_RING_RADIUS / np.sqrt(2.0)
 
 # Distance and thickness of the boxes of a scene without spatial data, over the width of a box.
 BOX_DISTANCE, BOX_THICKNESS = 0.5, 0.1
 
-# Smallest and largest drawn distance of the lowest and the highest box, over the width of the widest box.
+# Smallest and largest drawn height of the highest box above the lowest, over the width of the widest box.
 MIN_SPAN, MAX_SPAN = 0.35, 1.2
 
 # Largest drawn thickness of a box, and largest drawn dip of its edge by tilt, over the smallest distance of two boxes.
 MAX_DRAWN_THICKNESS, MAX_DRAWN_DIP = 0.4, 0.2
 
-# Largest drawn rotation, rad, and contact path, over the distance of the farthest support, and largest factor on both.
+# Largest drawn rotation, rad; also the largest drawn contact path, over the distance of the farthest support.
 MAX_DRAWN_ROTATION = 0.3
-MAX_MAGNIFICATION = 1e4
+MAX_MAGNIFICATION = 1e4  # largest factor on drawn rotations and contact paths
 
 # Length of the poles of the supports, over the width of the drawing.
 POLE_LENGTH = 0.15
@@ -55,12 +55,13 @@ LAYOUT_WIDTH = 12.0
 # Number of colors of a film; a GIF has 256, and one stands for unchanged pixels.
 COLOR_COUNT = 255
 
+# corners (8, 3) of a cube with edges of length 1, centered at the origin
 UNIT_BOX_CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """Settings of a film. stretch: displacement factor. speed: s of motion per s. rate: frames per s. size: pixels."""
+    """Settings of a film: factor on displacements, s of motion per s of film, frames per s, and size in pixels."""
 
     stretch: float = 5.0
     speed: float = 1.0
@@ -107,7 +108,7 @@ def locate_box_corners(center: Array, size: Array, turns: Array) -> Array:
 
 
 def choose_magnification(values: Array, seen: float) -> float:
-    """Return the largest factor, 1, 2 or 5 times a power of ten, that keeps all values at most `seen` as drawn."""
+    """Return the largest factor, 1, 2 or 5 times a power of ten, with which no drawn value exceeds `seen`."""
     largest = float(np.abs(values).max())
     wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))
@@ -115,7 +116,7 @@ def choose_magnification(values: Array, seen: float) -> float:
 
 
 def trace_contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
-    """Return the contact points in plan, from each support, (F, K, 2), m, for `shift` and `turns` (F, 3)."""
+    """Return x and y of each contact point from its support, (F, K, 2), m; `shift`, `turns` (F, 3): of the platform."""
     supports = _support_places(scene)
     arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
@@ -126,7 +127,7 @@ def trace_contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
 
 
 def arrange_boxes(scene: Scene) -> tuple[Array, Array, float]:
-    """Return drawn heights (N,) from zero and sizes (N, 3) of the boxes, m, and the factor on the heights."""
+    """Return drawn heights (N,) above the lowest box, drawn sizes (N, 3), m, and the factor on the heights."""
     width = 2.0 * (scene.support_radius or scene.isolator.ring or SUPPORT_RING_RADIUS)
     sizes: Array = np.array([body.size or [width, width, BOX_THICKNESS * width] for body in scene.bodies])
     width = float(sizes[:, :2].max())
@@ -218,6 +219,7 @@ class _Panel:
     """Panel of the film with the artists that move in it."""
 
     def __init__(self, panel: Any, drawn: Drawing, axes: tuple[int, int], alpha: float) -> None:
+        """Set up axes and outlines of the bodies; axes: the two coordinates shown; alpha: opacity of the bodies."""
         self.drawn, self.axes = drawn, list(axes)
         self.outlines = [
             panel.fill([0.0], [0.0], facecolor=(*color, alpha), edgecolor=color, label=label, animated=True)[0]
@@ -239,6 +241,7 @@ class _TopView(_Panel):
     """Panel from above: the boxes, the ring of supports and the paths of the contact points."""
 
     def __init__(self, panel: Any, drawn: Drawing) -> None:
+        """Draw the supports and their ring, and set up the paths of the contact points."""
         super().__init__(panel, drawn, (0, 1), 0.1)
         panel.set(ylim=(-drawn.half_width, drawn.half_width))
         panel.set_title("from above", fontsize="small")
@@ -264,6 +267,7 @@ class _SideView(_Panel):
     """Panel from the side: the boxes above each other on their poles, and the line through their centers."""
 
     def __init__(self, panel: Any, drawn: Drawing, axis: int) -> None:
+        """Draw the supports and the curve of the platform's center, seen along y if `axis` is 0, along x if it is 1."""
         super().__init__(panel, drawn, (axis, 2), 0.35)
         panel.set_title("along y" if axis == 0 else "along x", fontsize="small")
         self.axis = axis

@@ -244,7 +244,7 @@ def _measure_attitude(
 
 
 def _find_intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
-    """Return first and last instant of every unbroken run of true rows of a mask, widened by `around` rows."""
+    """Return first and last instant of every interval in which `holds` (T,) is true, widened by `around` rows."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
     last = len(time) - 1
     return [

@@ -25,7 +25,7 @@ from reference.support.command import OneLineParser, UsageError
 Parameters = ParamSpec("Parameters")
 Value = TypeVar("Value", int, float)
 
-BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest  # admissible factors on the friction of a bound
+BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest  # smallest and largest factor on friction in --bounds
 # help text of --out for commands that write only stored results
 STORED_RESULTS_HELP = "report whose stored results, in DIR.tiles, are used and added to"
 
@@ -34,6 +34,7 @@ class EndedEarlyError(RuntimeError):
     """Error that ends a command with `code` before its work is done; `str(error)` is one line that says why."""
 
     def __init__(self, code: int, line: str) -> None:
+        """Set the exit code of the command and the line that says why it ended."""
         super().__init__(line)
         self.code = code
 
@@ -42,6 +43,7 @@ class CommandParser(OneLineParser):
     """Parser of a command with the options that commands share."""
 
     def __init__(self, command: str, description: str) -> None:
+        """Make the parser of `command`; description: what the command does, for its help text."""
         super().__init__(" ".join(list_starting_words(command)), description)
 
     def add_scenes(self, default: str) -> None:
@@ -85,7 +87,7 @@ def read_number_of_jobs(options: argparse.Namespace) -> int:
 
 
 def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
-    """Return the factors of friction that `--bounds` asks for, None without. Raises SceneError."""
+    """Return the smaller and the larger factor on friction of `--bounds`; None without it. Raises SceneError."""
     if options.bounds is None:
         return None
     low, high = (read_number("--bounds", text, *BOUND_FACTORS, "factors of friction") for text in options.bounds)
@@ -110,7 +112,7 @@ def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most
         value = kind(text)
     except ValueError:
         raise SceneError("command line", option, text, rule) from None
-    if not least <= value <= most:  # a comparison that NaN fails, too
+    if not least <= value <= most:  # NaN fails this comparison, too
         raise SceneError("command line", option, value, rule)
     return value
 
@@ -157,7 +159,7 @@ def command(main: Callable[Concatenate[Sequence[str], Parameters], int]) -> Call
 
 
 def list_starting_words(command: str) -> list[str]:
-    """Return the words that start a command; the study has `python -m` unless the console script started it."""
+    """Return the words that start a command; `run` starts with `python -m` unless the console script started it."""
     script = ["phase-resonance", command]
     by_script = command != "run" or sys.argv[0] == " ".join(script)
     return script if by_script else ["python", "-m", f"comparison.{command}"]
@@ -172,7 +174,7 @@ def edit_command_line(
     words: Sequence[str], added: Sequence[str] = (), flags: Collection[str] = (), options: Collection[str] = ()
 ) -> list[str]:
     """
-    Return the words of a command line with other options; words after "--" are no options and stay.
+    Return the words of a command line with options left out and others added; words after "--" stay.
 
     flags, options: names to leave out, of options without a value and with one.
 
@@ -193,7 +195,7 @@ def edit_command_line(
 
 
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return where the finished results are kept, and the command for the rest; batches: their number in a study."""
+    """Return a line that says where finished results are kept and how to compute the rest; batches: number of all."""
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT_KIND]
     if batches is None:

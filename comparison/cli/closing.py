@@ -22,7 +22,7 @@ from reference.support.arguments import name_some
 
 FIRST_SENTENCES = 8  # largest number of sentences that the terminal shows after a level
 FILMED_MODELS = ("translational", "spatial")  # keys of the models that multibody.animate can film
-ALERT_LABELS = {
+ALERT_LABELS = {  # word before an alert on the terminal, by kind of alert
     "refused": "No answer",
     "limit": "Limit broken",
     "lacking": "Values missing",
@@ -53,7 +53,7 @@ def print_check(results: Results, scenes: Sequence[Scene]) -> None:
 
 
 def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
-    """Return a line with the command that checks limits on demands; none without such limits."""
+    """Return a line that names the command that checks limits on demands; no line if no scene has such limits."""
     stated = [scene.name for scene in scenes if scene.acceptance.demands is not None]
     if not stated:
         return []
@@ -61,7 +61,7 @@ def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
 
 
 def print_closing(console: Console, results: Results, options: Options, words: Sequence[str], report: Path) -> None:
-    """Print the last lines of a run."""
+    """Print the last lines of a run: differences, warnings, headlines, the report's place and further commands."""
     _print_differences(console, results)
     console.print(f"The run took {results.run.word_run_times}.", soft_wrap=True)
     on_stderr = ("fault", "limit") if options.check else ("fault",)
@@ -92,7 +92,7 @@ def print_level(console: Console, results: Results, before: Results | None, leve
 
 
 def _headline_sentences(results: Results) -> list[str]:
-    """Return the headline of every body of every scene."""
+    """Return the headline sentence of every body of every scene."""
     return [headline.sentence for scene in results.scenes for headline in scene.headlines]
 
 
@@ -136,7 +136,7 @@ def _find_source(scene: SceneResult, words: Sequence[str]) -> str:
 
 
 def _print_differences(console: Console, results: Results) -> None:
-    """Print mean with spread, largest size, and the points not ok, for every scene, body and pair."""
+    """Print a table of the differences between models: mean, standard deviation, maximum, and points not ok."""
     rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
     if not rows:
         return

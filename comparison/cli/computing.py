@@ -35,10 +35,7 @@ from comparison.runner.task_results import TaskResults
 
 
 def collect_run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
-    """
-    Return the facts of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON
-    file.
-    """
+    """Return the facts of a run that ends now, for a JSON file: command, start, duration, workers, provenance."""
     seconds = time.monotonic() - begin
     return {
         "command": format_command_line(words, command),

@@ -18,8 +18,8 @@ from reference.problem import SceneError
 from reference.support.command import OneLineParser
 from reference.support.files import NEW_FILES_FOLDER, staging_directory
 
-DIRECTORY_ARGUMENT = "DIRECTORY"
-FILES_OF_TEMPLATE = {  # file of the new study, and the file of the template that it is a copy of
+DIRECTORY_ARGUMENT = "DIRECTORY"  # name of the command's argument in its help and its error messages
+FILES_OF_TEMPLATE = {  # path of each file in a new study: name of the template file that it is copied from
     ".github/workflows/study.yml": "github.yml",
     ".gitignore": "gitignore",
     ".gitlab-ci.yml": "gitlab.yml",

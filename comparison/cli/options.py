@@ -18,8 +18,8 @@ from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 
-MIN_TOLERANCE = 1e-8  # smallest relative error of mu that can be asked for
-DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have at most their own `most`
+MIN_TOLERANCE = 1e-8  # smallest relative error of mu that --tolerance may ask for
+DEFAULT_GRID = 48  # phases per axis without --grid; a model with `Model.most` computes at most so many
 
 
 @dataclass(frozen=True)
@@ -179,4 +179,5 @@ def _read_analyses(option: str, text: str | None) -> list[str] | None:
 
 
 def _read_optional_number(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:
+    """Return the value of an option that takes a number; None if it is not given. Raises SceneError."""
     return None if text is None else read_number(option, text, least, most, unit)

@@ -43,7 +43,7 @@ class CompleteLevel:
 
 
 def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
-    """Compute what a level lacks: surfaces and analyses without need of them, then those that the surfaces choose."""
+    """Compute what a level lacks: surfaces and the analyses that do not need them, then those that need them."""
     analyses = select_analyses(level.study)
     tasks = make_surface_tasks(level.study)
     runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
@@ -65,6 +65,7 @@ class ReportWriter:
     """
 
     def __init__(self, options: Options, jobs: int, words: Sequence[str], began: Clock) -> None:
+        """Prepare reports of the command line `words`; no report is written yet."""
         self._options, self._jobs, self._words, self._began = options, jobs, words, began
         self._last = began.wall
         self.place = options.out

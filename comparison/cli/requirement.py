@@ -12,10 +12,10 @@ from urllib.request import url2pathname
 from comparison.runner.environment import ask_git
 from reference.support.version import __version__
 
-PACKAGE_NAME = "phase-resonance"
-CHECKOUT_FOLDER = Path(__file__).resolve().parents[2]
+PACKAGE_NAME = "phase-resonance"  # name under which pip installs this project
+CHECKOUT_FOLDER = Path(__file__).resolve().parents[2]  # folder of this project if it runs from a checkout
 SSH_ADDRESS = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # address as git writes it: user@host:path
-REMOTE_SCHEMES = ("https", "http", "ssh", "git")
+REMOTE_SCHEMES = ("https", "http", "ssh", "git")  # schemes of addresses from which others can fetch a commit
 
 
 def make_requirement_line() -> str:

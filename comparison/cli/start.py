@@ -21,12 +21,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-SCRIPT_NAME = "phase-resonance"
+SCRIPT_NAME = "phase-resonance"  # name of the console script
 # Thresholds of the garbage collector: imported objects stay, and checking them again takes a tenth of a command
 # that only reads stored results.
 COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
-# Whole numbers that Numba, NumPy and Matplotlib read from the environment, with their range; seconds up to year 9999
+# Environment variables that Numba, NumPy and Matplotlib read as whole numbers, each with its smallest and largest value
 ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402_300_799)}
 
 PACKAGE_FOLDER = Path(__file__).parents[1]  # the folder comparison/
@@ -62,7 +62,7 @@ def _read_purpose(package: str) -> str:
 
 
 class Clock(NamedTuple):
-    """Wall time and processor time of this process and its children at an instant, s; on Linux also of running ones."""
+    """Wall time and processor time, s, of this process and its children; running children count only on Linux."""
 
     wall: float
     processor: float
@@ -117,7 +117,7 @@ def run_command(module: str) -> NoReturn:
 
 
 def _refuse_environment() -> None:
-    """End the process with one line where a library would fail while it loads, for each variable that it reads."""
+    """End the process with a line for each variable of ENVIRONMENT whose value keeps a library from loading."""
     is_wrong = False
     for name, (least, most) in ENVIRONMENT.items():
         text = os.environ.get(name)

@@ -110,7 +110,7 @@ def print_records(
     console: Console, named: Sequence[tuple[str, Scene]], short: bool = False, is_suite: bool = False
 ) -> None:
     """
-    Print once what was read of every recorded motion, one line if short; named: by motion, "" for its files.
+    Print what was read of every recorded motion, once each; short: in one line; named: name and scene of each motion.
 
     is_suite: the motions are of one suite, and a line names those that are implausible beside the others.
     """
@@ -141,7 +141,7 @@ def _list_refusals(study: Study) -> dict[str, list[str]]:
 
 
 def _print_reductions(console: Console, study: Study) -> None:
-    """Print the computations that the scenes do not require."""
+    """Print the computations that are skipped because the scenes do not require them."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
     elif rows := list_skipped_computations(study):

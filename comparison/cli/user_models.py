@@ -32,16 +32,16 @@ from comparison.wording import word_exception
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
 
-MODEL_OPTION, LIMIT_OPTION = "--model", "--model-limit"
-MODEL_FORM = "NAME=module:function[@KEY]"
-DOTTED_NAME = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
+MODEL_OPTION, LIMIT_OPTION = "--model", "--model-limit"  # options for a user's engine and for its time limit
+MODEL_FORM = "NAME=module:function[@KEY]"  # form of a value of --model in help and messages
+DOTTED_NAME = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"  # pattern of Python names joined by dots
 MODEL_SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED_NAME}:{DOTTED_NAME})(?:@(?P<like>.*))?")
-# Names that a user's engine may not have, because a model or a key of [acceptance] has them
+# Names that a user's engine may not have, because they are keys of models or of [acceptance]
 TAKEN_NAMES = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
 MAX_IMPORT_SECONDS = 60.0  # s of processor time that importing an engine may take
 
 Engines = Mapping[str, str | Callable[..., Any]]  # functions of the user, or their import paths, by name
-_make_refusal = partial(SceneError, "command line", MODEL_OPTION)  # error of --model, made of its value and the rule
+_make_refusal = partial(SceneError, "command line", MODEL_OPTION)  # makes the error of --model from value and rule
 
 
 def add_models(parser: CommandParser) -> None:
@@ -100,7 +100,7 @@ def word_engine_options(engines: Engines) -> list[str]:
 
 
 def _split_spec(spec: str) -> tuple[str, str, str]:
-    """Return name, place of the function, and key of the model with the same friction law."""
+    """Return name, import path of the function, and key of the reference's model that a value of --model states."""
     match = MODEL_SPEC.fullmatch(spec)
     if match is None:
         raise _make_refusal(spec, f"must be {MODEL_FORM}, as mine=my_engine:amplification")
@@ -113,7 +113,7 @@ def _split_spec(spec: str) -> tuple[str, str, str]:
 
 
 def _inspect_function(spec: str, path: str) -> dict[str, Any]:
-    """Return the properties of a function. Raises SceneError if it cannot be called."""
+    """Return path, argument names and versions of the user's function at `path`; raise SceneError if unusable."""
     workers = Workers(1)
     try:
         fault, about = workers.start(partial(inspect_in_worker, path), MAX_IMPORT_SECONDS).result()

@@ -88,7 +88,7 @@ def assemble_report(
 
 
 def _make_scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues]) -> dict[str, Any]:
-    """Return the results of the surfaces of a scene; gaps: missing values of the study."""
+    """Return the fields of `SceneResult` that follow from the surfaces; gaps: missing values of the whole study."""
     study, surfaces = findings.study, findings.surfaces
     models = models_of(scene, study.hierarchy)
     comparisons = compare_bodies(study, surfaces, scene)

@@ -6,7 +6,7 @@ from markupsafe import Markup
 
 from comparison.wording import symbols
 
-GLOSSARY = {
+GLOSSARY = {  # explanations of the words of the report
     "as integrated": "Reading of (5.1): the largest value that an integration of the motion meets, with steps of about "
     "1 ms as the paper's. It counts rest and sliding faster than v_c = 1 mm/s. The paper integrates, so its plots can "
     "show no other.",
@@ -40,7 +40,7 @@ GLOSSARY_PATTERN = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sor
 
 
 def mark_term(word: str, text: str = "") -> Markup:
-    """Return `text`, or the word itself, with the explanation of the word at the pointer and the keyboard."""
+    """Return `text`, or the word itself, as HTML that explains the word under the pointer or at keyboard focus."""
     explanation = GLOSSARY.get(word)
     shown = symbols(text or word)
     if explanation is None:

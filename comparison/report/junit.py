@@ -11,11 +11,11 @@ from xml.etree import ElementTree
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 
-# Characters that XML 1.0 cannot hold
+# Matches a character that XML 1.0 cannot hold
 FORBIDDEN_CHARACTERS = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 UNCHECKED_TEXT = "not checked, as no limit is stated"
-# Attribute of a suite, and the name of the elements that it counts
+# Attribute of a suite in JUnit XML, and the name of the elements whose number it states
 ELEMENT_OF_COUNT = {"failures": "failure", "skipped": "skipped"}
 
 

@@ -23,7 +23,8 @@ from comparison.surfaces.waterfall import UNEQUAL_PHASES, Waterfall
 from comparison.surfaces.waterfall_chart import make_common_scale, place_bars
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 
-MIN_DRAWN_BAR = 0.01  # share of mu: bars that are all shorter are not drawn
+MIN_DRAWN_BAR = 0.01  # share of mu: a chart whose bars are all shorter is not drawn
+# scripts that are joined, in this order, to the script of the page
 SCRIPT_FILES = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
@@ -56,7 +57,7 @@ def render_pages(report: Report) -> dict[str, str]:
 
 
 def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
-    """Return the numbers that a feature adds to the page, compressed and written in letters."""
+    """Return the numbers that a feature adds to the page, compressed and encoded as text."""
     return compress_to_text(numbers(report))
 
 
@@ -222,6 +223,7 @@ def make_content_policy(script: str, style: str) -> str:
 
 @cache
 def _make_template_environment() -> jinja2.Environment:
+    """Return the Jinja environment of the report with its templates, filters and globals."""
     loader = jinja2.ChoiceLoader(
         [
             jinja2.PackageLoader("comparison.report", "templates"),
@@ -236,7 +238,7 @@ def _make_template_environment() -> jinja2.Environment:
     return environment
 
 
-# Titles of one alert and of several alerts of a kind
+# Heading on the page for one alert and for several alerts, by kind of alert
 ALERT_TITLES = {
     "refused": ("model without any usable value", "models without any usable value"),
     "limit": ("acceptance limit broken", "acceptance limits broken"),

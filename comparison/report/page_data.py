@@ -23,7 +23,7 @@ from reference.problem import Scene
 Rows = list[list[float | None]]  # one row for each alpha1, in it one value for each alpha2
 
 MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of mu and of an error
-COMPRESSION_LEVEL = 6  # compression level: the next one takes half as long again for 2 % less
+COMPRESSION_LEVEL = 6  # gzip's level for data on the page: level 7 takes half as long again for 2 % less
 
 
 def collect_page_data(report: Report, say: Callable[[str], object] = print_on_stderr) -> str:
@@ -85,7 +85,7 @@ def _format_json(data: Any) -> str:
 
 
 def compress_to_text(content: bytes) -> str:
-    """Return the content compressed and written in letters; the browser undoes both."""
+    """Return the content compressed by gzip and encoded in Base64; the browser decodes both."""
     return base64.b64encode(gzip.compress(content, COMPRESSION_LEVEL, mtime=0)).decode()
 
 
@@ -98,7 +98,7 @@ def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[l
 
 
 def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
-    """Return the texts of a difference of two models, and where it changes its sign or, for points, its uncertainty."""
+    """Return the texts of a pair of models and, by body, contours |difference| = uncertainty, or the uncertainty."""
     surfaces = (
         not scene.recorded
         and _is_drawn_as_surface(report, scene, pair.first)

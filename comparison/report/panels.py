@@ -9,7 +9,7 @@ from comparison.report.results import Results
 from comparison.surfaces.distribution import CURVE_PROBABILITIES
 from reference.measures.distribution import FRACTILES
 
-Panel = dict[str, Any]  # title and plot, in the form that plot.js reads
+Panel = dict[str, Any]  # title and data of one plot, in the form that plot.js reads
 
 MAX_CURVES = 6  # largest number of curves in one panel: more cannot be distinguished
 # plotted demands: key, body (0 for the isolator), name, unit, and factor from the unit of the results
@@ -24,7 +24,7 @@ PLOTTED_DEMANDS = (
     ("support_force_max", 0, "largest support force", "N", 1.0),
     ("friction_energy", 0, "energy dissipated by friction", "J", 1.0),
 )
-# Dash patterns of curves that coincide: the later ones leave gaps
+# Dash patterns of the curves in a panel: where curves coincide, an earlier one shows in the gaps of a later one
 DASH_PATTERNS = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")
 
 

@@ -19,8 +19,8 @@ from comparison.surfaces.alerts import Alert
 from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.statements import word_limit_check
 
-SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
-VERSION: Literal[6] = 6  # grows when a key changes its meaning or is removed
+SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"  # name of the format of summary.json
+VERSION: Literal[6] = 6  # version of summary.json: grows when a key changes its meaning or is removed
 
 
 # Statement on measurements for every report. docs/measured_statements.py writes it from the record, and the test gate
@@ -32,7 +32,7 @@ VALIDATED = (
     "+7.7 %), at 550 g not met (by +12 %). No building has been compared"
 )
 
-# The same in short, for the first screen; docs/measured_statements.py writes it, too.
+# The statement VALIDATED in short, for the first screen; docs/measured_statements.py writes it, too.
 VALIDATED_BRIEFLY = (
     "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
     "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "

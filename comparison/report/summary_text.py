@@ -7,7 +7,7 @@ import jinja2
 from comparison.report.results import VALIDATED, Results
 from comparison.wording import degrees, percent, signed
 
-MARKDOWN_MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")
+MARKDOWN_MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")  # characters with a meaning in GitHub's Markdown
 
 
 def render_summary_text(results: Results) -> str:

@@ -18,6 +18,7 @@ class CodeCheck(NamedTuple):
     test: str
 
 
+# Tests of each side by test file, one test in a row: reference | closeness and what limits it | name of the test
 CHECKS_TABLE = """
 reference: reference/test_closed_form_motions.py
   free decay under dry friction: turning points, stops, rest | 1e-7, ten times the tolerance asked |

@@ -9,7 +9,7 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 
-LAST_LEVEL = 3  # level of a study at which all of it is computed
+LAST_LEVEL = 3  # number of the last level of a study, at which all of it is computed
 Result = TypeVar("Result", covariant=True)
 
 
@@ -28,7 +28,7 @@ class Analysis(Protocol[Result]):
     level: ClassVar[int] = LAST_LEVEL  # first level of the study whose report includes it
 
     def estimate_seconds(self, study: Study) -> float:
-        """Return the rough processor time of a study, s."""
+        """Return the rough processor time of this analysis in a study, s."""
         return self.seconds * len(study.scenes)
 
     @abstractmethod

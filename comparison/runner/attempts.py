@@ -14,7 +14,7 @@ from comparison.runner.output import print_on_stderr, publish_files
 from comparison.wording import word_exception
 from reference.support.command import OutputError
 
-# error numbers of a disk that takes nothing more: all later files would fail, so the command ends with code 3
+# System error numbers which mean that a disk takes no file at all: the command then ends with code 3.
 FULL_DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 MAX_LINE_LETTERS = 300  # largest number of characters in the line that says why a part of the report is lost
 
@@ -48,6 +48,7 @@ class LostParts:
     """
 
     def __init__(self, lines: Iterable[str] = ()) -> None:
+        """Start with the lines of parts that are lost already."""
         self.lines, self.last = [*lines], ""
 
     def attempt(self, what: str, act: Callable[[], T]) -> T | None:

@@ -32,11 +32,11 @@ from reference.problem import SceneError
 from reference.support.files import TEMPORARY_PREFIX, read_file, write_atomically
 
 FILE_SIGNATURE = b"phase-resonance result 1\n"  # first bytes of every stored result
-CHECKSUM_BYTES = 32  # bytes of a checksum
-# Size in bytes above which groups that the study does not need are dropped, least recently used first
+CHECKSUM_BYTES = 32  # number of bytes of a checksum (SHA-256)
+# Size of the cache in bytes above which groups of results that no key asks for are deleted, least recently used first.
 MAX_CACHE_BYTES = 2**30
 STALE_FILE_AGE = 3600.0  # s, age from which a temporary file was left by a killed run: writing one takes milliseconds
-GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")  # name of a directory of stored results: a hash
+GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")  # name of a group's directory: the first 24 digits of a hash
 ARRAY_KEY, BYTES_KEY = "\0array", "\0bytes"  # JSON keys that refer by number to an array or bytes stored after the JSON
 
 
@@ -47,8 +47,10 @@ class StoreError(OSError):
 @dataclass(frozen=True)
 class CacheKey:
     """
-    Key of a stored result. about: text of all that the results of its group depend on in common; item: what
-    distinguishes this one, as a hash; kind: the suffix of its file, which the counts go by.
+    Key of a stored result in the cache: its group, its place in the group, and its kind.
+
+    about: text of all that the results of the group depend on in common. item: hash of what distinguishes this result.
+    kind: suffix of its file; results are counted by kind.
     """
 
     about: str
@@ -70,6 +72,7 @@ class Cache:
     """Results stored below `folder`, which is made with the first of them; `kept`: number read or written, by kind."""
 
     def __init__(self, folder: Path) -> None:
+        """Use this folder, which need not exist; no result is counted yet."""
         self.folder = folder
         self.kept: Counter[str] = Counter()
 
@@ -255,5 +258,6 @@ def _unpack_value(content: bytes, declared: Any) -> Any:
 
 @cache
 def _make_type_adapter(declared: Any) -> TypeAdapter[tuple[Any]]:
+    """Return pydantic's reader of a tuple that holds one value of type `declared`."""
     # A TypeAdapter of a dataclass takes no configuration, one of a tuple does.
     return TypeAdapter(tuple[declared], config=ConfigDict(arbitrary_types_allowed=True))

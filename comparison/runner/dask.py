@@ -32,7 +32,7 @@ MAX_CONNECT_SECONDS = 12.0  # s that a connection attempt may take: a silent lis
 MAX_MESSAGE_LETTERS = 200  # largest number of letters shown of a Dask error message
 MAX_SECONDS_WITHOUT_WORKERS = 60.0  # s without any worker after which the run ends
 RECOUNT_SECONDS = 2.0  # s between two counts of the workers, which may join or leave at any time
-CONNECTION_LOST = "the connection to the scheduler was lost"
+CONNECTION_LOST = "the connection to the scheduler was lost"  # message of ExecutorLostError
 
 _ONE_CALL = threading.Lock()  # held during a call, so that a worker computes one at a time
 
@@ -60,7 +60,7 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
     except MemoryError:  # Dask raises it for text that it takes for the length of a message.
         raise refusal("no scheduler answers there: another protocol is spoken: give tcp://HOST:PORT of one") from None
-    # Dask raises all kinds of errors for foreign answers, and for TLS without a configuration.
+    # Dask raises errors of many types if something else answers, or for TLS without a configuration.
     except Exception as error:
         raise refusal(f"no scheduler answers there: {' '.join(str(error).split())[:MAX_MESSAGE_LETTERS]}") from None
     try:
@@ -91,6 +91,7 @@ class ClusterExecutor(Executor):
     """Executor on all workers of a cluster, with one task at a time in each, whatever its number of threads."""
 
     def __init__(self, client: Client) -> None:
+        """Take over the client, which is connected to the cluster."""
         self._client, self._inner = client, client.get_executor(pure=False)
         self._count, self._counted, self._seen = 0, -RECOUNT_SECONDS, time.monotonic()
 

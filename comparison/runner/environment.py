@@ -16,8 +16,8 @@ from pathlib import Path
 from reference.support.version import __version__
 
 COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")  # packages that a result depends on
-OWN_PACKAGES = ("reference", "multibody", "comparison")
-USER_MODELS = "comparison.study.user_models"  # module that calls a user's engine, whose source is in its settings
+OWN_PACKAGES = ("reference", "multibody", "comparison")  # packages of this project
+USER_MODELS = "comparison.study.user_models"  # module that calls users' engines; their settings state their source
 SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules through which every model is called
 # Packages whose versions a report states
 REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
@@ -74,7 +74,7 @@ def fingerprint_engine(module: str) -> dict[str, str]:
 
 @cache
 def _list_installed_packages() -> Mapping[str, list[str]]:
-    """Return the distributions of every package that is installed: half a second of looking at their files."""
+    """Return the names of the distributions that provide each installed package; this takes half a second."""
     return packages_distributions()
 
 
@@ -107,6 +107,7 @@ def hash_source(name: str) -> str:
 
 @cache
 def _read_version(name: str) -> str:
+    """Return the version of an installed package; "absent" if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -146,6 +147,7 @@ def ask_git(folder: Path, *arguments: str) -> str:
 
 
 def _read_processor_name() -> str:
+    """Return the name of the processor, or the machine type, such as x86_64, if the system does not tell it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

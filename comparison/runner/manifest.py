@@ -11,7 +11,7 @@ from pathlib import Path
 
 from reference.support.files import read_file
 
-MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"
+MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"  # name of the file, and of its format
 MAX_FILE_BYTES = 2**30  # size in bytes above which a file is not checked and counts as foreign
 
 
@@ -34,7 +34,7 @@ def list_foreign_files(folder: Path) -> list[str]:
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else is_own_file(path, manifest.get(name))):
             foreign_files.append(name)
-    # Foreign files in a folder say more than its name.
+    # A foreign folder is left out if foreign files in it are listed.
     return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
 
 
@@ -82,4 +82,5 @@ def is_own_file(file: Path, entry: OwnedFile | None) -> bool:
 
 
 def hash_content(content: bytes) -> str:
+    """Return the SHA-256 hash of a file's content, in hexadecimal digits."""
     return hashlib.sha256(content).hexdigest()

@@ -15,7 +15,7 @@ class MappedAnalysis(Analysis[Result]):
     """Analysis with one task for each argument, a tuple that begins with its scene."""
 
     function: ClassVar[Any]  # function of one argument, which runs inside a worker process
-    without_value: ClassVar[Any]  # function of argument and result that makes the value of a task without one
+    without_value: ClassVar[Any]  # function of argument and result; returns the value for a task that returned none
     needs_compiled_reference: ClassVar[bool] = True
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:

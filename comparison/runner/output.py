@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 REPORT_COMMAND = "comparison.run"  # command whose files make up a report; the files of others in the folder stay
-PAGE_FILE = "index.html"
-MAX_NAME_BYTES = 240  # bytes of a name, from which longer names are made
+PAGE_FILE = "index.html"  # name of the main page in a folder of results
+MAX_NAME_BYTES = 240  # largest number of bytes of the report's folder name: names made from it are longer
 
 
 def print_on_stderr(line: str) -> None:
@@ -181,7 +181,7 @@ def publish_files(folder: Path, files: Mapping[str, bytes], command: str) -> lis
         for name, content in files.items():
             file, digest, manifest = folder / name, hash_content(content), read_manifest(folder)
             ours = is_own_file(file, manifest.get(name))
-            # Noted before it is written, the file counts as the study's even if the writing is interrupted.
+            # The manifest names the file before it is written, so that it is the study's even after an interruption.
             if ours or not os.path.lexists(file):
                 _write_manifest(
                     folder, manifest | {name: _make_transition_entry(manifest.get(name), OwnedFile(command, (digest,)))}

@@ -37,14 +37,14 @@ except ImportError:  # Windows cannot limit a process's processor time; its wall
     resource = None  # type: ignore[assignment]
 
 SPAWN_CONTEXT = multiprocessing.get_context("spawn")  # worker processes start as fresh interpreters
-# Wall time over the time limit after which a silent process is stuck, waiting for something that never comes
+# Wall time, over the limit of processor time, after which a process without an answer counts as stuck.
 STALLED_WALL_RATIO = 20.0
-# With a time limit of more than a few seconds the wall time may be this multiple of it, for a shared processor, plus
-# the spare s.
+# A process may take this multiple of its limit of processor time as wall time, because it may share its processor,
+# plus the spare s. For limits of a few seconds STALLED_WALL_RATIO decides.
 WALL_TIME_RATIO, SPARE_WALL_SECONDS = 5.0, 60.0
 MAX_TIMEOUT = 1e6  # s, longest timeout that the system takes
-EXIT_SECONDS = 5.0  # s that a process has to end after its pipe has ended
-# environment variable with which Python does not search the working directory first
+EXIT_SECONDS = 5.0  # s, longest wait for the end of a process whose pipe has been closed
+# Environment variable that keeps Python from searching the working directory for modules first.
 SAFE_PATH = "PYTHONSAFEPATH"
 
 Call = Callable[[], Any]  # function with its arguments bound, to be called in a worker
@@ -58,6 +58,7 @@ class WorkerDiedError(Exception):
     """Error of a task whose process died, `times` in a row; other tasks and the executor go on."""
 
     def __init__(self, message: str, times: int = 1, exit_code: int | None = None) -> None:
+        """Set how many times in a row the task's process died, and its last exit code."""
         super().__init__(message)
         self.times, self.exit_code = times, exit_code
 
@@ -106,6 +107,7 @@ class Workers(Executor):
     """Executor of up to `jobs` processes; one that has ended is replaced with the next task."""
 
     def __init__(self, jobs: int) -> None:
+        """Prepare `jobs` threads, each for one worker process; no process is started yet."""
         self.width = jobs
         self._threads = ThreadPoolExecutor(jobs)  # one thread for each process, which waits for its answers
         self._lock = threading.Lock()
@@ -172,6 +174,7 @@ class _Process:
     """A worker process that makes one call after the other."""
 
     def __init__(self) -> None:
+        """Start the worker process, which waits for calls."""
         self._pipe, theirs = SPAWN_CONTEXT.Pipe()
         with _process_start_lock, _safe_import_path() as before, _ignore_ctrl_c():
             about = theirs, gc.get_threshold(), before
@@ -210,6 +213,7 @@ class _Process:
         return WorkerDiedError(f"exit code {code}", exit_code=code)
 
     def kill(self) -> None:
+        """Kill the process without waiting for its end."""
         self._process.kill()
 
     def end(self) -> None:

@@ -13,8 +13,8 @@ from typing import NoReturn
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-LINE_INTERVAL = 15.0  # s between two plain lines
-ROUGH_COST_SHARE = 0.1  # weight of the costs estimated beforehand in the time left, as a share of all work
+LINE_INTERVAL = 15.0  # s, shortest time between two progress lines in a file or a pipe
+ROUGH_COST_SHARE = 0.1  # weight, as a share of all work, of costs estimated beforehand in the estimate of the time left
 PLAIN_WIDTH = 120  # columns of a table that is written to a file or a pipe
 EXIT_SECONDS = 0.3  # s that the process takes to end after the deadline
 MIN_TIMER = 1e-3  # s, shortest timer: setitimer(0) would switch it off
@@ -37,6 +37,7 @@ class Display:
     """
 
     def __init__(self, total: float, jobs: int, show: Callable[[Display], None] = lambda display: None) -> None:
+        """Start the clock with no work done."""
         self.total, self._jobs, self._show, self.done = total, jobs, show, 0.0
         self._what = ""
         self.begin = time.monotonic()
@@ -101,15 +102,18 @@ class Deadline:
     """Context that stops its block by TimeUpError shortly before `begin + seconds` (`time.monotonic()`), or never."""
 
     def __init__(self, begin: float, seconds: float | None) -> None:
+        """Set the end of the block; seconds: None for no deadline."""
         self._end = None if seconds is None else begin + seconds - EXIT_SECONDS
 
     def __enter__(self) -> Deadline:
+        """Start the timer that raises TimeUpError in the block."""
         if self._end is not None:
             self._before = signal.signal(signal.SIGALRM, _raise_time_up)
             self.keep_free(0.0)
         return self
 
     def __exit__(self, *error: object) -> None:
+        """Stop the timer and restore the earlier handler of its signal."""
         if self._end is not None:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
             signal.signal(signal.SIGALRM, self._before)
@@ -121,4 +125,5 @@ class Deadline:
 
 
 def _raise_time_up(number: int, frame: FrameType | None) -> NoReturn:
+    """Raise TimeUpError; handler of the timer's signal."""
     raise TimeUpError

@@ -31,7 +31,7 @@ from reference.problem import Outcome, Scene, load_scene
 
 WIDTH_CHECK_INTERVAL = 1.0  # s between two looks at the executor's number of workers while no result arrives
 LOST_ERRORS = BrokenExecutor, ExecutorLostError, CancelledError  # errors that mean the loss of all workers
-COMPILING_DURATION = 0.5  # s of the motion that compiles the reference: long enough to reach every function
+COMPILING_DURATION = 0.5  # s, duration of the motion that compiles the reference: it reaches every function
 
 
 @dataclass(eq=False)  # Compared by identity, because comparing scenes and arrays would be slow.

@@ -21,21 +21,22 @@ from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
 BATCH_KIND, RESULT_KIND = "batch", "result"  # kinds of stored results: those of phase pairs, and all others
-# Number of batches of one group that may hang or end their process before the engine is not asked again
+# After so many batches of a group of workers that hung or ended their process, no further batch of it is computed.
 MAX_FAILED_BATCHES = 2
+# error message of a batch that is not computed because too many batches of its group failed
 GIVEN_UP_MESSAGE = f"{MAX_FAILED_BATCHES} calls hung or ended their process: not asked for the other phase pairs"
 
 
 @dataclass(frozen=True)
 class Task:
-    """Call `function(argument)` in a worker process, pure and picklable; cached by `key` as its declared type."""
+    """Call of a pure `function` with one argument in a worker process; its result is stored by `key`."""
 
     function: Callable[[Any], Any]
     argument: Any
     stage: str  # name of its stage on the terminal and in the table of costs
     seconds: float = 1.0  # s, rough processor time: the weight among the tasks of its stage
-    about: Any = None  # question whose results share a directory in the cache
-    # Whether, on a new installation, it waits until a worker has compiled the reference
+    about: Any = None  # contents that all tasks of a group share: their results share a directory in the cache
+    # Whether the task waits, on a new installation, until a worker has compiled the reference
     needs_compiled_reference: bool = True
     # Largest processor time, s, rounded up; a task that takes longer ends with Outcome.TIME_LIMIT
     timeout: float | None = None
@@ -45,7 +46,7 @@ class Task:
     @cached_property
     def key(self) -> CacheKey:
         """
-        Return the key of its result: function, contents of the argument, versions and source that computes it.
+        Return the key of its stored result, from function, argument, package versions and the source that computes it.
         """
         function = name_function(self.function)
         about = {
@@ -61,20 +62,20 @@ class Task:
 
     @cached_property
     def batch(self) -> Batch | None:
-        """Return its argument if that is a batch, which is cut in two if a worker dies of it."""
+        """Return the task's argument if it is a batch of phase pairs, otherwise None."""
         return self.argument if isinstance(self.argument, Batch) else None
 
     @property
     def points(self) -> int:
-        """Return the number of its phase pairs, or 1 for a task that is no batch, which the terminal counts."""
+        """Return the number of points that the terminal counts: phase pairs of a batch, 1 for any other task."""
         return self.batch.points if self.batch else 1
 
     def halves(self) -> list[Task]:
-        """Return the two tasks into which it can be cut; none if it cannot."""
+        """Return the two tasks into which a batch of several phase pairs can be cut; none for any other task."""
         return [replace(self, argument=half) for half in self.batch.halves()] if self.batch else []
 
     def join(self, results: Sequence[TaskResult]) -> TaskResult:
-        """Return its result made of those of its halves."""
+        """Return the task's result joined from the results of its halves."""
         assert self.batch is not None, "only a batch has halves"
         values = [
             result.value if result.value is not None else half.without_result(result.outcome, result.error_message)

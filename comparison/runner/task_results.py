@@ -12,7 +12,7 @@ from reference.problem import Outcome
 
 @dataclass
 class StageCost:
-    """Cost of one stage: number of tasks, of those that an earlier run had stored, and s of processor time of all."""
+    """Cost of one stage: number of tasks, how many of them an earlier run had stored, and processor time of all, s."""
 
     tasks: int = 0
     stored: int = 0
@@ -35,15 +35,18 @@ class TaskResults:
     """
 
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:
+        """Start without any result in memory."""
         self.cache, self._fresh = cache, fresh
         self._results: dict[CacheKey, TaskResult] = {}
         self.parts: dict[str, StageCost] = defaultdict(StageCost)
         self.stored: set[CacheKey] = set()
 
     def __getitem__(self, task: Task) -> TaskResult:
+        """Return the result of a task."""
         return self._results[task.key]
 
     def __contains__(self, task: Task) -> bool:
+        """Return whether there is a result of the task."""
         return task.key in self._results
 
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:

@@ -14,14 +14,14 @@ from comparison.study.models import Model
 from comparison.wording import word_exception
 from reference.problem import Amplification, Outcome, Scene, Trajectory
 
-MAX_MU = 1e12  # far above mu of any building, and small enough that no sum of squares of mu or of a ratio overflows
-# Outcome of this project's models after which mu is used, with the larger error that it states
+MAX_MU = 1e12  # largest mu that counts as an answer: far above that of any building, but sums of squares stay finite
+# Outcome, besides ok, after which mu of this project's models is used: with its stated error above the tolerance
 USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Consecutive phase pairs (M, 2), rad, of a scene for one model; first: number of the first among all it solves."""
+    """Consecutive phase pairs (M, 2), rad, of one scene and model; first: number of the first among all of them."""
 
     scene: Scene
     model: str
@@ -43,7 +43,7 @@ class Batch:
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
-        """Return everything that its numbers depend on besides the code."""
+        """Return everything besides the code that the numbers of the batch depend on."""
         return {**self.question, "phases": self.phases}
 
     def halves(self) -> list[Batch]:
@@ -55,7 +55,7 @@ class Batch:
         return [replace(self, phases=self.phases[:middle]), late]
 
     def join(self, results: Sequence[BatchResult]) -> BatchResult:
-        """Return the result made of those of the halves: costs added up, each error message once."""
+        """Return the result of the batch joined from those of its halves: costs added up, each error message once."""
         mu, error, instant, displacement = (
             np.concatenate([getattr(result, name) for result in results])
             for name in ("mu", "error", "instant", "displacement")
@@ -67,7 +67,7 @@ class Batch:
         )
 
     def without_result(self, outcome: Outcome, error_message: str) -> BatchResult:
-        """Return a result with NaN and the reason at every point."""
+        """Return a result with NaN and the same outcome at every phase pair, and with the error message."""
         nothing, none = np.full((self.points, len(self.scene.bodies)), np.nan), np.full(self.points, np.nan)
         status = [outcome.value] * self.points
         return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
@@ -83,7 +83,7 @@ class Batch:
         return shapes == (plane, plane, points, points) and len(result.status) == self.points
 
     def ok_without_numbers(self, mu: Array, error: Array, status: Sequence[str]) -> list[int]:
-        """Return the phase pairs that are ok but lack a number for a body, which therefore are no results."""
+        """Return the indices of phase pairs whose status is ok although a number is missing for some body."""
         finite = (np.isfinite(mu) & (np.isfinite(error) | bool(self.group))).all(axis=1)
         return [index for index in np.flatnonzero(~finite).tolist() if status[index] == Outcome.OK]
 
@@ -108,14 +108,14 @@ def import_function(path: str) -> Any:
 
 
 def compute_amplification(scene: Scene, model: Model, phases: Any, **settings: object) -> Amplification:
-    """Return mu of a scene by a model; settings: beyond the model's own. Runs inside a worker process."""
+    """Return mu of a scene by a model; settings: besides the model's own. Runs inside a worker process."""
     asked = {**model.settings, **settings}
     answer: Amplification = import_function(model.amplification)(model.scene_of(scene), phases, **asked)
     return answer
 
 
 def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) -> Trajectory:
-    """Return one motion of a scene by a model; settings: beyond the model's own. Runs inside a worker process."""
+    """Return one motion of a scene by a model; settings: besides the model's own. Runs inside a worker process."""
     asked = {**model.motion_settings, **settings}
     motion: Trajectory = import_function(model.trajectory)(model.scene_of(scene), phases, **asked)
     return motion
@@ -149,7 +149,7 @@ def find_refusal(scene: Scene, model: Model, tolerance: float, full: bool = Fals
 
 
 def execute_batch(batch: Batch) -> BatchResult:
-    """Ask the batch's model inside a worker process. A call that raises or has a wrong shape gives points without"""
+    """Return the model's result for a batch, without values if the call fails. Runs inside a worker process."""
     try:
         found = import_function(batch.amplification)(batch.scene, batch.phases, **batch.settings)
         parts = (found.mu, found.error, found.instant, found.displacement)

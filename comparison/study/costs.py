@@ -13,14 +13,14 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Scene
 
-COMPILING_SECONDS = 20.0  # s, first call of the reference on a machine, which compiles it
-STARTING_SECONDS, WRITING_SECONDS = 4.0, 4.0  # s, loading of modules and workers; writing of a report
+COMPILING_SECONDS = 20.0  # s, duration of the first call of the reference on a machine, which compiles it
+STARTING_SECONDS, WRITING_SECONDS = 4.0, 4.0  # s, durations of loading modules and workers, and of writing a report
 USUAL_DURATION, USUAL_BODIES = 20.0, 2  # s and number of bodies of the scenes that the models' stated seconds refer to
-# Processor time of a motion, s. Equations: once; then, times the number of bodies + 1, per second of motion and per
-# knot of the record. Exudyn: per radian of the fastest link; in the spatial model also times the number of bodies.
+# Processor time, s, of a motion by the equations: a constant part; then parts per second of motion and per knot of the
+# record, both times the number of bodies + 1.
 MOTION_COST, MOTION_SECOND_COST, MOTION_KNOT_COST = 0.02, 4e-4, 3.7e-6
-MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3
-DEFAULT_FREQUENCY = 7.0  # rad/s, frequency assumed for a scene without a faster link
+MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3  # s, by Exudyn, per rad of the fastest link (and per body)
+DEFAULT_FREQUENCY = 7.0  # rad/s, smallest frequency assumed for the fastest link
 
 
 def estimate_motion_seconds(scene: Scene, model: Model) -> float:

@@ -56,12 +56,12 @@ def _describe_work(study: Study) -> tuple[object, ...]:
 
 
 def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
-    """Return the study on the finest nested grid of every model with at most its `most` phases per axis."""
+    """Return the study with every model on its finest nested grid of at most `most` phases per axis; most: by side."""
     strides = {
         model.key: _find_stride(study, model, most["spatial" if model.is_spatial else model.side])
         for model in study.hierarchy
     }
-    shared = gcd(*strides.values())  # The equations have every phase of the coarser study.
+    shared = gcd(*strides.values())  # The equations have every phase at this stride.
     if study.grid % shared:
         return study
     grid = study.grid // shared
@@ -75,7 +75,7 @@ def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
 def _find_stride(study: Study, model: Model, most: float) -> int:
     """Return the stride of a model's phases at a level with at most `most` phases per axis."""
     stride, phases = study.strides[model.key], len(study.phase_indices(model))
-    # The last and the first phase are closer than the others, so that no grid is nested.
+    # No coarser grid is nested in phases whose last is closer to the first, one period later, than the others are.
     if stride * phases != study.grid:
         return stride
     chain = nested_grids(phases)

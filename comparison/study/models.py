@@ -14,8 +14,9 @@ from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
 from reference.problem.reductions import is_mirror_symmetric
 
+# default speeds v_reg and v_c as texts of models state them
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
-# Relative error asked at least of the equations, which are cheap: their error blurs no difference
+# Largest relative error asked of the equations in any study: they are cheap, and their error shall blur no difference.
 REFERENCE_TOLERANCE = 1e-6
 SOFTENED = "softened-"  # prefix of the key of a model whose bars are softened
 
@@ -112,7 +113,7 @@ class Model:
     assumptions: Mapping[str, str]
     batch: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
-    # Whether the scene has the symmetry that the model shares
+    # Function that tells whether a scene has a symmetry that the model has, too
     symmetric: Callable[[Scene], object] = field(default=applies_to_no_scene)
     applies: Callable[[Scene], bool] = field(default=applies_to_every_scene)
     refusal: str | None = None
@@ -131,7 +132,7 @@ class Model:
 
     @property
     def motion_settings(self) -> dict[str, object]:
-        """Return the keyword arguments of its trajectory, without the cutoff, which only reads the motion."""
+        """Return the keyword arguments of the model's trajectory, without `cutoff`, which changes no motion."""
         return {key: value for key, value in self.settings.items() if key != "cutoff"}
 
     def scene_of(self, scene: Scene) -> Scene:
@@ -190,17 +191,17 @@ def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
 
 
 def chain_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
-    """Return the models that lead from one to the next, each adding one effect, in one reading of (5.1)."""
+    """Return the scene's chain of models: each adds one effect to the one before, all in one reading of (5.1)."""
     return [model for model in models_of(scene, hierarchy) if model.side != "user" and model.in_chain(scene)]
 
 
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return the pairs that answer the study's question: a like-for-like difference of every user-supplied engine, then
-    the total one, that within the paper's assumptions, and the like-for-like one, as far as the scene allows.
+    Return the pairs of models whose differences answer the study's question.
 
-    left_out: keys of models without results. The total then leads from the first to the last model of the chain that
-    has values. The other two compare fixed models: without one of these they are left out.
+    They are, as far as the scene allows: every user's engine against its partner, then the total, the difference
+    under the paper's assumptions, and the like-for-like one. left_out: keys of models without results. The total then
+    leads from the first to the last model with values; the other two need their fixed models.
     """
     asked = chain_of(scene, hierarchy)
     models = [model for model in asked if model.key not in left_out]
@@ -233,7 +234,7 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
 
 def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model:
     """
-    Return the model of the reference that solves what the engine of the user does.
+    Return the reference's model that solves the same equations as the user's engine.
 
     Where no friction is dry, every law is the same: the partner is then the model that applies and has its geometry.
     """
@@ -246,8 +247,7 @@ def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return a pair for each effect of the chain, then the same effects where other models stand outside the chain, then
-    the two readings of (5.1).
+    Return the pairs of models whose differences are single effects: along the chain, outside it, and of the reading.
 
     An effect as integrated is a share of mu of the first model of the chain, so that the effects of the chain add up to
     the total. Between literal suprema it is a share of the literal supremum of the small equations.
@@ -272,13 +272,13 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
-    """Return the two models whose difference is an effect. base: model to which it is relative."""
+    """Return the pair of models whose difference is `effect`, over mu of `base`; where: law or reading in its key."""
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
 
 
-# What counts as the peak, by the literal supremum and as integrated
+# Assumption "mu_i" of a model, in words: what counts as the peak. First for models that count all of their motion.
 _PEAK = "largest value the computed motion reaches"
 _RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
@@ -420,10 +420,10 @@ SPATIAL = _model_after(
     seconds=0.22,
 )
 
-MODEL_HIERARCHY: tuple[Model, ...] = (
+MODEL_HIERARCHY: tuple[Model, ...] = (  # all models for rigid friction and stiff bars, from simple to complete
     SMALL, EXACT, SMALL_AS_INTEGRATED, EXACT_AS_INTEGRATED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# Effects outside the chain of models: name, law or reading that tells it apart, first and second model
+# Effects between models outside the chain: name, law or reading that its key adds, first and second model
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
     (EXACT_AS_INTEGRATED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
@@ -460,12 +460,12 @@ SMALL_RIGID_FRICTION = _model_after(
     applies=has_yielding_friction,
     rigid=True,
 )
-# Friction law of scenes whose friction yields
+# Words for the friction law of scenes whose friction yields; mu is the friction coefficient.
 _YIELDS = "elastic up to mu N before it slides, mu constant or of the slip velocity"
 
 
 def _tell_of_yielding(model: Model, only: bool) -> Model:
-    """Return a model whose texts also describe friction that yields; only: whether it does in every scene."""
+    """Return `model` with texts that also describe friction that yields; only: whether it yields in every scene."""
     if model.applies is has_dry_friction:  # models of rigid friction stay
         return model
     friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"
@@ -480,7 +480,7 @@ def _tell_of_yielding(model: Model, only: bool) -> Model:
 
 def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
     """
-    Return the hierarchy with the steps that only some scenes have.
+    Return the hierarchy with the models added that only some of the scenes have.
 
     Those are the one that softens bars, at the end, and friction that yields, which the first model is without.
     """

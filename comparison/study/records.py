@@ -10,7 +10,7 @@ from reference.records.description import RecordDescription
 
 def describe_records(scenes: Sequence[Scene], names: Sequence[str] = ()) -> list[RecordDescription]:
     """
-    Return the description of every record; its scale is 1 where the scenes take several factors.
+    Return a description of every recorded motion; its scale is 1 if the scenes scale it by different factors.
 
     names: of the motions of the scenes; "" and without them a motion is named by its files.
     """

@@ -110,7 +110,7 @@ def make_selection(
     also: Sequence[str] | None = None,
 ) -> Selection:
     """
-    Return the selection that the command line asks for, else each scene file.
+    Return the selection that the command line states or, where it states none, that each scene file states.
 
     Analyses that concern the paper are made of other scenes only where they are named. Raises SceneError for a scene
     that names an unknown analysis.

@@ -17,12 +17,12 @@ from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
 
-# Relative error of every mu where --tolerance is not given, as the engine's own default; also of analyses by the engine
+# Relative error of every mu without --tolerance, and of analyses by the engine; it is also the engine's own default
 STUDY_TOLERANCE = 1e-3
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
-    """Raise SceneError, one line, if a name of a scene or family is there twice; names: source and name."""
+    """Raise SceneError, one line, if two scenes or families have the same name; names: source and name of each."""
     seen: dict[str, str] = {}
     for source, name in names:
         if name in seen:
@@ -49,7 +49,7 @@ def nested_grids(grid: int) -> tuple[int, ...]:
 
 def levels_of_phases(grid: int) -> NDArray[np.intp]:
     """
-    Return which of `nested_grids` is the first with each phase of an axis.
+    Return for each of the `grid` phases of an axis the number of the coarsest of `nested_grids` that contains it.
 
     >>> levels_of_phases(8).tolist()
     [0, 2, 1, 2, 0, 2, 1, 2]
@@ -140,11 +140,11 @@ class Study:
         return (self.grid * axis[:, None] + axis).ravel()
 
     def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """Return for each of `places` the one of which symmetry makes it the mirror image, or itself."""
+        """Return for each of `places` the phase pair whose mirror image it is by symmetry, or itself."""
         places = self.places(model, scene)
         if scene.recorded:
             return places
-        # Without an even grid the last phase and the first are closer than the others.
+        # In an uneven grid the last phase is closer to the first, one period later, than others: no mirror images.
         even = self.grid % self.strides[model.key] == 0
         return (
             places[indices_of_solved_pairs(scene, len(self.phase_indices(model)))]
@@ -153,18 +153,18 @@ class Study:
         )
 
     def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
-        """Return the indices that the model is asked for, grouped by the first nested grid that contains them."""
+        """Return the phase pairs that the model is asked for, as indices, by the first nested grid with them."""
         solved, stride = np.unique(self.symmetric_sources(scene, model)), self.stride(model, scene)
         level = levels_of_phases(len(self.phase_indices(model, scene)))
         first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
         return [solved[first == number] for number in range(level.max() + 1)]
 
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """Return the indices that the model is asked for, from coarse to fine."""
+        """Return the phase pairs that the model is asked for, as indices on the whole grid, from coarse to fine."""
         return np.concatenate(self.places_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
-        """Return the whole work, model by model, from coarse to fine, cut independently of the number of workers."""
+        """Return the batches of all models, each from coarse to fine, cut independently of the number of workers."""
         return [
             batch
             for model in self.hierarchy
@@ -174,7 +174,7 @@ class Study:
         ]
 
     def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
-        """Return the calls of a model over its phase pairs, coarse grids first."""
+        """Return the batches of a model's phase pairs in a scene, coarse grids first."""
         phases, moved = phase_grid(self.grid), model.scene_of(scene)
         settings = model.arguments(self.tolerance, self.full)
         group = model.key if model.side == "user" else ""  # A user's engine shares its worker with nothing else.

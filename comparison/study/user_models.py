@@ -30,11 +30,12 @@ from reference.problem import Amplification, Outcome, Scene
 # Function that calls a user's engine in a worker process
 CALLED_THROUGH = "comparison.study.user_models:amplification"
 DEFAULT_LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
-# keys of the models that an engine may be compared with
+# Keys of the reference's models, with which a user's engine may be compared
 REFERENCE_MODEL_KEYS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
 MAX_PHASES = 8  # largest number of phases per axis for an engine, because the cost of its calls is unknown
-TIME_LIMIT = 60.0  # s of processor time of one call for one phase pair
+TIME_LIMIT = 60.0  # s, default limit of processor time for one call with one phase pair
 OFFERED_ARGUMENTS = ("tolerance", "regularization", "equations")  # arguments that a function receives if it names them
+# packages of this project, and names of folders of installed packages: lines in them are no lines of the user
 OWN_PACKAGES, INSTALLATION_FOLDERS = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # error of an engine that states none
 MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status that a message repeats
@@ -66,7 +67,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """Add to an exception the line in the user's files, those in the folder of the engine's file, where it arose."""
+    """Add a note to an exception: the last line of the user's files that it passed; file: the file of the engine."""
     if file is None:
         return
     folder = file.parent

@@ -114,7 +114,7 @@ def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValu
 def _list_breaches(
     values: Sequence[tuple[int, float, Difference | None]], allowed: float, missing: str = "no phase pair to compare"
 ) -> tuple[Breach, ...]:
-    """Return the bodies whose value exceeds the limit or is missing, the latter with the reason `missing`."""
+    """Return a breach for each body whose value exceeds the limit or is missing; missing: the reason for the latter."""
     return tuple(
         Breach(body, value, missing if isnan(value) else "", *((row.largest, row.phases) if row else ()))
         for body, value, row in values

@@ -13,12 +13,12 @@ from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.surfaces import find_largest_cap_share, find_largest_travel_share
 
-LARGE_TRAVEL_SHARE = 0.9  # share of the travel from which a displacement raises an alert
+LARGE_TRAVEL_SHARE = 0.9  # share of the isolator's travel from which a displacement raises an alert
 LARGE_DISPLACEMENT_SHARE = 0.5  # share of rho from which a displacement raises an alert
 
-# What a user can do about a limit that is not met: one of the scene, or a default one of an engine
+# What a user can do about a limit of the scene that is not met
 STATED_LIMIT_HELP = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
-DEFAULT_LIMIT_HELP = (
+DEFAULT_LIMIT_HELP = (  # what a user can do about a default limit that the user's engine does not meet
     "name the equations that your engine solves (docs/other-engines.md), let it state an error that holds, or state "
     "limits of its own in the table of its name below acceptance"
 )

@@ -57,7 +57,7 @@ class BodyComparison:
 
     @property
     def total(self) -> Difference:
-        """Return the row of the total difference."""
+        """Return the table row of the difference between the first and the last model."""
         return self.rows["total"]
 
     @property

@@ -50,8 +50,7 @@ def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEnt
 
 
 def compute_closure_error(comparison: BodyComparison) -> float:
-    """Return the largest |sum of the steps - total| relative to mu of the first model: rounding; NaN without a common
-    point."""
+    """Return the largest |sum of steps - total| of all phase pairs, over mu of the first model; NaN without values."""
     total = comparison.difference(comparison.total_pair)
     differences = [comparison.difference(pair) for pair in comparison.consecutive_model_pairs]
     coarsest = max([total.stride, *(each.stride for each in differences)])

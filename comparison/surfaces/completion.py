@@ -32,18 +32,18 @@ from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
 from reference.problem.symmetry import indices_of_solved_pairs
 
-Indices = NDArray[np.intp]  # numbers of phase pairs on the whole grid
+Indices = NDArray[np.intp]  # index of each phase pair on the whole grid
 
 MIN_SPATIAL_PER_AXIS = 9  # phases per axis of the spatial model, below which its values are drawn as points
 MIN_VALUES = 16  # smallest number of phase pairs from which a surface is interpolated
 CONFIDENCE = 0.95  # probability with which the stated share of errors holds
-# Held-out phase pairs per model and scene: 1 - 0.05^(1/59) = 5 % of the others may exceed the error
+# Number of phase pairs held out per model and scene: 1 - 0.05^(1/59) = 5 % of all may exceed their largest error.
 HELD_OUT_PAIRS = 59
-# Largest share of the phase pairs whose error may exceed the stated one. With fewer held-out values no error is
-# stated.
+# Largest share of phase pairs whose error may exceed the stated one: no error is stated where held-out values are too
+# few for it.
 MAX_SHARE_BEYOND_ERROR = 0.1
-POINTS_PER_TASK = 8  # phase pairs of one task
-CERTIFICATE_VARIABLES = {  # variables that are stored with a completed surface
+POINTS_PER_TASK = 8  # largest number of held-out phase pairs in one task
+CERTIFICATE_VARIABLES = {  # meaning of each variable that surfaces.nc stores with a completed surface
     "error": "largest relative error of `completed` at phase pairs that were computed and not used",
     "share": "at most so many phase pairs are off by more than completed_error, with the confidence of `completed`",
     "held_out": "phase pairs that were computed and not used",
@@ -140,7 +140,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
         """Yield each scene and model with its tasks."""
         for scene in study.phased:
             for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
-                # With supports that stop one by one a surface is not smooth enough to be interpolated.
+                # The spatial model's surface is not smooth enough to be interpolated, as its supports stop one by one.
                 lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
                 if lacks and _find_finer_model(study, scene, model):
                     phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
@@ -181,7 +181,7 @@ def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
 
 def bound_share_beyond_error(held_out: int) -> float:
     """
-    Return the share of phase pairs whose error may exceed that of so many held-out ones, with CONFIDENCE.
+    Return the largest share of phase pairs, with CONFIDENCE, whose error exceeds that of so many held-out ones.
 
     >>> round(bound_share_beyond_error(59), 3), bound_share_beyond_error(0)
     (0.05, 1.0)

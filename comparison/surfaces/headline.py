@@ -13,14 +13,15 @@ from comparison.surfaces.statements import name_engine, word_engine, word_engine
 from comparison.surfaces.surfaces import count_outcomes
 from comparison.surfaces.waterfall import NAN, Waterfall
 
-# Share of the total from which an effect is a cause; share of an effect from which an interaction is stated
+# Share of the total difference above which an effect is named as a cause, and of an effect above which its interaction
+# with another effect is stated
 NAMED_SHARE = 0.2
-# By effect of the model sequence: the pair that shows the same effect in another order of steps, and the order in words
+# For an effect of the model sequence: key of the pair with the same effect in another order of steps; order in words
 SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
 }
-# By effect of the sequence: the pair with the same effect between literal suprema
+# For an effect of the model sequence: key of the pair with the same effect between literal suprema
 SUPREMUM_PAIRS = {"geometry": "geometry-supremum"}
 
 
@@ -45,7 +46,7 @@ class Effect:
         return abs(self.interaction) > NAMED_SHARE * abs(self.mean)
 
 
-# Stands for an effect that a scene does not have
+# Effect of size zero, in place of one that a scene does not have
 NO_EFFECT = Effect("", "", 0.0, 0.0, NAN, True, NAN, "", NAN, NAN)
 
 

@@ -61,12 +61,12 @@ class MissingValues:
 
     @property
     def where(self) -> str:
-        """Return at how many phase pairs there is no value, or only one whose error is above half of it."""
+        """Return in words at how many phase pairs there is no value, or one whose error exceeds half of it."""
         parts = ("no value", self.points), ("only values with errors above half of them", self.unusable)
         return ", ".join(f"{what}{self._word_count(count)}" for what, count in parts if count)
 
     def _word_count(self, count: int) -> str:
-        """Return at how many phase pairs a value lacks; "" under a record, which has one."""
+        """Return in words at how many phase pairs values are missing; "" under a record, which has one value."""
         if self.asked == 1:
             return ""
         return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"

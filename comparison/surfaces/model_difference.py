@@ -12,14 +12,15 @@ from comparison.study.models import Model, Pair
 from comparison.surfaces.surfaces import find_common_stride, select_values
 
 MAX_USABLE_ERROR = 0.5  # share of a value: with a larger error estimate the value is unusable
-RESOLVED_RATIO = 5.0  # multiple of its uncertainty u_D from which a difference is known to a fifth of itself
+RESOLVED_RATIO = 5.0  # multiple of its uncertainty u_D above which a difference counts as resolved: known to a fifth
 
 
 @dataclass(frozen=True)
 class ModelDifference:
     """
-    (mu of the pair's second model - mu of its first) / mu of its base at the phases (alpha1, alpha2), rad, that all
-    three were asked for.
+    Relative difference in mu of a pair's two models, at the phases (alpha1, alpha2), rad, that its models share.
+
+    It is (mu of the second model - mu of the first) / mu of the base.
 
     size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
     same unit, NaN where one is not stated. stride: they are every stride-th of the study's phases. recorded: the scene
@@ -37,7 +38,7 @@ class ModelDifference:
 
     @property
     def known(self) -> NDArray[np.bool_]:
-        """Return the mask of phase pairs with a difference; where its uncertainty is unknown, it is not resolved."""
+        """Return the mask of the phase pairs at which the difference has a value."""
         return np.isfinite(self.size)
 
     @property
@@ -83,7 +84,7 @@ class ModelDifference:
         return self.phases_at(self.largest_place)
 
     def at(self, values: Array, place: tuple[int, int] | None) -> float:
-        """Return one of `values` at an index pair of the study's grid; NaN if it is not computed there."""
+        """Return the entry of `values` at an index pair of the study's grid; NaN if it is not computed there."""
         if place is None or place[0] % self.stride or place[1] % self.stride:
             return float("nan")
         return float(values[place[0] // self.stride, place[1] // self.stride])

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # Relative difference below which two mu count as equal: the error asked of the equations
 EQUAL_DIFFERENCE = 1e-6
-UNRESOLVED_TEXT = "less than five times the numerical error"
+UNRESOLVED_TEXT = "less than five times the numerical error"  # words for a difference that is not resolved
 MAX_NAMED_SCENES = 4  # largest number of scenes that a sentence names
 
 
@@ -188,7 +188,7 @@ def word_breach(limit: Limit, breach: Breach) -> str:
 
 
 def _digits_above(found: float, allowed: float) -> str:
-    """Return a value with three digits, or with as many as show that it exceeds the limit."""
+    """Return a value with three digits, or with more if only these show that it exceeds `allowed`."""
     texts = (f"{found:.{digits}g}" for digits in range(3, 18))
     return next((text for text in texts if float(text) > allowed), f"{found:.3g}")
 

@@ -165,5 +165,5 @@ def count_outcomes(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, 
 
 
 def _find_model_index(surfaces: xr.Dataset, scene: str, model: Model) -> tuple[Any, Any]:
-    """Return the row and column of a model of a scene."""
+    """Return the indices of a scene and of a model along these dimensions of the surfaces."""
     return surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc(model.key)

@@ -15,7 +15,7 @@ from comparison.surfaces.differences import Difference
 from comparison.surfaces.model_difference import RESOLVED_RATIO
 
 NAN = float("nan")
-UNEQUAL_PHASES = "phases"  # key of the bar for phase pairs that only some of the models have
+UNEQUAL_PHASES = "phases"  # key of the bar for what remains because the models have different phase pairs
 MAX_ROUNDING_SHARE = 1e-9  # share of mu: a smaller remainder is rounding and has no bar
 
 

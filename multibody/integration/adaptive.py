@@ -40,7 +40,7 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-# Number of divisions of the largest step by `STEP_RATIO` in the first chunk, in which the contact force settles.
+# The largest step is divided so many times by `STEP_RATIO` in the first chunk, in which the contact force settles.
 FIRST_DIVISIONS = 2
 
 # Largest ratio of the numbers of steps in two successive chunks at the largest step: a chunk never grows faster.
@@ -52,8 +52,8 @@ ITERATIONS_PER_STEP_OF_WORK = 2
 # Number of rows at the end of a chunk whose step ratios decide whether the next step may be larger.
 RECENT_ROWS = 8
 
-# Number of divisions of the largest step from which on a failed step from sliding puts all contacts to rest, and number
-# with which the run then goes on: in shorter steps, noise of the contact force makes a larger slip.
+# If a step from sliding fails after DIVISIONS_BEFORE_REST divisions of the largest step, all contacts are put to rest,
+# and the run goes on with DIVISIONS_AT_REST: in shorter steps, noise of the contact force makes a larger slip.
 DIVISIONS_BEFORE_REST, DIVISIONS_AT_REST = 3, 1
 
 # Number of steps in the first chunk after a contact begins or ends to slide: another contact may change soon after it.
@@ -115,7 +115,7 @@ def continue_run(
     checkpoint: Checkpoint,
     pause: Callable[[float], bool] = lambda time: False,
 ) -> Checkpoint:
-    """Continue a run from a checkpoint to its end, or until `pause` of the time is true; return the last checkpoint."""
+    """Continue a run from a checkpoint to its end, or until `pause(time)` is true; return the last checkpoint."""
     progress = _AdaptiveRun(integration, run, replace(checkpoint))
     end = min(integration.end, run.stop) * (1.0 - TIME_ROUNDING)
     while progress.at.time < end and not pause(progress.at.time):
@@ -136,6 +136,7 @@ class _AdaptiveRun:
     # estimate needs.
 
     def __init__(self, integration: Integration, run: EngineRun, at: Checkpoint) -> None:
+        """Prepare a run that continues from the checkpoint `at` and enters its results in `run`."""
         self.integration, self.run, self.at = integration, run, at
         solver, level = integration.solver, integration.level
         self.model, self.level = solver.model, level
@@ -173,7 +174,7 @@ class _AdaptiveRun:
     def _find_last_accurate_row(
         self, motion: EngineMotion, step_ratio: Array
     ) -> tuple[int, int | None, Event | None, ContactChange | None]:
-        """Find the last accurate row, and the too large step, the event or the sliding change behind it."""
+        """Find the last accurate row, and what ends it: a step too large, an event, a change of sliding, or nothing."""
         failing, last = find_first_row(step_ratio > 1.0), len(motion.time) - 1
         if self.at.divisions >= self.level.max_divisions or failing > last:
             too_large = None
@@ -187,7 +188,7 @@ class _AdaptiveRun:
         return (last, too_large, None, None) if change is None else (change.row, None, None, change)
 
     def _choose_steps(self) -> tuple[int, float, int]:
-        """Choose the number of steps wanted in the next chunk, and length and number of those up to the next knots."""
+        """Return the number of steps wanted in the next chunk, and length and number of steps up to the next knots."""
         at, level, end, ground = self.at, self.level, self.integration.end, self.model.ground
         at.divisions = max(at.divisions, level.min_divisions(at.time))
         step = level.step / STEP_RATIO**at.divisions
@@ -291,7 +292,7 @@ class _AdaptiveRun:
         length = change.step_share * step
         motion = solver.run(before, at.time, length, 1) if length > MIN_STEP_SHARE * step else None
         if motion is not None and np.isfinite(motion.accelerations).all():
-            # no peak is read in this step: the next chunk reads the acceleration at the kink from its side
+            # no peak is read in this step: the next chunk reads the acceleration just after the change of sliding
             size = absolute_accelerations(self.model, motion, self.integration.ground)
             if not self._accept_steps(motion, size, settle=True, read=False):
                 return False
@@ -299,7 +300,7 @@ class _AdaptiveRun:
             if change.slides:
                 change = change._replace(limits=springs.limits(motion)[-1])
         reached = at.state
-        assert reached.accelerations is not None  # restart_state or the previous change has set them
+        assert reached.accelerations is not None  # set by restart_state, here or at an earlier change of sliding
         at.state = springs.restart_state(reached, reached, reached.accelerations, rates, self.level.slide_end, change)
         self.run.peaks.restart()
         at.next_count = STEPS_AFTER_SLIDING_CHANGE

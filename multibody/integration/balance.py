@@ -34,10 +34,10 @@ Mask = NDArray[np.bool_]
 # Largest number of iterations of Newton's method: after them the equilibrium counts as not found.
 MAX_ITERATIONS = 50
 
-# Largest residual of the forces, in weights, at which Newton's iteration may end. The rounding error of the
-# forces is added, times a safety factor for many contacts and stiff links.
+# Largest residual of the forces, in weights, at which Newton's iteration may end. Added to it is the rounding error
+# of the forces times SAFETY_OF_FORCE_ROUNDING.
 MAX_RESIDUAL = 1e-9
-SAFETY_OF_FORCE_ROUNDING = 100.0
+SAFETY_OF_FORCE_ROUNDING = 100.0  # factor on the rounding error of forces, for many contacts and stiff links
 
 CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current  # the engine's name for its present state
 
@@ -45,7 +45,7 @@ CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current  # the engine's name fo
 def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """Find the equilibrium near `start` under the plate's acceleration (3,); `start` if no body turns, else None."""
+    """Return the equilibrium near `start` under the plate's acceleration, None if none; `start` if no body turns."""
     if model.kinematics is None:
         return start
     static_penetration = model.bearing_penetration or penetration
@@ -88,6 +88,7 @@ class _EquilibriumSolver:
     penetration: float
 
     def __post_init__(self) -> None:
+        """Set up the engine's solver, the accelerations of the coordinates and the bound of the residual."""
         settings = exudyn.SimulationSettings()
         settings.timeIntegration.verboseMode = 0
         settings.solution.file.write = False
@@ -127,7 +128,7 @@ class _EquilibriumSolver:
         return [0, 1, 5] if self.model.rim == math.inf else []
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
-        """Solve for coordinates, from `begin` along `moved` (n, s), at which the residual lies in `held` (n, t)."""
+        """Solve for coordinates, moved from `begin` along `moved` (n, s), where forces along `held` (n, t) balance."""
         # Newton's method is applied to the engine's own forces and their Jacobian. The unknowns are displacements along
         # `moved` and forces along `held`, which hold the slow motions in place. The gap of every open contact must be
         # zero, so that a contact that would have to pull carries no force. The matrix may be singular where friction
@@ -154,7 +155,7 @@ class _EquilibriumSolver:
         return None
 
     def _compute_mass_matrix(self, coordinates: Array) -> Array:
-        """Compute the engine's mass matrix (n, n)."""
+        """Return the engine's mass matrix (n, n) at coordinates (n,)."""
         self._set_coordinates(coordinates)
         self._solver.ComputeMassMatrix(self.model.mbs, 1.0)
         return np.array(self._solver.GetSystemMassMatrix())

@@ -86,12 +86,12 @@ class Candidate:
         return bool((self.level.rounding > left).any())
 
     def is_worse_by_rounding(self, best: Candidate) -> bool:
-        """Return whether this error exceeds that of the coarser level `best`, and rounding may exceed it as well."""
+        """Return whether this error exceeds that of the coarser level `best`, and rounding may be the cause."""
         larger = not self.relative_error < best.relative_error
         return larger and bool((self.level.rounding > best.errors).any())
 
     def add_compliance_error(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
-        """Return the answer with the error of the contact's compliance, from a run in which only that is larger."""
+        """Return the answer with the error by the contact's compliance, which a run on a softer contact shows."""
         if not self.misses_compliance_error:
             return self
         level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)

@@ -103,7 +103,7 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
 
 @cache_on_disk(__file__, nogil=True)
 def find_last_row_near_peak(size: Array, sizes: Array, distance: Array, far: float) -> int:
-    """Find the last row in which any `size` (T, N) reaches `sizes` (N,), or `distance` (T,) `far`; -1 if none."""
+    """Find the last row with any `size` (T, N) >= its `sizes` (N,), or with `distance` (T,) >= `far`; -1 if none."""
     for row in range(len(size) - 1, -1, -1):
         if distance[row] >= far:
             return row

@@ -23,13 +23,14 @@ SPECTRAL_RADIUS = 0.8
 # Largest factor by which the engine may reduce a step that it cannot solve, as where contacts close or slip reverses.
 MAX_STEP_REDUCTION = 1e4
 
-# Contractivity of modified Newton above which the engine computes the Jacobian anew: runs take least time (measured).
+# If an iteration of modified Newton leaves more than this share of the error before it, the engine computes the
+# Jacobian anew; with this value runs take least time (measured).
 MAX_CONTRACTIVITY = 0.2
 
-# Names of the explicit integrators here, and in the engine.
+# Explicit integrators: names for callers, and the engine's names.
 EXPLICIT_INTEGRATORS = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}
 INITIAL_CONFIGURATION = exudyn.ConfigurationType.Initial  # the engine's name for the start of a run
-INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT_INTEGRATORS)  # names of all integrators here
+INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT_INTEGRATORS)  # integrators that a caller may name
 
 
 class EngineMotion(NamedTuple):
@@ -138,6 +139,7 @@ class EngineSolver:
         integrator: str = "generalized alpha",
         discontinuous: float | None = None,
     ) -> None:
+        """Make the engine's solver and its settings for `model`."""
         self.model = model
         self.settings = _solver_settings(newton, residual)
         if model.coordinates > MAX_DENSE_COORDINATES:

@@ -135,7 +135,7 @@ def record_steps(
 
 
 def _cut_rows_before(instant: float, time: Array, *columns: Array) -> list[Array]:
-    """Return times (T,) and columns from `instant` on, which lies behind the first row, with an interpolated row."""
+    """Return times (T,) and columns from `instant` on: an interpolated row there, then all later rows."""
     first = int(np.searchsorted(time, instant, side="right"))
     if first == len(time):
         return [time[first:], *(column[first:] for column in columns)]
@@ -154,7 +154,7 @@ def _record_last_large(run: EngineRun, time: Array, size: Array, displacement: A
 
 
 def _record_warping(run: EngineRun, motion: EngineMotion, model: EngineModel, level: Level) -> None:
-    """Record the largest warping load while all contacts are closed; elastic supports would carry no such load."""
+    """Record the largest warping load, the part of support forces without resultant, while all contacts are closed."""
     if model.warping_displacement is None:
         return
     displacement = model.warping_displacement(motion.coordinates)

@@ -27,25 +27,25 @@ from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
 
-# Safety factors on the error from the difference of two levels, and from three or more (Roache: 3 and 1.25). Two levels
-# count at the lowest rate of convergence that occurs here, not at the formal one; docs/records/multibody.md records how
-# often stated errors hold with 1.5.
+# Safety factors on the error from the difference of two levels, and from three or more (Roache: 3 and 1.25). For two
+# levels 1.5 is enough, because they are assumed to converge at the lowest rate that occurs, MIN_RATE;
+# docs/records/multibody.md records how often stated errors hold.
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25
 
-# Safety factor on the rounding error from the difference to a softer contact at the same step: the change of compliance
-# may partly cancel it (measured: 2 is 1.2 times too little, once in 48).
+# Safety factor on the rounding error that the difference to a run on a softer contact, in the same steps, shows: the
+# change of compliance may cancel a part of it (measured: a factor of 2.4 was needed at most, in 1 of 48 cases).
 SAFETY_OF_ROUNDING = 3.0
 
-# Noise of the contact force over the bound of its rounding error, in translation (measured: up to 0.27) and of a
-# platform that turns (measured: up to 0.10).
+# Noise of the contact force over the bound of its rounding error: of a platform that does not turn (measured: up to
+# 0.27), and of one that turns (measured: up to 0.10).
 FORCE_NOISE_RATIO = 0.5
-FORCE_NOISE_RATIO_OF_TURNING = 0.2
+FORCE_NOISE_RATIO_OF_TURNING = 0.2  # noise of the contact force over its rounding bound, if the platform turns
 
-# Largest force on the platform of a flat slider, over Newton's residual, at which the whole residual may be missing
-# from all runs (measured: 34).
+# Force on the platform of a flat slider, over Newton's residual, up to which all runs may miss a force as large as the
+# residual, because the engine takes a step without an iteration (measured: up to 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
-# Factor on the change of peaks by springs of bearings where that change was measured at a coarser level only
+# Safety factor on the change of peaks by the springs of real bearings, if only a coarser level has shown that change.
 SAFETY_OF_BEARINGS = 2.0
 
 # Time from the start, over the square root of the penetration, within which stiff links oscillate (measured: peaks at
@@ -55,7 +55,7 @@ STARTING_TIME = 4.0
 # Factor by which one level reduces the error: smallest, at stops, and largest, in smooth motion. A factor above
 # MAX_CREDIBLE_RATE counts as accidental.
 MIN_RATE, MAX_RATE = 2.0, 4.0
-MAX_CREDIBLE_RATE = 5.0
+MAX_CREDIBLE_RATE = 5.0  # factor of error reduction by one level, above which two errors count as canceling
 
 # Relative error of a peak over the largest warping load while all supports are closed (measured: up to 0.22, where
 # supports reach the slip speed v_reg one by one).
@@ -155,12 +155,12 @@ def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: Engin
 
 
 def impact_error_floor(before: int) -> float:
-    """Return the smallest relative error of a motion with impacts; before: number of coarser levels on its springs."""
+    """Return the smallest relative error with impacts; before: number of coarser levels on the same springs."""
     return MIN_ERROR_WITH_IMPACTS / 2.0**before
 
 
 def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
-    """Return errors (N,) of a motion with impacts, at least a share of the peaks and the spread of scattered levels."""
+    """Return errors (N,); after impacts they are at least a share of the peaks, and the spread of scattered levels."""
     if not run.impacts:
         return errors
     widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)
@@ -181,7 +181,7 @@ def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
 
 
 def load_sharing_error(run: EngineRun) -> Array:
-    """Return the error (N,) of a run with closed supports that do not share the load exactly as elastic ones do."""
+    """Return the error (N,) of a run in which closed supports share the load not exactly as elastic bearings do."""
     error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
     return error
 
@@ -195,7 +195,7 @@ def compliance_error(stiff: PeakReader, soft: EngineRun, level: Level, model: En
 
 
 def error_share_of_change(other: Level, model: EngineModel) -> float:
-    """Return the ratio of the error to the difference from a run at a coarser or softer level, at the lowest rate."""
+    """Return the ratio of a run's error to its difference from a coarser or softer run, at the slowest convergence."""
     return SAFETY_TWO_LEVELS * (1.0 + contact_lag(other, model)) / (MIN_RATE - 1.0)
 
 

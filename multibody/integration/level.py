@@ -28,27 +28,27 @@ from reference.support.arguments import check_number
 # Largest number of levels of accuracy that a phase pair goes through.
 MAX_LEVELS = 8
 
-# Smallest tolerance at which a record has a level before level 0 (measured: docs/records/multibody.md).
+# Smallest tolerance at which a recorded loading has an extra coarse level before level 0 (docs/records/multibody.md).
 MIN_LOOSE_TOLERANCE = 1e-2
 
 # Relative error of a peak that level 0 typically has: a closer agreement of two levels counts as accidental.
 ERROR_FLOOR_OF_LEVEL_0 = 8e-4
 
-# Largest relative change of the slip velocity in one step at level 0: larger steps are divided.
+# Largest relative change of the slip velocity in one step at level 0: a step with a larger change is divided.
 MAX_SLIP_CHANGE = 0.14
 
 # Largest penetration of the contact under the weight at level 0, in units of rho.
 MAX_PENETRATION = 1e-6
 
-# Largest contact lag x (response time of the contact over the relaxation time of friction) at level 0 where rounding
-# allows: below it each level halves the contact's error (measured).
+# Largest response time of the contact over the relaxation time of friction at level 0, unless rounding needs a softer
+# contact: below it each level halves the contact's error (measured).
 MAX_CONTACT_LAG = 0.3
 
-# Largest response time of the contact at level 0, times the largest angular frequency of the motion. On the slope of
-# the sphere a slower contact takes part in the motion of stiff links, and its damper ends that motion at every level.
-# Where bodies turn, links also press the supports by their height, so that the time is shorter.
+# Largest response time of the contact at level 0, times the largest angular frequency of the motion. A slower contact
+# would vibrate with stiff links on the slope of the sphere, and its damper would end this vibration at every level.
+# Where bodies turn, the moment of the links also presses the supports, so that the time is shorter.
 MAX_CONTACT_RESPONSE_TIME = 0.25
-MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04
+MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04  # as MAX_CONTACT_RESPONSE_TIME, where bodies turn
 
 # Largest response time of the contact over the duration, where the contact force changes: a slower contact has not
 # followed the change when the motion ends, and a run on a softer contact would not show that error.
@@ -58,21 +58,21 @@ MAX_CONTACT_RESPONSE_TIME_OVER_DURATION = 0.05
 # adds to the horizontal acceleration as a square.
 MAX_NEGLIGIBLE_FORCE_CHANGE = 0.03
 
-# Relative tolerance of the forces in Newton's iteration at level 0, and the smallest one of any level, which is the
-# rounding of the residuals.
+# Relative tolerance of the forces in Newton's iteration at level 0. No level has one below MIN_NEWTON_TOLERANCE,
+# which is the rounding of the residuals.
 NEWTON_TOLERANCE = 1e-5
-MIN_NEWTON_TOLERANCE = 1e-12
+MIN_NEWTON_TOLERANCE = 1e-12  # smallest relative tolerance of the forces in Newton's iteration at any level
 
-# Factor on Newton's tolerance where friction yields: the error of a spring force at its limit is a slip in one step.
+# Factor on Newton's tolerance where friction yields: a wrong force of a spring at its limit makes a contact slip.
 NEWTON_TOLERANCE_RATIO_OF_SPRINGS = 1e-3
 
 # Largest squared step over the penetration at which Newton's tolerance is not reduced: the tolerance is relative to the
 # first residual of a step, which is the error of the predicted position times the contact stiffness.
 MAX_SQUARED_STEP_OVER_PENETRATION = 1e3
 
-# Largest share of the tolerance that rounding of the forces may take for a peak of at least MIN_PEAK, in units of g.
+# Largest share of the tolerance that rounding of the forces may take for a peak of at least MIN_PEAK.
 MAX_ROUNDING_SHARE = 0.25
-MIN_PEAK = 0.2
+MIN_PEAK = 0.2  # in units of g, smallest peak for which MAX_ROUNDING_SHARE holds
 
 # Largest tolerance that counts for rounding: a looser one permits no more, since rounding may grow a hundredfold at a
 # stop.
@@ -81,27 +81,27 @@ MAX_TOLERANCE_FOR_ROUNDING = 1e-3
 # A loading below WEAK_LOADING, in units of g, hardly changes the contact force. Rounding is then compared with the
 # loading, not with MIN_PEAK, and a contact may be so soft that the weight presses it in by MAX_WEAK_PENETRATION rho.
 WEAK_LOADING = 1e-4
-MAX_WEAK_PENETRATION = 4e-4
+MAX_WEAK_PENETRATION = 4e-4  # in units of rho, largest penetration under the weight at a weak loading
 
 # Smallest peak, in units of g, by which the penetration is divided, so that it stays finite.
 MIN_PEAK_AS_DIVISOR = 1e-300
 
-# Compliance of the supports against warping, in units of rho under the weight: of real bearings, to which answers with
-# open supports refer, and of supports that all stay closed, whose spheres only follow the platform's misfit.
+# Compliance of real bearings against warping, in units of rho under the weight: answers in which supports open hold
+# for it. Supports that all stay closed may have COMPLIANCE_OF_CLOSED_SUPPORTS: the load is then shared evenly.
 PHYSICAL_WARPING_COMPLIANCE = 4e-4
-COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4
+COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4  # in units of rho, largest compliance against warping of closed supports
 
 # Ratio of the penetrations, and so of the contact compliances, of two successive levels.
 COMPLIANCE_RATIO = 4.0
 
-# Steps and Newton's tolerance of a scan, which looks ahead for large values, over those of its level.
+# Ratio of a scan's steps and of its Newton tolerance to those of its level; a scan looks ahead for large values.
 SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0
 
-# Ratio of neighboring step sizes, smallest number of step sizes below the largest step, and smallest step over the step
-# that the slip velocity allows at a stop.
+# Ratio of successive step sizes: the largest step is divided by powers of it. A level allows at least MIN_DIVISIONS
+# divisions, and as many as MIN_STEP_AT_STOP needs.
 STEP_RATIO = 4
-MIN_DIVISIONS = 7
-MIN_STEP_AT_STOP = 0.05
+MIN_DIVISIONS = 7  # smallest number of divisions of the largest step by STEP_RATIO that a level allows
+MIN_STEP_AT_STOP = 0.05  # smallest step over the step that the change of the slip velocity allows at a stop
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class Level:
 
     @property
     def precedes_level_0(self) -> bool:
-        """True for the coarser level with which a record at a loose tolerance begins, before level 0."""
+        """True for the extra coarse level before level 0, which recorded loadings have at a loose tolerance."""
         return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:
@@ -293,7 +293,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return the penetrations of the softest and the stiffest contact that respond within the time `slowest`, s."""
+    """Return the penetrations, over rho, of the softest and the stiffest contact; slowest: longest response time."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
     # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that
@@ -314,7 +314,7 @@ def newton_tolerance(number: int, step: float, penetration: float) -> float:
 
 
 def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
-    """Return a level with a contact as soft and a residual as small as the `smallest` peak, in units of g, needs."""
+    """Return the level with a softer contact and a smaller residual if the `smallest` peak, in units of g, needs it."""
     if smallest >= WEAK_LOADING:
         return level
     wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, MIN_PEAK_AS_DIVISOR))

@@ -53,17 +53,17 @@ MAX_WARPING_ERROR_SHARE = 0.2
 # Largest share of the work of a phase pair that the first run may take where supports may rattle.
 MAX_WORK_SHARE_OF_TRIAL = 0.2
 
-# Largest work of a level over that of the level before, for the prediction of work: steps are half as long.
+# Largest ratio of the work of two successive levels, with which work is predicted: steps become half as long.
 MAX_WORK_GROWTH = 2.0
 
 # Number of largest steps from the last large value of a run to the early stop of the next run.
 STEPS_AFTER_SETTLING = 20.0
 
-# Largest change of a peak between two levels, over its distance from later values, at which a run may stop early.
+# Largest change of a peak between two levels at which a run may stop early, over how far later values stay below it.
 MAX_CHANGE_FOR_EARLY_STOP = 0.2
 
-# Smallest distance of the first run from the rim or the end of its travel, relative, and from the opening of the
-# contact, in weights, at which later runs may stop early: if the first run comes closer, all runs go to the end.
+# Later runs may stop early only if the first run keeps this margin: a share of the distance to the rim or of the
+# travel, and a contact force in weights. Otherwise all runs go to the end.
 MIN_END_MARGIN = 0.1
 
 
@@ -105,7 +105,7 @@ class LevelRuns:
         number = len(self.runs)
         if number == len(self.levels):
             return False
-        # a shared contact needs one more run for its compliance error, and stiff springs another one on real bearings
+        # a contact no stiffer than at the level before needs one more run for its error; stiff springs need another
         runs = 1.0 + self.shares_contact(number) + (self.real_bearings_run is not None)
         # one level alone has no error estimate, so that a second level is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
@@ -204,7 +204,7 @@ class LevelRuns:
         return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
 
     def _run_level(self, level: Level, stop: float = math.inf) -> EngineRun:
-        """Run the model at one level of step sizes, up to `stop`, within the work left."""
+        """Run the model at one level of accuracy, up to `stop`, within the work left."""
         return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
     def _run_trial(self, level: Level) -> EngineRun:

@@ -43,7 +43,7 @@ def can_look_ahead(model: EngineModel, level: Level) -> bool:
 
 
 def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
-    """Return the level with the longest steps in a run; whole: whether the run takes its own steps to the end."""
+    """Return `level`, or the coarser level of its scan where a run may look ahead; whole: whether it may not."""
     return level.coarsen() if can_look_ahead(model, level) and not whole else level
 
 
@@ -64,7 +64,7 @@ def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineR
     large_at = 0.0
 
     def is_quiet(time: float) -> bool:
-        """Return whether no large value came for a period of the pendulum before `time`, in the run or in a scan."""
+        """Return whether run and scans had no large value for a period of the pendulum before `time`."""
         return time >= max(large_at, run.last_large_at) + QUIET_TIME_BEFORE_SCAN and not run.has_opened
 
     while True:
@@ -83,7 +83,7 @@ def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineR
 
 
 def _begin_scan(run: EngineRun, model: EngineModel) -> EngineRun:
-    """Return a scan whose largest values begin at a share of those of `run`, so that any larger value came near."""
+    """Return an empty scan result whose largest values start at NEAR_PEAK_FRACTION of those of `run`."""
     ahead = begin_run(model)
     ahead.peaks.value[:] = NEAR_PEAK_FRACTION * run.peaks.value
     ahead.max_displacement = NEAR_PEAK_FRACTION * run.max_displacement

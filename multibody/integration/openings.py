@@ -43,10 +43,10 @@ MIN_IMPACT_SPEED = 1e-5
 # Force of the contact's damper at a closing, in weights, beyond which no peak counts until contact forces have settled.
 MAX_QUIET_FORCE = 1e-3
 
-# Time after a closing in which contact forces settle and no peak is read: the longer of a time of the contact, over the
-# square root of the penetration, and of the time, in units of the model, in which real bearings spring back.
+# After a closing no peak is read until contact forces have settled: for this time over the square root of the
+# penetration, or for BEARING_SETTLING_TIME if that is longer.
 CONTACT_SETTLING_TIME = 40.0
-BEARING_SETTLING_TIME = 0.04
+BEARING_SETTLING_TIME = 0.04  # in units of time, time in which real bearings spring back after a closing
 
 # Numbers by which a step is divided to find a flight that begins and ends within the step.
 FLIGHT_SEARCH_DIVISORS = 2.0 ** np.arange(1, 8)
@@ -80,6 +80,7 @@ class Openings:
     impacts: int = 0
 
     def __post_init__(self) -> None:
+        """Start with all contacts closed."""
         self._mark_open(np.zeros(len(self.law.depressions.ring), bool))
 
     def _mark_open(self, is_open: Mask) -> None:
@@ -136,7 +137,7 @@ class Openings:
         values: dict[float, float] = {}
 
         def gap_before_event(length: float) -> float:
-            """Return the smallest gap, or for an opening minus the largest one, after a step of a `length`."""
+            """Return the smallest gap after a step of this length; for an opening, minus the largest gap."""
             if length not in values:
                 done[length] = motion = self.solver.run(state, time, length, 1)
                 gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.contacts]
@@ -165,7 +166,7 @@ class Openings:
         return done.get(length)
 
     def close_contacts(self, motion: EngineMotion, which: Mask) -> EngineMotion:
-        """Return `motion` with those contacts of `which` closed in its last row that touch there."""
+        """Return `motion` in whose last row the contacts that touch there, among those of `which`, are closed."""
         motion = self.fill_gaps_of_open_contacts(motion)
         touched = which & (self.gaps(motion.coordinates[-1:])[0] <= GAP_TOLERANCE * self.penetration)
         motion.contact[-1, 0::4][touched] = -GAP_TOLERANCE * self.penetration

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from multibody.integration.chunk import has_larger_entry
 
 Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
+Rows = NDArray[np.intp]  # row numbers of samples
 
-# Empty instants and row numbers, for a loading without kinks and for nothing kept
+# Empty arrays: instants of a loading without kinks, and row numbers where no row is found.
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
 
 # Number of samples carried over to the next chunk: as many as the extrapolations from both sides of an instant need.
@@ -39,7 +39,7 @@ SAMPLES_BEHIND_CORNER = 3
 # Ratio of the last step to the one before beyond which the samples do not count as equally spaced.
 MIN_LONGER_STEP_RATIO = 1.5
 
-# Share of the peak: between resolved steps, no maximum next to a sample below this share exceeds the peak.
+# Share of the largest value so far: where steps resolve the motion, no maximum beside a sample below it is larger.
 CANDIDATE_FRACTION = 0.97
 
 
@@ -75,6 +75,7 @@ class PeakReader:
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
+        """Start without samples, all largest values being zero."""
         self.value = np.zeros(bodies)
         self.sampling_error = np.zeros(bodies)
         self.instant = np.zeros(bodies)
@@ -220,7 +221,7 @@ def _read_parabola_maximum(
 
 
 def _alternating_part(time: Array, size: Array) -> float:
-    """Return the part of five samples that alternates from step to step: almost zero where steps resolve the motion."""
+    """Return the part of five samples that alternates from step to step; near zero where steps resolve the motion."""
     apart = time[:, None] - time
     np.fill_diagonal(apart, 1.0)
     weights = 1.0 / apart.prod(axis=1)
@@ -250,7 +251,7 @@ def _read_corner(
     time: Array, size: Array, slip: Array, left: int, threshold: float, corners: list[int]
 ) -> tuple[float, float, float]:
     """
-    Return value, error and instant at a corner between rows `left` and `left + 1`, extrapolated from both sides.
+    Return acceleration, error and instant where the slip speed passes the threshold between rows `left` and `left + 1`.
 
     Each side alone gives the instant at which the slip speed passes the threshold, since the rate of the slip speed
     jumps there as well. The error is half the difference of the values, and the slope times half that of the instants.
@@ -309,7 +310,7 @@ def _extrapolate(time: Array, values: Array, instant: float) -> float:
 
 
 def _locate_crossing(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
-    """Return the instant between `ends` at which the slip speed of one side, 2 or 3 samples, passes the threshold."""
+    """Return the instant between `ends` at which a slip speed, extrapolated from 2 or 3 samples, is the threshold."""
     near, far = (-1, -2) if time[-1] <= ends[0] else (0, 1)
     rate = float((slip[near] - slip[far]) / (time[near] - time[far]))
     if rate == 0.0:

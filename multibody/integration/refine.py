@@ -30,14 +30,14 @@ Array = NDArray[np.float64]
 
 # Default limit of the engine's steps in all runs of one phase pair: beyond it the pair has no answer.
 MAX_WORK = 2e6
-WORK_RANGE = Range(1.0, 1e12, "steps")  # limit of the steps that a caller may give
+WORK_RANGE = Range(1.0, 1e12, "steps")  # admissible values of max_work, the limit of steps that a caller may give
 
-# Number of successive levels with impacts, each another motion than the level before, after which refinement ends.
+# Refinement ends after so many successive levels whose motions, because of impacts, differ from the level before.
 MAX_DIFFERENT_MOTIONS = 3
 
-# Smallest number of levels with an error estimate where friction yields. How the platform oscillates on its springs
+# Smallest number of levels for an error estimate where friction yields. How the platform oscillates on its springs
 # depends on short slides, which may occur at one level and not at the next: levels 0 and 1 may agree and both be wrong
-# (measured: by seven times the error that their difference shows, and level 2 by a seventeenth of their error).
+# (measured: by seven times the error that their difference shows; the error of level 2 was 17 times smaller).
 MIN_LEVELS_OF_YIELDING = 3
 
 
@@ -106,6 +106,7 @@ class _AnswerSearch:
     # forgotten.
 
     def __init__(self, runs: LevelRuns) -> None:
+        """Start a search without an answer among the levels of `runs`."""
         self.runs, self.tolerance = runs, runs.tolerance
         self.candidate: Candidate | None = None
         self.complete: Candidate | None = None
@@ -132,7 +133,7 @@ class _AnswerSearch:
         if self.runs.pair.model.springs is not None and len(done) < MIN_LEVELS_OF_YIELDING:
             return
         self.candidate = self.runs.make_candidate()
-        if done[-1] is not run:  # a run on springs of real bearings has taken its place
+        if done[-1] is not run:  # a run on springs of real bearings has replaced `run`
             self.complete = self.best = None
         if self.candidate is not None:
             self._judge(self.candidate)
@@ -200,7 +201,7 @@ def _answer_beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candi
 
 
 def _refuse_unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
-    """Return a result without values, with the outcome of the last of the final two runs that has no answer."""
+    """Return a result without values, with the outcome of the last run, or of the one before if the last is OK."""
     failed = next((run for run in runs[:-3:-1] if run.outcome != Outcome.OK), None)
     if failed is None:  # one level has an answer, and no steps are left for another that shows its error
         return _make_no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)

@@ -28,16 +28,16 @@ Array = NDArray[np.float64]
 # Smallest and largest number of steps in a chunk at the largest step.
 MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256
 
-# Number of steps in a chunk of smaller steps, times the allowed change of the slip velocity, so that chunks of all
-# levels end, and steps grow, at the same instants; smallest and largest number, for levels that a caller has changed.
+# Number of steps in a chunk of steps below the largest, times the allowed change of the slip velocity. Chunks of all
+# levels then end, and steps grow, at the same instants.
 SLIP_CHANGE_PER_SMALL_CHUNK = 4.48
-MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096
+MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096  # bounds of the steps in a chunk of small steps
 
-# Largest first step behind a kink of the loading, over slip_change times the relaxation time of friction.
+# Largest first step behind a kink of the loading, over the relaxation time of friction and `Level.slip_change`.
 KINK_STEP_RATIO = 4.0
 
-# Largest step times the rate at which friction that depends on the slip speed changes this speed (`SpeedFriction`):
-# over the allowed change of the slip velocity, and at any level. From 2/3 on, errors of friction alternate and grow.
+# Largest step times the rate at which friction that depends on the slip speed changes this speed (`SpeedFriction`): as
+# a multiple of the level's slip_change, and at any level. From 2/3 on, errors of friction alternate and grow.
 FEEDBACK_PER_SLIP_CHANGE, MAX_STEP_TIMES_FEEDBACK = 2.0, 0.3
 
 # Largest number of steps, an even one, over which the rate of a gap is averaged.

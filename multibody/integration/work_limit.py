@@ -19,8 +19,8 @@ from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
-# Work of one motion (two levels, and a softer contact at the second) over that of the first level in its largest
-# steps. The factor of two: smaller steps at stops double the number of steps.
+# Work of one motion (levels 0 and 1, and a run on a softer contact) over that of level 0 if it took its largest steps
+# alone. Smaller steps at stops double the number of steps.
 WORK_PER_MOTION_OVER_COARSEST_RUN = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
@@ -89,6 +89,6 @@ def refusal(
 
 
 def _round_digits(value: float, rounded: Callable[[float], int]) -> float:
-    """Round a positive number to two digits by `math.floor` or `math.ceil`."""
+    """Return a positive number rounded to two digits by `rounded`, which is `math.floor` or `math.ceil`."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{rounded(value / unit) * unit:.2g}")

@@ -14,6 +14,7 @@ from reference.problem.ranges import REGULARIZATION_RANGE
 from reference.problem.reductions import body_cannot_tilt
 from reference.support.arguments import check_choice, check_number
 
+# function that assembles each model, by the model's name
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}
 
 

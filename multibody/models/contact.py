@@ -22,8 +22,8 @@ DAMPING_RATIO = 1.0
 # Rounding error of a position, in units of rho. Divided by the penetration it is that of the contact force, in weights.
 POSITION_ROUNDING = 1e-15
 
-# Slip speed up to which friction of a lubricated contact is linear, mu = f_c |v| with the viscous friction coefficient
-# f_c, in units of velocity: no motion reaches it.
+# Slip speed, in units of velocity, up to which the friction coefficient of a lubricated contact grows linearly with
+# the slip speed: no motion reaches it.
 LUBRICATED_SPEED_LIMIT = 1e6
 
 
@@ -67,7 +67,7 @@ def set_contact_parameters(
 
 
 def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
-    """Return the slip speed below which friction is linear, and the relaxation time of such a slip; inf without."""
+    """Return the slip speed below which friction is linear, and the relaxation time there; inf if there is none."""
     friction, threshold = contact_law(scene, regularization, units)
     if scene.lubricated or friction == 0.0 or scene.dry_friction.elastic:
         return math.inf, math.inf
@@ -88,7 +88,7 @@ def place_on_sphere(
     offset: Array, speed: Array, ground: Array, penetration: float
 ) -> tuple[Array, Array, float, float]:
     """
-    Return position and velocity of the platform on the sphere, with the penetration of a single body.
+    Return position, velocity, gap and slip speed of the platform on the sphere, in contact as a single body would be.
 
     offset, speed: horizontal (2,). ground: the plate's acceleration (3,). Returns displacement (3,), velocity (3,),
     gap and slip speed, all in units of the model. For several bodies off the vertical the penetration is not exact; the
@@ -105,7 +105,7 @@ def place_on_sphere(
 
 def settle_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
     """
-    Return the state with the same contact force from the penetration alone, without a part of the contact's damper.
+    Return the state with the same contact force, made by the penetration alone and no longer by the contact's damper.
 
     At a step h the engine's position and velocity disagree along the normal by O(h^2). The contact's damper makes a
     force of that, which a change of the gap balances. With a smaller step the balance would be lost and the force ring.

@@ -7,7 +7,7 @@ import weakref
 from importlib import import_module
 from typing import Any
 
-# Number of coordinates beyond which a sparse solver takes less time for a step (measured: a third at 360).
+# Number of coordinates beyond which a sparse solver is faster than a dense one (a third of its time at 360: measured).
 MAX_DENSE_COORDINATES = 40
 
 # Number of coordinates of a rigid body: x, y, z of the center of mass and three rotations.
@@ -20,9 +20,10 @@ except ImportError as error:
     raise ImportError(
         f"the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package libgl1): {reason}"
     ) from error
-# Variant of the engine's module: EXUDYN_MODULE=fast selects one without range checks.
+# Loaded variant of Exudyn's C++ module; the environment variable EXUDYN_MODULE=fast selects one without range checks.
 MODULE = "fast" if "exudyn.exudynCPPfast" in sys.modules else "default"
-items: Any = import_module("exudyn.itemInterface")
+items: Any = import_module("exudyn.itemInterface")  # Exudyn's classes of bodies, markers, loads and contacts
+# makes a user function from a symbolic expression: Exudyn evaluates it without Python
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
 
 

@@ -29,27 +29,29 @@ from reference.problem import DryFriction, Scene
 
 Array = NDArray[np.float64]
 
-# Moment of inertia of all spheres over r^2, over the total mass: the mass that vibrates on the springs grows by this.
+# Moment of inertia of all spheres over the square of their radius and the total mass: it adds as little to the mass
+# that vibrates on the springs.
 ROTATIONAL_MASS = 1e-9
 
-# Mass and stiffness that hold the center of a sphere: it moves by 1e-10 rho under the weight and does not resonate.
+# Mass and stiffness, in units of the model, with which a sphere's center stays in place: it sinks by 1e-10 rho under
+# the weight and does not resonate.
 CENTER_MASS, CENTER_STIFFNESS = 1e8, 1e10
 
-# Friction coefficient of a contact at rest over the scene's: the contact creeps at v_reg divided by this ratio.
+# Ratio of the friction coefficient of a contact at rest to the scene's: the contact creeps at v_reg over this ratio.
 RESTING_COEFFICIENT_RATIO = 1e6
 
-# Slip speed at which a slide ends at level 0, over sqrt(mu g u_y) (friction coefficient mu, yield displacement u_y):
-# noise of the contact force makes as much slip in short steps. The rest of the slide stretches the spring beyond its
-# limit, which does not count as yield.
+# Slip speed at which a slide ends at level 0, over sqrt(mu g u_y) (friction coefficient mu, yield displacement u_y): in
+# short steps noise of the contact force makes as much slip. What is left of the slide stretches the spring beyond its
+# limit, and this does not count as yield.
 SLIDE_END_SPEED_RATIO = 0.1
 
 # Elongation of a spring beyond its limit at level 0, over the yield displacement, up to which the contact still rests.
 NEGLIGIBLE_EXCESS = 1e-4
 
-# v_reg of a sliding contact over the slip speed at which slides end.
+# Slip speed v_reg below which friction of a sliding contact is linear, over the slip speed at which slides end.
 V_REG_OVER_SLIDE_END = 0.25
 
-# Weight of the platform's change of velocity over the slip speed in a step's ratio, where springs have the weight 1.
+# Weight, in `FrictionSprings.step_ratio`, of the platform's change of velocity; the change of springs has weight 1.
 VELOCITY_CHANGE_WEIGHT = 0.3
 
 # Smallest elastic displacement by which a vector is divided: the direction of a smaller one is arbitrary.
@@ -104,7 +106,7 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
     def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
-        """Return for each step (T,) the larger change: of elastic over yield displacement, or of velocity over slip."""
+        """Return the relative change (T,) in each step: that of the springs, or that of the slip velocity if larger."""
         turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
         slip = np.maximum(motion.slip[1:], end)[:, self._mark_sliding(state)].min(axis=1, initial=math.inf)
         turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip
@@ -193,8 +195,8 @@ class FrictionSprings:
         )
 
     def state_at_rest(self, state: EngineState) -> EngineState:
-        """Return the state to continue from with all contacts at rest."""
-        assert state.accelerations is not None  # restart_state sets them
+        """Return the state from which a run continues, as `state` but with all contacts at rest."""
+        assert state.accelerations is not None  # restart_state has set them
         return self.restart_state(state, state, state.accelerations, np.zeros(len(self.contacts)), math.inf)
 
     def _mark_sliding(self, state: EngineState) -> tuple[bool, ...]:
@@ -203,7 +205,7 @@ class FrictionSprings:
 
 
 def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
-    """Find the step in which a spring passes its limit; excess: elongation beyond it over the negligible one, (T,)."""
+    """Find the step in which a spring passes its limit; excess: its elongation beyond that, over a negligible one."""
     rows = np.flatnonzero((excess[1:] > 1.0) & (excess[1:] > excess[:-1]))
     if not len(rows):
         return None
@@ -212,7 +214,7 @@ def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
 
 
 def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
-    """Find the step in which a slip speed, extrapolated linearly, comes to zero; slip: over slide end's speed, (T,)."""
+    """Find the step in which an extrapolated slip speed comes to zero; slip: (T,), over the speed that ends a slide."""
     rows = np.flatnonzero((2.0 * slip[1:] <= slip[:-1]) | ((slip[1:] <= 1.0) & (slip[1:] < slip[:-1])))
     if not len(rows):
         return None

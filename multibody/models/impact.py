@@ -31,8 +31,8 @@ Mask = NDArray[np.bool_]
 # Slice of the platform's coordinates, the first ones of the bodies.
 PLATFORM_SLICE = slice(BODY_COORDINATES)
 
-# Largest number of sweeps over the contacts, and largest change of a velocity in one sweep, over the largest velocity
-# before the impact, at which the sweeps end.
+# Sweeps over the contacts, which solve for the impulses, end at this number, or if no velocity changes in a sweep by
+# more than this share of the largest velocity before the impact.
 MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
 
 # Normal speed after an impact, in the model's unit of velocity, beyond which a contact counts as open.
@@ -65,7 +65,7 @@ class ImpactLaw:
     rigid: Mask
 
     def solve_impact(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """Return velocities (n,) after an impact on contacts `hit`, and the open ones (K,); closed: other contacts."""
+        """Return velocities (n,) after an impact, and the open contacts (K,); hit, closed: contacts before it, (K,)."""
         # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix with
         # rigid links as constraints (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by
         # Newton's restitution, and closed contacts may push without rebounding. Friction and unilateral contact hold

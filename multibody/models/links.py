@@ -70,7 +70,7 @@ class Link:
             set_link_stiffness(mbs, self.connector, self.carried, self.shear, self.twist, stiff)
 
     def static_settlement(self, penetration: float) -> float:
-        """Return the shortening of a stiff link under the weight on it; 0 for elastic bars, defined under weight."""
+        """Return the shortening of a stiff link under the weight; 0 for elastic bars, whose heights include it."""
         return LINK_COMPLIANCE_RATIO * penetration * float(self.carried[0]) if self.bars is None else 0.0
 
     def damping_time(self, penetration: float) -> float:
@@ -112,7 +112,7 @@ def add_links(
 
 
 def _twist_stiffness(scene: Scene, number: int, units: Units, shear: Array, square_distance: float) -> float:
-    """Return the twist stiffness of a stiff link, whose bars stand where the supports do unless the scene says more."""
+    """Return the twist stiffness of a stiff link; its bars stand above the supports unless the scene says otherwise."""
     bars, swaying = scene.bodies[number + 1].bars, float(np.diag(shear).mean())
     if bars is None:
         return square_distance * swaying
@@ -154,7 +154,7 @@ def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, da
     for ends in (forth, back):
         rod = items.ObjectConnectorSpringDamper(markerNumbers=ends, referenceLength=ROD_LENGTH, damping=0.5 * damping)
         mbs.AddObject(rod)
-    # a reference length of -1 reverses the sign of the rope's damping, and a negative regularization force lets it push
+    # reference length -1 reverses the sign of the rope's damping; a negative regularizationForce lets the rope push
     rope = items.ObjectConnectorReevingSystemSprings(
         markerNumbers=[*forth, *back[::-1]],
         referenceLength=-1.0,
@@ -178,12 +178,12 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Set a link's stiffness: shear (2, 2), `twist`, others `stiff`; carried: mass above and its moments, (3,)."""
+    """Set the stiffness of a link: `shear` (2, 2), `twist`, and `stiff` elsewhere; carried: as in `Link`."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
     mbs.SetObjectParameter(connector, "stiffness", matrix)
-    # the stiff directions are damped critically, and twist is not damped
+    # the directions with the stiffness `stiff` are damped critically, twist is not damped
     dampers = 2.0 * np.sqrt(np.array([0.0, 0.0, stiff, stiff, stiff, 0.0]) * mass)
     mbs.SetObjectParameter(connector, "damping", np.diag(dampers))
     # at rest the bars carry the weight above them without a change of their length
@@ -199,7 +199,7 @@ def _set_bars(
     bars: BarLink,
     damping_time: float,
 ) -> None:
-    """Set a link's stiffness to that of its elastic bars, and its damping, but in shear, to `damping_time` times it."""
+    """Set stiffness and damping of a link with elastic bars; damping_time: damping over stiffness, except in shear."""
     _, along_x, along_y = carried
     stiffness = np.array([bars.shear, bars.shear, bars.tension, bars.bending, bars.bending, bars.torsion])
     # the heights of the scene are those at rest, under the weight that the bars carry

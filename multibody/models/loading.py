@@ -24,6 +24,7 @@ class SymbolicGround:
     knots, near = np.empty(0), 0.0
 
     def __init__(self, scene: Scene, units: Units) -> None:
+        """Make the symbolic phases, and take over the harmonics of `scene` in units of the model."""
         self.amplitudes = scene.amplitudes / units.acceleration
         self.exponents = exponents(scene) * units.time
         self.decay_rate = float(-self.exponents.real.min())

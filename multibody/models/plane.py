@@ -21,10 +21,10 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-# Smallest extent of the contact triangle, in units of length: its normal has an error of 1e-16 extents over the radius.
+# Smallest extent, in units of length, of the triangle that the engine has for the plane: larger ones round more.
 MIN_TRIANGLE_EXTENT = 1e4
 
-# Extent of the contact triangle over the largest distance that the loading and the start alone may move the platform.
+# Extent of the triangle that stands for the plane, over the largest distance that the platform can move on it.
 TRIANGLE_EXTENT_OVER_TRAVEL = 2.0
 
 
@@ -54,7 +54,7 @@ def _largest_distance_possible(scene: Scene, units: Units, coordinates: Array, v
 
 
 def place_on_plane(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
-    """Return position, velocity, gap and slip of the platform on the plane; arguments as of `place_on_sphere`."""
+    """Return position, velocity, gap and slip speed of the platform on the plane; arguments: see `place_on_sphere`."""
     pressed = penetration * float(1.0 + ground[2])
     place = np.array([*offset, penetration - pressed])
     return place, np.array([*speed, 0.0]), -pressed, float(np.hypot(*speed))

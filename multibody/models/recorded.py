@@ -29,6 +29,7 @@ class RecordedGround:
     decay_rate = 0.0
 
     def __init__(self, mbs: Any, scene: Scene, units: Units) -> None:
+        """Take over the record of `scene` in units of the model, and have the engine call `before_step`."""
         time, samples = scene.record[:, 0] / units.time, scene.record[:, 1:] / units.acceleration
         self.knots: Array = time[time < scene.duration / units.time]
         self.near = KNOT_TOLERANCE * float(np.diff(time).min())

@@ -36,17 +36,18 @@ class SpeedFriction:
     def __init__(
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
     ) -> None:
+        """Set up the law of `contacts`; threshold: slip speed below which their friction is linear."""
         law = self.law = scene.dry_friction.in_unit_of_speed(units.velocity)
         self._heat: SurfaceHeat | None = None
         if law.heat is not None:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
-        # coefficients over those of the law, above 1 for contacts at rest where friction yields (`FrictionSprings`)
+        # coefficient of each contact over that of the law: above 1 where friction yields and the contact rests
         self.coefficient_ratios = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        # slip speeds, and loads over shares of the weight, with their rates, at _start of the step that ends at _end
+        # at _start of the step that ends at _end: slip speeds, loads over shares of the weight, and rates of both
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)
         self._load = [1.0] * len(contacts)
         self._start = self._end = 0.0

@@ -17,13 +17,13 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-# Spacing of ln x, x the root of a decay rate, which makes a relative error of exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
+# Temperature is a sum of decays with rates x^2. Spacing of ln x: relative error exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
 LOG_SPACING = 0.3
 
-# Smallest x, the root of a decay rate, times the root of the duration.
+# Smallest root of a decay rate in the sum for the temperature, times the root of the duration.
 MIN_DECAY_RATE_ROOT = 1e-5
 
-# Time, over the duration, below which the kernel is cut off: the heat of so short a time is missing.
+# Time, over the duration, below which the kernel is cut off: heat released so shortly before has no effect yet.
 KERNEL_CUTOFF_TIME = 1e-6
 
 
@@ -45,6 +45,7 @@ class SurfaceHeat:
     """Temperature of `count` contacts in a run; unit_time, s, and unit_length, m: units of the model."""
 
     def __init__(self, heat: Heat, count: int, duration: float, unit_time: float, unit_length: float) -> None:
+        """Set up the decays whose sum is the temperature; duration: s."""
         self._initial, self._rise, self._cover = heat.initial, count * heat.rise, heat.cover / unit_length
         self._unit_time, self._count = unit_time, count
         low, high = math.log(MIN_DECAY_RATE_ROOT), math.log(3.0 / math.sqrt(KERNEL_CUTOFF_TIME * 1e-3))

@@ -47,7 +47,7 @@ UNIT_SPRING_MATRIX = np.array([[1.0, -1.0], [-1.0, 1.0]])
 # 1e-11 rad in 20 s.
 LOCKED_INERTIA = 1e15
 
-# Radius R of the hollow sphere, in units of rho, for a free choice: in translation only R - r = rho has an effect.
+# Radius R of the hollow sphere, in units of rho, chosen freely: in translation only R - r = rho has an effect.
 HOLLOW_RADIUS = 2.0
 
 # Radius r of the sphere, also under a flat slider, in units of length.

@@ -42,7 +42,7 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """Return the units in which total mass, rho and g of `scene` are one; on a plane the loading sets the length."""
+    """Return the units in which total mass, rho and g of `scene` are one; on a plane the loading sets the time unit."""
     if scene.flat:
         time = min(loading_period(scene), scene.duration) / (2.0 * math.pi)
         return Units(scene.total_mass, GRAVITY * time**2, time)

@@ -28,8 +28,10 @@ PRINT_RESOLUTION = 300  # dots per inch of the PNG file
 
 def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene) -> None:
     """
-    Write `path`, PNG, and the same as PDF: for every body the surface of the paper's equations and that of the engine
-    under the paper's assumption that no body turns, on one height scale per body.
+    Write a figure in the manner of the paper to `path`, PNG, and as PDF beside it.
+
+    It shows for every body the surface of the paper's equations and that of the engine under the paper's assumption
+    that no body turns, on one height scale per body.
     """
     pairs = [pair for pair in study.pairs(scene) if pair.second.side != "user"]
     first, last = pairs[0].first, pairs[-1].second

@@ -16,11 +16,11 @@ from comparison.study.selection import Selection
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import name_figure_file
 
-DRAWN_VARIABLES = ["mu", "error", "stride", "recorded"]  # variables of the surfaces from which pictures are drawn
+DRAWN_VARIABLES = ["mu", "error", "stride", "recorded"]  # variables of surfaces.nc that pictures are drawn from
 
 
 NamedFiles = tuple[tuple[str, bytes], ...]  # names and contents of files
-# arguments of a task: kind ("total", "paper"), study and surfaces of one scene alone, body, pair of models
+# Arguments of a task that draws a picture: kind ("total", "paper"), study, surfaces of one scene, body, pair of models
 PictureArguments = tuple[str, Study, xr.Dataset, int, Pair | None]
 
 
