@@ -73,6 +73,8 @@ def test_a_variation_changes_what_it_names_alone() -> None:
     uneven = Variation(offset=0.1, direction=math.pi / 2.0, yaw=0.2).of(FIRST)
     assert uneven.offsets.ravel().tolist() == pytest.approx([0.0, 0.0, 0.0, 0.1])
     assert uneven.yaws.tolist() == [0.0, 0.2]
+    twice = Variation(offset=0.2, direction=math.pi, yaw=0.5).of(uneven)
+    assert [*twice.offsets[1], twice.yaws[1]] == pytest.approx([-0.2, 0.1, 0.7]), "added to what the scene states"
     even = {"bodies.1.offset": None, "bodies.1.yaw": None, "name": FIRST.name}
     assert uneven.with_values(even) == FIRST
     placed = FIRST.with_values({"isolator.supports": (2.0 * SQUARE).tolist(), "isolator.ring": None})

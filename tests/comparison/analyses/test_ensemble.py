@@ -265,6 +265,7 @@ def test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median()
     ]
     reasons = {"a": ("largest displacement",), "b": ("largest base shear",), "c": ("largest drift",)}
     assert chosen(points) == reasons | {"c": ("largest drift", "nearest the median displacement")}
+    assert chosen(points[1:])["c"] == ("largest drift", "nearest the median displacement"), "of those with a value"
     with_supports = [replace(point, values={**point.values, ("support_force_max", 0): sure(k)})
                      for k, point in enumerate(points)]  # fmt: skip
     assert chosen(with_supports)["e"] == ("largest support force",)
