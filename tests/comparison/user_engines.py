@@ -40,6 +40,7 @@ misshapen = answering(lambda mu: np.zeros(3))
 texts = answering(lambda mu: [["a", "b"]] * len(mu))
 nothing_at_all = answering(lambda mu: None)
 complex_numbers = answering(lambda mu: mu + 1j)
+truths = answering(lambda mu: mu > 0.0)
 too_few_outcomes = answering(lambda mu: SimpleNamespace(mu=mu, status=["ok"]))
 
 

@@ -144,6 +144,17 @@ def test_the_film_shows_the_platform_from_above_with_y_upwards(visit: Visit) -> 
         np.testing.assert_allclose(place - middle, np.stack([x * radius, y * radius], axis=1), atol=0.1)
 
 
+def test_the_bars_of_rest_stand_beside_the_number_of_their_model(visit: Visit) -> None:
+    """The known motions rest from 2 s to 3 s."""
+    figure = visit.page.locator("figure", has=visit.page.locator("svg[aria-label^='rest of the platform']"))
+    bars, names = figure.locator("g path"), ("1st", "2nd")
+    assert bars.count() == len(names)
+    for number, name in enumerate(names):
+        bar, text = bars.nth(number).bounding_box(), figure.get_by_text(name, exact=True).bounding_box()
+        assert bar and text
+        assert abs(bar["y"] + 0.5 * bar["height"] - text["y"] - 0.5 * text["height"]) < 4.0
+
+
 def test_keys_alone_reach_motions_tips_and_tables(visit: Visit) -> None:
     page = visit.page
     page.locator("canvas.surface").first.focus()

@@ -202,6 +202,7 @@ def test_every_form_of_answer_is_read(form: str) -> None:
         ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
         ("nothing_at_all", "TypeError: the engine's mu is None"),
         ("complex_numbers", "TypeError: the engine's mu has complex128 in place of real numbers"),
+        ("truths", "TypeError: the engine's mu has bool in place of real numbers"),
         ("exits", "RuntimeError: the engine asked the process to end: exit code 0"),
         ("too_few_outcomes", "ValueError: the engine's status has 1 entries, asked: 4"),
     ],
