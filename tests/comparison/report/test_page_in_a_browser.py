@@ -151,7 +151,8 @@ def test_the_bars_of_rest_stand_beside_the_number_of_their_model(visit: Visit) -
     assert bars.count() == len(names)
     for number, name in enumerate(names):
         bar, text = bars.nth(number).bounding_box(), figure.get_by_text(name, exact=True).bounding_box()
-        assert bar and text
+        assert bar
+        assert text
         assert abs(bar["y"] + 0.5 * bar["height"] - text["y"] - 0.5 * text["height"]) < 4.0
 
 
