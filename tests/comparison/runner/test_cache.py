@@ -61,12 +61,13 @@ def _task(scene: Scene = SCENE, *rest: Any) -> Task:
 def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch) -> None:
     task, batch = _task(), _batch_task()
     array, model = np.arange(3.0), fake_hierarchy(batch=1)[0]
-    shorter, renamed = SCENE.with_values({"duration": 3.0}), SCENE.with_values({"name": "other", "title": "another"})
+    shorter, renamed = SCENE.with_values({"duration": 3.0}), SCENE.with_values({"name": "other"})
     tasks = {
         "it": task,
         "function": replace(task, function=another_motion),
         "scene": _task(shorter),
         "name, which the answer may hold": _task(renamed),
+        "title, which the answer may hold": _task(SCENE.with_values({"name": SCENE.name, "title": "another"})),
         "last bit": _task(SCENE, 1, np.nextafter(0.5, 1.0), array),
         "array": _task(SCENE, 1, 0.5, array + 1e-16 * (array == 0.0)),
         "shape": _task(SCENE, 1, 0.5, array[None]),
