@@ -81,6 +81,19 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     assert not any(lacking.used for lacking in list_missing_values(alone, surfaces))
 
 
+@pytest.mark.parametrize("body", [0, 1])
+def test_a_phase_pair_lacks_a_value_where_one_body_does(body: int) -> None:
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    at = {"scene": "fig3-I", "model": "translational"}
+    mu, error = (surfaces[name].sel(at).values.copy() for name in ("mu", "error"))
+    mu[body, 0, 1] = np.nan
+    error[body, 2, :2], error[body, 3, 3] = 0.6 * mu[body, 2, :2], 0.4 * mu[body, 3, 3]
+    surfaces["mu"].loc[at], surfaces["error"].loc[at] = mu, error
+    (lacking,) = list_missing_values(study, surfaces)
+    assert (lacking.model, lacking.points, lacking.unusable, lacking.asked) == ("translational", 1, 2, 16)
+
+
 def test_the_translational_limit_may_be_of_the_total(command: Callable[..., Run], tmp_path: Path) -> None:
     limits = "[acceptance]\nfailed = 99\n[acceptance.translational]\nmedian = 1e-3\n"
     scene = limited_scene(tmp_path, limits, "mine.toml")
