@@ -160,10 +160,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    """Return a public name of the package; its module is imported when the name is first used."""
     if name in LOADED_ON_FIRST_USE:
         return getattr(import_module(LOADED_ON_FIRST_USE[name]), name)
     raise AttributeError(f"module 'reference' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
+    """Return the names in the module and the public names that are not imported yet, sorted."""
     return sorted({*globals(), *__all__})

@@ -18,9 +18,9 @@ from reference.support.arguments import name_some
 
 # Number of modes along each axis in a description; of a tall chain only the lowest modes are computed
 MAX_DESCRIBED_MODES = 10
-MAX_NAMES_PER_LINE = 6  # a line names at most so many modes, or buildings
+MAX_NAMES_PER_LINE = 6  # a line of the description lists at most so many values, or names of buildings
 EQUAL_LOAD_TOLERANCE = 1e-6  # share of the mean within which the dead loads of supports count as equal
-MAX_KINDS = 3  # at most so many kinds of buildings are described
+MAX_KINDS = 3  # at most so many different buildings, or kinds of friction, are described one by one
 
 
 @dataclass(frozen=True)
@@ -91,6 +91,7 @@ class Building:
         return word_buildings([self])
 
     def __str__(self) -> str:
+        """Return the description of the building as one text."""
         return "\n".join(self.lines)
 
 
@@ -198,7 +199,7 @@ def _word_loads(building: Building) -> str:
 
 
 def _word_structure(building: Building) -> list[str]:
-    """Return sentences on a building without its loading."""
+    """Return lines of text on bodies, weight, isolator, heights, periods and damping of a building."""
     bodies = f"{building.bodies} {'body' if building.bodies == 1 else 'bodies'}"
     load = building.load_per_support
     each = (
@@ -277,6 +278,6 @@ def _word_axes(values: Array, unit: str) -> str:
 
 
 def _word_values(values: Sequence[float] | Array, unit: str) -> str:
-    """Return values to three digits and their unit as text; behind MAX_NAMES_PER_LINE values only their number."""
+    """Return the first MAX_NAMES_PER_LINE values, to three digits, with their unit and the number of the others."""
     more = f" and {len(values) - MAX_NAMES_PER_LINE} more" if len(values) > MAX_NAMES_PER_LINE else ""
     return f"{', '.join(f'{value:.3g}' for value in values[:MAX_NAMES_PER_LINE])} {unit}{more}"

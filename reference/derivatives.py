@@ -21,17 +21,17 @@ from reference.support.arguments import quote
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]  # function of a scene whose derivatives are computed
 
-STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # step of a difference over the key's value; a derivative also uses twice its step
-FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # changes of the key's value over this value, at which kinks show
+STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # steps of central differences, over the key's value; twice each step is used, too
+FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # relative changes of the key's value at which kinks are looked for
 RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)  # evaluations of the quantity for one key
-# A kink is sought where a mean slope differs from the derivative by at least this share of the largest slope: powers
-# up to the tenth differ by less over 5 % of the value
+# A kink is looked for if a mean slope differs from the derivative by at least this share of the largest slope. That of
+# a power x^n over 5 % of x differs by less up to n = 10.
 MIN_CONTRADICTION = 0.05
-MAX_HALVINGS = 12  # limit of the halvings of the interval that contains a kink
-KINK_WIDTH = 1e-4  # share of the value: an interval of this width locates a kink well enough
-# Share of the change of slope, or of the jump, that must remain in the last interval: less remains of a smooth curve
+MAX_HALVINGS = 12  # the interval that contains a kink is halved at most so many times
+KINK_WIDTH = 1e-4  # width of the interval that locates a kink well enough, over the value of the key
+# Share of a kink's change of slope, or of a jump, that must remain when its interval shrinks: a smooth curve keeps less
 MIN_REMAINING_SHARE = 0.25
-MIN_SHRINKING = 0.125  # share of the first interval to which the last must shrink: otherwise errors hide the kink
+MIN_SHRINKING = 0.125  # largest final width of a kink's interval, over its first: a wider one means that errors hide it
 PROGRESS_AFTER = 2.0  # s, after which the progress of the runs is printed
 
 
@@ -77,6 +77,7 @@ class Sensitivity(Estimates):
     warning: str
 
     def __repr__(self) -> str:
+        """Return the derivative, its error, friction law, reading and warning in one line."""
         if np.size(self.value) == 1:
             slope = f"{float(np.squeeze(self.value)):.6g} ± {float(np.squeeze(self.error)):.1g}"
         else:
@@ -171,9 +172,10 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
 
 
 class _ProgressLines:
-    """Progress lines on standard error, one per key with the time left, once the runs have taken PROGRESS_AFTER."""
+    """Printer of progress lines on standard error: one per key, with the time left, after PROGRESS_AFTER seconds."""
 
     def __init__(self, runs: int) -> None:
+        """Start the clock; runs: number of evaluations of the quantity that are to come."""
         self._began, self._left, self._done, self._spent = time.monotonic(), runs, 0, 0.0
         self._line = ""
 
@@ -203,6 +205,7 @@ class _VariedQuantity:
         middle: _ComputedQuantity,
         progress: _ProgressLines,
     ) -> None:
+        """Take over the value of the key in the scene and the quantity there, `middle`."""
         self.scene, self.key, self.value, self.middle = scene, key, value, middle
         self._quantity, self._progress = quantity, progress
         self.known: dict[float, _ComputedQuantity] = {value: middle}
@@ -226,7 +229,7 @@ class _VariedQuantity:
 
 
 def _find_sensitivity(line: _VariedQuantity) -> Sensitivity:
-    """Return the derivative, the finite changes, and the kink between them if they contradict each other."""
+    """Return derivative and finite changes of the quantity, and a kink or jump if the two contradict each other."""
     derivative, middle = _differentiate_line(line), line.middle
     moved = [line.value_or_nan_at(line.value * (1.0 + share)) for share in FINITE_CHANGES]
     change = Estimates(
@@ -268,11 +271,11 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
 
 
 def _differentiate_line(line: _VariedQuantity) -> Estimates:
-    """Return the derivative of the quantity by its key, from the step with the smallest error."""
+    """Return the derivative of the quantity by its key, by central differences with the step of the smallest error."""
     middle, value = line.middle, line.value
 
     def difference(step: float) -> tuple[Array, Array, Array]:
-        """Return the central difference, half the jump of slope at the value, and the errors of both."""
+        """Return the central difference, half the change of slope at the key's value, and the error of both."""
         high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
         error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
         return (
@@ -294,7 +297,7 @@ def _differentiate_line(line: _VariedQuantity) -> Estimates:
 
 def _find_contradiction(derivative: Estimates, change: Estimates, value: float) -> tuple[int | None, float, bool]:
     """
-    Return the element whose finite changes and derivative contradict each other most, and by how much.
+    Return the element of the quantity whose finite changes contradict its derivative most, and by how much.
 
     Returns the element of the flattened quantity at which a kink is to be looked for, None without one, the departure
     of the mean slope over 5 % there, and whether it is larger than the errors.
@@ -320,7 +323,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
 
 
 class _QuantityAtValue(NamedTuple):
-    """One element of the quantity at one value of the key."""
+    """One number of the quantity, which may be an array, with its error, at the value `at` of the key."""
 
     at: float
     value: float
@@ -328,7 +331,7 @@ class _QuantityAtValue(NamedTuple):
 
 
 class _Bracket(NamedTuple):
-    """Two points on the two sides of a kink or jump, with the slopes outside them."""
+    """Points below and above a kink or jump, with the slope of the quantity below the lower and above the upper one."""
 
     low: _QuantityAtValue
     high: _QuantityAtValue
@@ -337,22 +340,22 @@ class _Bracket(NamedTuple):
 
     @property
     def width(self) -> float:
-        """Distance of the two points, in the unit of the key."""
+        """Distance between the two points, in the unit of the key."""
         return self.high.at - self.low.at
 
     @property
     def slope_change(self) -> float:
-        """Change of slope from below the lower point to above the upper point."""
+        """Slope above the upper point minus slope below the lower point."""
         return self.beyond - self.below
 
     @property
     def jump(self) -> float:
-        """Change of the quantity between the points less the change by the mean of the outer slopes."""
+        """Change of the quantity from point to point, minus the change that the mean of both outer slopes makes."""
         return self.high.value - self.low.value - 0.5 * (self.below + self.beyond) * self.width
 
 
 def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] | None:
-    """Return the bracket of one element's kink within the finite changes, and its jump; None without a clear kink."""
+    """Return the bracket of a kink or jump of element `place`, and the jump (0 at a kink); None if neither is clear."""
 
     def point(at: float) -> _QuantityAtValue:
         """Return the chosen element of the quantity where the key has the value `at`."""
@@ -370,7 +373,7 @@ def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] 
 
 
 def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _QuantityAtValue]) -> _Bracket | None:
-    """Return the neighbors of the point with the largest change of slope; None where errors explain the change."""
+    """Return the two points around the largest change of slope of the quantity; None if errors explain the change."""
     x, f, e = np.array(points).T
     slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
     excess = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # changes of slope between intervals beyond their errors
@@ -388,7 +391,7 @@ def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _
 
 
 def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue], enough: float) -> _Bracket | None:
-    """Return a bracket halved to the width `enough`, or as far as errors permit; None where a value is missing."""
+    """Return the bracket halved to the width `enough`, or until errors hide the kink; None if a value is missing."""
     low, high, below, beyond = bracket
     for _ in range(MAX_HALVINGS):
         if high.at - low.at <= enough:
@@ -414,7 +417,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
 
 
 def _value_and_provenance(found: Any) -> _ComputedQuantity:
-    """Return value and error of the result of a quantity, with its reading of (5.1) and its law of friction."""
+    """Return value, error, reading of (5.1) and law of friction from `found`, which the user's function returned."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:
@@ -427,7 +430,7 @@ def _value_and_provenance(found: Any) -> _ComputedQuantity:
 
 
 def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
-    """Return the value and error in the result of a quantity. Raises TypeError for a result of another form."""
+    """Return value and error from `found`, which the user's function returned. Raises TypeError for another form."""
     if isinstance(found, Amplification):
         return found.mu, found.error
     if all(hasattr(part, "value") and hasattr(part, "error") for part in parts):
@@ -440,6 +443,6 @@ def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:
 
 
 def _word_refusal(found: Any) -> TypeError:
-    """Return the error for a result of a quantity that has no value and error."""
+    """Return the TypeError for a user's function whose result `found` has no value and error."""
     kinds = "an Amplification, an object with value and error, several of these, or a pair (value, error)"
     return TypeError(f"quantity: returns {quote(found)}: must return {kinds}")

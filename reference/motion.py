@@ -28,9 +28,9 @@ from reference.solver.system import Array, RunSettings, StepRecord, System, allo
 from reference.support.arguments import check_array
 from reference.surface import OUTCOMES, loads_are_finite, prepare_run
 
-SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
-STEP_SAMPLES = 8000  # target number of output instants over all time steps; more if there are many steps
-MAX_SAMPLES = 200_000  # limit of evenly spaced output instants, and of those placed in time steps
+SAMPLES_PER_PERIOD = 64  # evenly spaced output instants per loading period (the shorter of the two), by default
+STEP_SAMPLES = 8000  # target number of output instants placed in steps of the solver; more if there are many steps
+MAX_SAMPLES = 200_000  # largest number of evenly spaced output instants, and of those placed in steps of the solver
 # Lower bound on the error of a peak, as a share of the tolerance: a closer agreement of two runs is accidental
 # (measured errors reach 0.2)
 MIN_ERROR_FRACTION = 1.0
@@ -102,7 +102,7 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
-    # The looser run ended early, as close to the rim: a more accurate run decides, and the first run shows its error
+    # The looser run ended early, for example at the rim: a more accurate run decides, and the first one gives its error
     if other.outcome != Outcome.OK:
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
@@ -116,18 +116,18 @@ def trajectory(
 
 
 class _RecordedRun(NamedTuple):
-    """One run with the record of all its steps."""
+    """One run of the solver: how and when it ended, all its steps, peak accelerations and their errors."""
 
     outcome: Outcome
     instant: float  # s, end of the run
     record: StepRecord
     peak: Array  # (N,) m/s^2, largest absolute accelerations
     reading_error: Array  # (N,) m/s^2, errors of the peaks from interpolation inside their steps
-    system: System  # with k_T, the factor of friction by temperature, from the heat of this run
+    system: System  # with k_T, the temperature factor of friction, from the heat of this run
 
 
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:
-    """Return the run from the state x, v with the record of all its steps."""
+    """Return the run from initial displacements x, m, and velocities v, m/s, (N, 2), with the record of its steps."""
     run, record, system = record_run(x, v, system, phase, settings)
     return _RecordedRun(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
 
@@ -135,7 +135,7 @@ def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunS
 def _sample_trajectory(
     scene: Scene, phase: Array, system: System, run: _RecordedRun, asked: Array | None
 ) -> Trajectory:
-    """Return the run at the instants `asked`, or at those of `_default_instants` without any."""
+    """Return the motion of a run at the instants `asked`, or at those of `_default_instants` if `asked` is None."""
     record, early = run.record, run.outcome != Outcome.OK
     steps, sticks = (int(number) for number in record.counts)
     instants = _default_instants(scene, record) if asked is None else asked
@@ -177,7 +177,7 @@ def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
 
 
 def _default_instants(scene: Scene, record: StepRecord) -> Array:
-    """Return SAMPLES_PER_PERIOD instants per period at even distances, and instants in every step, s."""
+    """Return the output instants, s: SAMPLES_PER_PERIOD per loading period, evenly spaced, and some in every step."""
     samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
     even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
@@ -194,7 +194,7 @@ def _check_times(scene: Scene, times: ArrayLike) -> Array:
 
 
 def _vertical_motion(x: Array, v: Array, system: System) -> tuple[Array, Array]:
-    """Return height above the lowest point and vertical velocity (2.1), (3.4); both are zero in the small equations."""
+    """Return the platform's height above its lowest point, m, and vertical velocity, m/s; 0 in the small equations."""
     if system.small:
         return np.zeros(len(x)), np.zeros(len(x))
     squared = (x**2).sum(axis=-1)

@@ -35,13 +35,13 @@ from reference.surface import amplification
 QUANTITIES = ("amplification", "displacement")  # quantities that `worst_phases` maximizes
 GRID_TOLERANCE = 1e-4  # relative error of mu on the grid of phases
 MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
-MAX_SHORTFALL = 0.01  # share of the maximum: a search that ends lower by more need not follow its jump
+MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by more is neither classified nor refined
 
 
 @dataclass(frozen=True)
 class PhaseMaximum:
     """
-    The largest value over all phase pairs.
+    Largest amplification factor, or displacement, over all phase pairs; the result of `worst_phases`.
 
     Attributes
     ----------
@@ -186,7 +186,7 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
 def _classify_highest(
     surface: Surface, searches: Sequence[LocalSearch]
 ) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
-    """Return kind and side of the highest maxima, after searches at a jump have followed it."""
+    """Return kind (smooth, kink or jump) and high side of the highest maxima; move those at a jump along it first."""
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
     kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:

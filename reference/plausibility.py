@@ -49,7 +49,7 @@ def implausible_values(scene: Scene, building: Building) -> list[str]:
 
 
 def implausible_suite(motions: Sequence[RecordDescription]) -> list[str]:
-    """Return warnings of motions that hardly belong to a suite: with fewer components, or a far smaller peak."""
+    """Return warnings about motions with fewer components, or a far smaller peak, than the others of their suite."""
     lines = []
     axes = ["".join(one.axis for one in motion.directions) for motion in motions]
     common = max(axes, key=lambda own: (axes.count(own), len(own)), default="")
@@ -77,7 +77,7 @@ def implausible_drift(ratio: float, place: str) -> str:
 
 
 def _implausible_limits(scene: Scene, building: Building) -> Iterator[str]:
-    """Iterate over the lines for limits on demands that no motion exceeds, or every motion."""
+    """Iterate over warnings about limits on demands so high that no motion exceeds them, or so low that all do."""
     limits = scene.acceptance.demands
     if limits is None:
         return
@@ -103,7 +103,7 @@ def _implausible_limits(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _implausible_modes(building: Building) -> list[str]:
-    """Return the lines for implausible periods and damping of the modes above a fixed base."""
+    """Return the warnings about implausible periods and damping of the modes above a fixed base."""
     if building.bodies == 1:
         return []
     lines: list[str] = []
@@ -122,14 +122,14 @@ def _implausible_modes(building: Building) -> list[str]:
 
 
 def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
-    """Iterate over the lines for an implausible support load, and for the mass that differs most from the others."""
+    """Iterate over warnings about an implausible support load, and about the mass that differs most from the others."""
     load = building.load_per_support
     if load is not None and load not in SUPPORT_LOAD_RANGE:
         limit = _word_end_beyond(load, SUPPORT_LOAD_RANGE, word_force)
         yield f"the weight on each support is {word_force(load)}, {limit}: is mass in kg?"
     if len(scene.bodies) == 1:
         return
-    with np.errstate(divide="ignore"):  # the share of a mass in which all others vanish is infinite
+    with np.errstate(divide="ignore"):  # infinite where the sum of all other masses rounds to zero
         shares = scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)
     place = int(np.argmax(np.abs(np.log(shares))))
     if (share := float(shares[place])) not in MASS_RATIO_RANGE:
@@ -139,7 +139,7 @@ def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
-    """Iterate over the lines for an implausible law of friction, positions of supports, and heights of bodies."""
+    """Iterate over warnings about an implausible law of friction, positions of supports and heights of bodies."""
     law = scene.dry_friction
     if not scene.lubricated and law.varies and law.rate < MIN_FRICTION_RATE:
         yield f"the rate of friction is {law.rate:.4g} s/m, below {MIN_FRICTION_RATE:g} s/m: s/mm?"
@@ -172,7 +172,7 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _unequal_loads(scene: Scene, building: Building) -> Iterator[str]:
-    """Yield the line for dead loads of supports that are far from equal."""
+    """Yield a warning if the dead loads of the supports are far from equal."""
     loads, places = building.support_loads, scene.support_places
     if loads is None or places is None or loads.max() <= MAX_LOAD_RATIO * loads.min():
         return
@@ -189,10 +189,10 @@ def _unequal_loads(scene: Scene, building: Building) -> Iterator[str]:
 
 
 def _name_body(scene: Scene, place: int) -> str:
-    """Return the words for a body: its floor if the scene names it, or its number."""
+    """Return the name of a body in warnings: its floor in quotes if the scene states one, otherwise its number."""
     return f'"{floor}"' if (floor := scene.bodies[place].floor) else f"body {place + 1}"
 
 
 def _word_end_beyond(value: float, allowed: Range, word: Callable[[float], str]) -> str:
-    """Return "below" or "above" and the end of a range that a value lies beyond, as text."""
+    """Return "below" with the lowest or "above" with the highest value of a range that `value` lies outside."""
     return f"below {word(allowed.lowest)}" if value < allowed.lowest else f"above {word(allowed.highest)}"

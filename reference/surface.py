@@ -126,7 +126,7 @@ def amplification(
     True
     """
     pairs, shape = flat_phases(phases)
-    # (4.6) as printed distinguishes directions; friction that yields is solved along both axes
+    # Not reduced to one axis: (4.6) as printed, which distinguishes directions, and friction that yields
     flat = not full and rest_condition == "consistent" and is_planar(scene).allowed and not scene.dry_friction.elastic
     moving, axes = (turn_loading_to_x(scene), 1) if flat else (scene, 2)
     system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)

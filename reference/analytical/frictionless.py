@@ -21,17 +21,17 @@ from reference.problem import Scene, exponents, loading_period
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Time intervals per shortest period, and terms of the Taylor series on each: its error is below 1e-14 of the motion
+# Time intervals per shortest period. Each has a Taylor series of SERIES_TERMS, with an error below 1e-14 of the motion.
 INTERVALS_PER_PERIOD = 12
-SERIES_TERMS = 12
-# Largest |s t| of a loading exp(s t) at which the drift on a plane is a series of DRIFT_TERMS terms: no cancellation
+SERIES_TERMS = 12  # terms of the Taylor series in time on each interval
+# Largest |s t| at which (exp(s t) - 1 - s t) / s^2 is summed as a series of DRIFT_TERMS terms, to avoid cancellation
 MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20
-ROUNDING_ERROR = 1e-13  # relative error of a frequency and of each operation
+ROUNDING_ERROR = 1e-13  # relative rounding error of a natural frequency and of each operation
 
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return peak accelerations, m/s^2, and their errors, (M, N); largest displacement, m, and whether travel ends, (M,).
+    Return peak accelerations, m/s^2, and errors, (M, N); largest displacement, m, and if a limit is near, (M,) bool.
 
     The scene is one that `is_linear` allows. Travel ends at phase pairs at which the platform may reach the end of its
     travel, or without one the rim (4.1): such a motion has left the range of the small equations.
@@ -62,7 +62,7 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
 def _harmonic_responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
-    """Return the complex response to each harmonic and its derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
+    """Return complex responses of bodies and their time derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
     shape = natural.shape[:, :bodies]
     parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
@@ -87,7 +87,7 @@ def _harmonic_responses(
 
 
 def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
-    """Return a time derivative of the drift on a plane under exp(s t), (exp(s t) - 1 - s t) / s^2, (T,)."""
+    """Return a time derivative of (exp(s t) - 1 - s t) / s^2, (T,), s^2: displacement under acceleration exp(s t)."""
     angle = s * time
     if order > 1:
         return np.asarray(s ** (order - 2) * np.exp(angle))
@@ -103,7 +103,7 @@ def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
 
 
 def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
-    """Return (exp(s t) - exp(z t)) / (s - z), (T, N), s, the response of modes of eigenvalue z (N,) to exp(s t)."""
+    """Return (exp(s t) - exp(z t)) / (s - z), (T, N), s: response to exp(s t) of modes with eigenvalues z = `roots`."""
     gap = s - roots
     same = gap == 0.0
     growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)

@@ -21,15 +21,15 @@ from reference.support.build_cache import cache_on_disk
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # points of an interval, the best of which starts Newton's method
-NEWTON_STEPS = 5  # iterations of Newton's method to the largest length
-SERIES_REMAINDER = 1e-14  # share of the envelope that the terms left out by the series may have
+STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # points of an interval; Newton's method starts from the best of them
+NEWTON_STEPS = 5  # iterations of Newton's method that finds the time of the largest |v|
+SERIES_REMAINDER = 1e-14  # error of the truncated series, over the upper bound `envelope` of |v|
 
 
 @dataclass(frozen=True)
 class PhaseSeries:
     """
-    Power series in time, on T intervals, of the vectors of N bodies: linear in exp(i alpha_1) and exp(i alpha_2).
+    Power series in time, on T intervals, of a vector v of each of N bodies, as a function of both initial phases.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class PhaseSeries:
 
     @classmethod
     def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
-        """Return the series from the derivatives (T, N, axes, 2) at the middle of intervals of length 2 `half`, s."""
+        """Return the series from time derivatives (T, N, axes, 2 harmonics) at midpoints of intervals of 2 `half` s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
         sizes = np.abs(scaled).sum(axis=-1)  # largest over all phases: both harmonics add up
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
@@ -76,13 +76,13 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return (M, 4) factors of Re A_1, Im A_1, Re A_2, Im A_2 in v: cos and -sin of both phases of each pair."""
+    """Return cos and -sin of both phases of each pair, (M, 4): factors of Re A_1, Im A_1, Re A_2, Im A_2 in v."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
 @cache_on_disk(__file__)
 def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
-    """Set the squared length |v|^2 in the middle of each interval, and its upper bound over the interval, (T,) each."""
+    """Set |v|^2 of a body at the middle of each interval, `least`, and an upper bound on the interval, `most`, (T,)."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
@@ -107,7 +107,7 @@ def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: i
 
 @cache_on_disk(__file__, nogil=True)
 def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
-    """Set the largest lengths over time, and their errors, of all bodies at each phase pair."""
+    """Set the largest |v| over time of every body at each phase pair, `peaks` (M, N), and its `errors` (M, N)."""
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
@@ -133,7 +133,7 @@ def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, e
 
 @njit(nogil=True)
 def _maximize_on_interval(series: Array) -> tuple[float, float]:
-    """Return the largest |v|^2 on an interval with these coefficients (axes, P), and the error of Newton's method."""
+    """Return the largest |v|^2 on one interval, and its error; series: coefficients of v on it, (axes, P)."""
     best, place = -1.0, 0.0
     for x in STARTING_POINTS:
         value, _, _ = _squared_length(series, x)
@@ -155,7 +155,7 @@ def _maximize_on_interval(series: Array) -> tuple[float, float]:
 
 @njit(nogil=True)
 def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
-    """Return the squared length |v|^2 at x and its first two derivatives."""
+    """Return |v|^2 at the place x in [-1, 1] of an interval, and its first two derivatives by x."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):
         value = slope = curvature = 0.0

@@ -14,9 +14,9 @@ from reference.measures.energy import Energy, compute_energy
 from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
-FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-DURATION_TOLERANCE = 1e-9  # time by which a complete motion may end before the scene, over the duration
-DECIMATION = 5  # number n: the sampling error is the largest change of a value if only every n-th sample is taken
+FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts the whole duration
+DURATION_TOLERANCE = 1e-9  # share of the duration: the last rest may end so long before the motion does
+DECIMATION = 5  # n: the sampling error is the largest change of a value when only every n-th sample is used
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,10 @@ class Estimate:
     reason: str = ""
 
 
-NEVER_RESTS = "never at rest: no dry friction"  # reason for no residual displacement
-MOVING_AT_END = "moving at the end: take a longer duration"  # reason for no residual displacement
-NOT_SAMPLED = "no samples of the last rest"  # reason for no residual displacement
-UNKNOWN_ESTIMATE = Estimate(math.nan, math.nan)  # any number of a motion that ended early
+NEVER_RESTS = "never at rest: no dry friction"  # reason why a motion has no residual displacement
+MOVING_AT_END = "moving at the end: take a longer duration"  # reason why a motion has no residual displacement
+NOT_SAMPLED = "no samples of the last rest"  # reason why a motion has no residual displacement
+UNKNOWN_ESTIMATE = Estimate(math.nan, math.nan)  # stands for any number of a motion that ended early
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
@@ -52,7 +52,7 @@ def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
 
 
 def squared_lengths_and_interval_maxima(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the squared length of `place` (T, 2), m^2, at the instants, and the maxima over the intervals between."""
+    """Return the squared length of `place` (T, 2), m^2, at the instants, (T,), and its maxima in between, (T - 1,)."""
     # Between two instants the rate p . v of half the squared length is taken as linear. Where it passes zero downward,
     # the length has a maximum: its square exceeds the squared length at the earlier instant by rate^2 over the fall of
     # the rate, times the interval.
@@ -88,12 +88,12 @@ class DemandSamples(NamedTuple):
         )  # fmt: skip
 
     def split_into_subsamples(self) -> list[DemandSamples]:
-        """Return DECIMATION sets of samples, each with every fifth sample from another start."""
+        """Return DECIMATION sets of samples: each takes every fifth sample and starts with another one."""
         firsts = range(min(DECIMATION, len(self.time)))
         return [DemandSamples(*(part[first::DECIMATION] for part in self)) for first in firsts]
 
     def largest_length(self, place: Array, velocity: Array) -> float:
-        """Return the largest length of a displacement (T, 2), m, also between the samples."""
+        """Return the largest length, m, of the displacement `place` (T, 2), also between the samples."""
         return largest_displacement(self.time, place, velocity)
 
     def residual_and_creep(self, stick: list[tuple[float, float]]) -> tuple[float, float]:
@@ -114,6 +114,7 @@ class DemandReader:
     """Reader of numbers from a motion, with errors from its decimated samples and from less accurate runs."""
 
     def __init__(self, motion: Trajectory) -> None:
+        """Take samples of the motion, every DECIMATION-th of them, and those of its less accurate runs."""
         self.motion, self.accuracy = motion, motion.accuracy
         self.answered = motion.status in FULL_LENGTH_OUTCOMES and len(motion.time) > 0
         self.samples = DemandSamples.from_motion(motion)
@@ -127,7 +128,7 @@ class DemandReader:
         return estimate
 
     def extremes(self, read: ReadNumbers, count: int) -> tuple[Estimate, ...]:
-        """Return `count` numbers that `read` computes from samples together, with their errors."""
+        """Return the `count` numbers that one call of `read` computes from samples, with their errors."""
         if not self.answered:
             return (UNKNOWN_ESTIMATE,) * count
         values = read(self.samples)
@@ -139,7 +140,7 @@ class DemandReader:
         return tuple(estimates)
 
     def residual(self) -> Estimate:
-        """Return the displacement in the last rest, with the creep in all rests as a part of its error."""
+        """Return the displacement of the platform in its last rest, m; its error includes the creep during rests."""
         if not self.answered:
             return UNKNOWN_ESTIMATE
         scene, stick = self.motion.scene, self.motion.stick

@@ -15,7 +15,7 @@ from reference.problem.scene import Scene
 @dataclass(frozen=True)
 class Demands:
     """
-    Demands of one motion of N bodies, the result of `demands`.
+    Demands on isolator and structure in one motion of N bodies, the result of `demands`.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Demands:
 @require_motion
 def demands(trajectory: Trajectory) -> Demands:
     """
-    Return the demands of one motion, with errors.
+    Return the demands on isolator and structure in one motion, with errors.
 
     Parameters
     ----------

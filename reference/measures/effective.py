@@ -16,7 +16,7 @@ from reference.support.constants import GRAVITY
 @dataclass(frozen=True)
 class EffectiveIsolator:
     """
-    Effective properties of the isolator, each of the shape of the displacements; the result of `effective_isolator`.
+    Effective properties of the isolator at displacements D, as arrays of their shape; result of `effective_isolator`.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
         raise ValueError(f"displacement = {quote(displacement)}: must be lengths in m above 0")
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
-    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # smaller before friction yields
+    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # force over weight, also elastic
     dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)
     stiffness = weight * (friction + slope) / amplitude
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -35,7 +35,7 @@ class Energy(NamedTuple):
         return float(np.trapezoid(power, self.time) - (self.stored[-1] - self.stored[0]))
 
     def split_into_subsamples(self, step: int) -> list[Energy]:
-        """Return `step` histories, each with every `step`-th instant from another start, and both ends."""
+        """Return `step` parts of the instants: each takes every `step`-th from another start, and both ends."""
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
         return [Energy(*(part[rows] for part in self)) for rows in kept]

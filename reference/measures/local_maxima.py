@@ -10,7 +10,7 @@ from reference.problem.scene import Scene
 from reference.problem.symmetry import indices_of_solved_pairs
 
 GRID = 48  # phases per axis of the grid on which local maxima are sought
-MAX_STARTS = 12  # number of local maxima from which a search begins: those that may lead to the highest values
+MAX_STARTS = 12  # largest number of local maxima from which searches start: those that may lead to the highest values
 
 
 def find_local_maxima(surface: Array, scene: Scene) -> Array:

@@ -25,34 +25,34 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
-# Coordinates along each axis of the square at which the predicted quotient is computed: first, then around its maximum
+# Coordinates along each axis of a square at which its interpolant is computed: on the first grid, and on finer grids
 COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
-QUOTIENT_GRIDS = 5  # successive grids that locate the largest quotient, each four times finer than the one before
+QUOTIENT_GRIDS = 5  # number of grids that locate the maximum of the interpolant, each finer than the grid before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
-# The square moves and keeps its size if the best pair is farther from the center than this share of the half width
+# A search's square moves and keeps its size if its best phase pair lies beyond this share of the half width
 MOVING_FRACTION = 0.8
-# Nodes of the interpolating polynomial along each axis of the square: at first, and after a poor prediction
+# Nodes of the interpolating polynomial along each axis of a search's square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction, as a share of the range of values in the square
-FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors of the half width after a good and after a poor prediction
+MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction of mu, over the range of values in the square
+FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a square's half width after a good and after a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
 # values in its square, or by more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump even a
 # small square has a large range.
-PROMISE_FACTOR = 2.0
-LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0
+PROMISE_FACTOR = 2.0  # over the range of values
+LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0  # rounds over which the gain of a search is taken, and the factor on this gain
 MAX_MERGED_WIDTH = 0.04  # rad: two searches in one square of smaller width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
-JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # squares in which a search follows a jump, and grids in each square
+JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # number of squares in which a search follows a jump, and of grids in each square
 FALL_DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
-# Ratio of the falls at the near and the far distance: it is 0.01 for a parabola, 0.1 for an edge, 1 for a jump
+# Least fall at NEAR_DISTANCE over that at FAR_DISTANCE of a kink and of a jump (parabola 0.01, edge 0.1, jump 1)
 KINK_FALL, JUMP_FALL = 0.03, 0.3
-CLEAR_FALL = 10.0  # smallest fall, in errors of the value, that classifies a maximum
+CLEAR_FALL = 10.0  # smallest fall, in errors of the value, from which the kind of a maximum can be told
 
 
 @dataclass(frozen=True)
 class ComputedPhases:
-    """Computed phase pairs, with NaN for a pair without an answer."""
+    """Values of a surface computed at M phase pairs, as numerator and denominator; NaN where the run gave no answer."""
 
     phases: Array  # (M, 2), rad
     numerator: Array  # (M,), numerator of (5.1), m/s^2, or displacement, m
@@ -65,7 +65,7 @@ class ComputedPhases:
         return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
 
     def select(self, places: slice) -> ComputedPhases:
-        """Return the pairs at these places."""
+        """Return the part at a slice of the M phase pairs."""
         return ComputedPhases(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
 
 
@@ -82,7 +82,7 @@ class Surface:
     outcome: str = ""  # last outcome that was not ok
 
     def denominator(self, phases: Array) -> Array:
-        """Return the denominator of (5.1), m/s^2, (M,) at (M, 2), rad, exact and cheap; 1 for a displacement."""
+        """Return the denominator of (5.1) at phase pairs (M, 2), rad, (M,), m/s^2; 1 for a displacement."""
         return ground_peak(self.scene, phases) if self.quantity == "amplification" else np.ones(len(phases))
 
     def compute(self, phases: Array, **changes: Any) -> ComputedPhases:
@@ -101,7 +101,7 @@ class Surface:
 
 @dataclass(eq=False)
 class LocalSearch:
-    """The best phase pair of a search so far, and the square to search next."""
+    """A search for a maximum: its best phase pair so far, and the square of phases around it to compute next."""
 
     phases: Array  # (2,), rad
     value: float
@@ -113,13 +113,13 @@ class LocalSearch:
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
 
     def move_to_best(self, points: ComputedPhases) -> None:
-        """Move to the best of the points if it is higher than the present one."""
+        """Move the search to the phase pair with the highest value among `points` if it exceeds the best so far."""
         top = int(points.value.argmax())
         if points.value[top] > self.value:
             self.phases, self.value, self.error = points.phases[top], float(points.value[top]), float(points.error[top])
 
     def may_reach(self, highest: float) -> bool:
-        """Return True if the search goes on: its square is not too small and may contain the highest value."""
+        """Return True if the search shall go on: its square is not too small and may contain a value of `highest`."""
         promise = PROMISE_FACTOR * self.value_range
         if len(self.history) > LATEST_ROUNDS:
             promise = min(promise, GAIN_FACTOR * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
@@ -134,14 +134,14 @@ class LocalSearch:
 
 @cache
 def make_square_nodes(nodes: int) -> tuple[Array, Array]:
-    """Return coordinates (nodes^2, 2) in [-1, 1], and the matrix from values there to Chebyshev coefficients."""
+    """Return interpolation nodes in [-1, 1]^2, (nodes^2, 2), and the matrix from values there to their polynomial."""
     node = np.cos(np.pi * np.arange(nodes) / (nodes - 1))
     places = np.stack(np.meshgrid(node, node, indexing="ij"), axis=-1).reshape(-1, 2)
     return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))
 
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance all searches by one round: the phase pairs of each square region, then its interpolant's maximum."""
+    """Advance all searches by one round: compute the phase pairs of each square, then the best pair they predict."""
     # All searches share two calls of the solver, which computes their pairs in parallel. A prediction is good if the
     # value computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly
     # and with more nodes. A search ends where neither the values of its square nor the prediction differ by more than
@@ -169,7 +169,7 @@ def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
 
 
 def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) -> tuple[Array, float]:
-    """Return the pair of the square with the largest predicted amplification, and this amplification."""
+    """Return the phase pair in a search's square with the largest interpolated value of the surface, and this value."""
     known = np.isfinite(square.numerator)
     if not known.any():
         return search.phases, -np.inf
@@ -218,7 +218,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], offset_grids:
 
 
 def follow_jump(surface: Surface, search: LocalSearch) -> None:
-    """Move a search at a jump to the highest phase pair along this jump, by computed values alone."""
+    """Move a search at a jump of the surface to the highest phase pair along this jump, without interpolation."""
     # The polynomial of a square fails across a jump. So the maximum over the second phase is taken for each first one,
     # on ever finer grids of computed values, and then the maximum over the first phase: a ridge of any direction
     # is followed. The square is centered anew and made ten times smaller once.
@@ -239,7 +239,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
 
 
 def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
-    """Return the searches whose best pair, shifted by any row of (K, 2), rad, lies in no square of a higher search."""
+    """Return searches without repeats of one maximum or its mirror images; shifted: mirror shifts of phases, (K, 2)."""
     kept: list[LocalSearch] = []
     for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:

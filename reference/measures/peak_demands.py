@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies; index of the first body that has one
+PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demand of each body: index of the first body that has it
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
     "residual": ("residual displacement of the isolator", "m"),
@@ -96,12 +96,15 @@ class PeakDemands(Mapping[str, Estimates]):
     phases: Array
 
     def __getitem__(self, name: str) -> Estimates:
+        """Return the numbers of one demand, by its name."""
         return self.estimates[name]
 
     def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the demands."""
         return iter(self.estimates)
 
     def __len__(self) -> int:
+        """Return the number of demands."""
         return len(self.estimates)
 
     def to_xarray(self) -> xr.Dataset:
@@ -165,7 +168,7 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
 
 
 def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
-    """Return value and error, on the last axis, of every demand that any answer has; NaN where an answer lacks it."""
+    """Return arrays of all motions by demand: value and error on the last axis, NaN for a motion without the demand."""
     stacked: dict[str, Array] = {}
     for name in (field.name for field in fields(Demands) if field.name != "status"):
         tables = [None if answer is None else _estimate_table(getattr(answer, name)) for answer in answers]
@@ -177,7 +180,7 @@ def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
 
 
 def _estimate_table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array | None:
-    """Return value and error, (2,) or (K, 2); None for a demand that the model does not have."""
+    """Return value and error of a demand, (2,), or of its K bodies or links, (K, 2); None if the model lacks it."""
     if estimates is None:
         return None
     if isinstance(estimates, Estimate):

@@ -21,9 +21,9 @@ from reference.support.build_cache import cache_on_disk
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, periods of a spectrum by default
 DAMPING_RANGE = Range(0.0, 1.0, "of critical")  # damping ratio of the oscillator
-SERIES_TERMS = 8  # number of terms in the power series of a step
-MAX_ANGLE = 0.25  # rad, largest phase angle of the oscillator in a step: the series has an error of 1e-12
-# The sampling error is SAMPLING_FACTOR times the largest change if every third sample is taken. On the built-in
+SERIES_TERMS = 8  # terms of the power series, in the phase angle, of an oscillator's motion in one step
+MAX_ANGLE = 0.25  # rad, largest phase angle of the oscillator in a step, for which its power series errs by 1e-12
+# The sampling error is SAMPLING_FACTOR times the largest change when only every third sample is used. On the built-in
 # scenes, against ten times as many samples, the errors were at most 0.6 of this estimate.
 SAMPLING_FACTOR, DECIMATION = 2.0, 3
 
@@ -223,7 +223,7 @@ def response_spectrum(
 
 
 def _check_periods(periods: ArrayLike) -> Array:
-    """Return periods of oscillators, (P,), s, that are all positive. Raises ValueError, one line."""
+    """Return the periods of oscillators as an array (P,), s. Raises ValueError unless all are positive."""
     rule = "must be positive numbers (P,), s"
     period = check_array("periods", periods, rule)
     if period.ndim != 1 or not len(period) or not (period > 0.0).all():

@@ -127,7 +127,7 @@ def _depression_radius(scene: Scene) -> float:
 def _read_supports(
     read: DemandReader, values: Callable[[DemandSamples], Array], count: int
 ) -> tuple[tuple[Estimate, ...], tuple[Estimate, ...]]:
-    """Return the smallest, then the largest over time of values (T, K) of `count` supports, with their errors."""
+    """Return the smallest values over time of each of `count` supports, and the largest, with errors."""
 
     def ends(samples: DemandSamples) -> list[float]:
         """Return the smallest values of all supports over time, then the largest."""
@@ -139,7 +139,7 @@ def _read_supports(
 
 
 def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterator[tuple[Estimate, ...]]:
-    """Iterate over the largest magnitudes of vectors over time, then their components along x and y, with errors."""
+    """Iterate over maxima over time: magnitudes of all vectors, their x components, their y components, with errors."""
 
     def sizes(vector: ReadVectors) -> tuple[Estimate, ...]:
         """Return the largest magnitude of a vector over time and its largest x and y components, with errors."""
@@ -150,18 +150,18 @@ def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterato
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
-    """Return a reader of inertial forces of a body and those above (T, 2), N; with masses times arms: moments, N m."""
+    """Return a function for the sum of weights times accelerations of a body and all above: force or moment, (T, 2)."""
     return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 
 def _arms_below(scene: Scene, heights: Array, body: int) -> Array:
-    """Return masses times heights above the body below, for a body and those above it, kg m."""
+    """Return mass times height of a body and of all above it, kg m; heights from the body below, or the contact."""
     arms: Array = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
     return arms
 
 
 def _drift_above(link: int) -> ReadVectors:
-    """Return a reader of the displacement of the body above a link relative to the one below (T, 2), m."""
+    """Return a function for the displacement (T, 2), m, of the body above a link relative to the body below it."""
     return lambda samples: samples.place[:, link + 1] - samples.place[:, link]
 
 
@@ -171,7 +171,7 @@ def _largest_sizes(vectors: Array) -> list[float]:
 
 
 def support_loads_at_rest(scene: Scene) -> Array | None:
-    """Return the forces of equally stiff supports under the weight at rest, (K,), N; None without their positions."""
+    """Return the force on each of K equally stiff supports at rest, (K,), N; None if the scene states no positions."""
     if (places := scene.support_places) is None:
         return None
     return scene.total_mass * GRAVITY * static_shares(places, scene.center_of_mass)

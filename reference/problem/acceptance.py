@@ -16,7 +16,7 @@ ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # form of the name that
 
 
 class LimitTable(Table):
-    """A table of a scene file in which the keys `limited` state limits."""
+    """A table of a scene file with limits for checks: those of its keys that `limited` names."""
 
     limited: ClassVar[tuple[str, ...]]
 
@@ -75,7 +75,7 @@ class DemandLimits(LimitTable):
     )
 
 
-DemandLimits.limited = tuple(name for name in DemandLimits.model_fields if name != "statistic")
+DemandLimits.limited = tuple(name for name in DemandLimits.model_fields if name != "statistic")  # keys with a limit
 
 
 def _check_table(value: Any) -> Any:
@@ -87,7 +87,7 @@ def _check_table(value: Any) -> Any:
 
 class Acceptance(Limits):
     """
-    Limits for `--check`; the keys of `Limits` given here mean the same as in the table `like_for_like`.
+    Limits for `--check`: tables for pairs of models; keys of `Limits` outside them are those of `like_for_like`.
 
     Any other table has the name of an engine of the user: its limits against the equations with the same friction law.
     """
@@ -154,7 +154,7 @@ class Acceptance(Limits):
 
     @property
     def allowed_failures(self) -> int | None:
-        """Stated number of points that may lack an answer; if none is stated, 0 beside other limits and else None."""
+        """Number of points that may lack an answer: as stated, or else 0 if there are other limits; otherwise None."""
         return (
             0 if self.failed is None and (self.list_limited_differences() or self.closure is not None) else self.failed
         )

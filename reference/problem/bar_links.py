@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class BarLink:
     """
-    Stiffness of all bars of one link together, between the two points half-way up.
+    Stiffness of all bars of one link together, between points of its two bodies that coincide half-way up.
 
     shear: N/m, without the effect of a weight that sinks as bars shorten. bending: N m, about either horizontal axis.
     tension: N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the
@@ -39,7 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """Return each link's stiffness under its load, N, from below, None if it is rigid; radius: default `spread`, m."""
+    """Return the stiffness of every link, lowest first, under its load, N; None: rigid; radius: default `spread`, m."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -76,7 +76,7 @@ def stands_upright(
     apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2. The weight N above sinks by
     D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Rigid links have one rotation on both sides.
     """
-    rotation = np.cumsum([0] + [link is not None for link in links])  # which rotation each body has, from 1; 0: none
+    rotation = np.cumsum([0] + [link is not None for link in links])  # number of each body's rotation, from 1; 0: none
     count = len(links)
     size = count + int(rotation[-1])
     unit = np.eye(size + 1)[:, :size]  # the last row stands for the platform, which does not move

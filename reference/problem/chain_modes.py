@@ -49,6 +49,6 @@ def solve_chain_modes(masses: Array, stiffness: Array, count: int | None = None)
     frequency = values * scale
     if free:
         frequency[0] = 0.0
-    symmetric = vectors[0 if free else 1 :: 2]  # the rows of the masses are M0^1/2 times the shape
+    symmetric = vectors[0 if free else 1 :: 2]  # rows of the masses: square root of the mass times mode shape
     shape: Array = symmetric / np.linalg.norm(symmetric, axis=0) / np.sqrt(masses)[:, None]
     return frequency, shape

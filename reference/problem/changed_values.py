@@ -13,7 +13,7 @@ from reference.records.samples import AXES, file_name, files_by_axis
 from reference.support.arguments import as_float, quote
 from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
-# Largest numbers of letters that one changed value, and all of them, have in a scene's name; longer: "changed"
+# Largest numbers of letters of one changed value, and of all, in a scene's name; "changed" stands for longer ones
 MAX_VALUE_LETTERS, MAX_CHANGES_LETTERS = 40, 80
 TABLES_WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # their changes change no result
 
@@ -71,7 +71,7 @@ def _short_entry(short: str, value: Any) -> str:
 
 def name_with_changes(name: str, changes: Sequence[str]) -> str:
     """
-    Return the name of a scene with changed values, worded as by a family; a later change of a key replaces an earlier.
+    Return the name of a scene with its changes in brackets; a later change of a key replaces an earlier one.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
 
 
 def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tuple[str, Any]:
-    """Return key and value of the whole record table for one of its keys; any other key and value unchanged."""
+    """Return key and new value of the whole record table if `key` is one of its keys; otherwise both unchanged."""
     table, _, last = key.rpartition(".")
     record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
     if table != "excitation.record" or not isinstance(record, dict):
@@ -132,7 +132,7 @@ def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tu
 def _index_of(
     scene: str, place: Any, parts: Sequence[str], depth: int, value: Any, keys: Mapping[str, Sequence[str]]
 ) -> Any:
-    """Return the index of one part of a dotted key; add an optional table that is missing. Raises SceneError."""
+    """Return the key or list index in `place` that part `depth` of a dotted key names. Raises SceneError if invalid."""
     key, part, last = ".".join(parts), parts[depth], depth == len(parts) - 1
     if isinstance(place, list):
         if part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place):

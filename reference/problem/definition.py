@@ -20,8 +20,8 @@ from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
 
-SAMPLES_PER_PERIOD = 32  # of the faster harmonic: 16 per wave of the squared acceleration, of twice the frequency
-# Share of the largest square above which a sample is computed again: rounding may have made the largest smaller
+SAMPLES_PER_PERIOD = 32  # samples per period of the faster harmonic: 16 per wave of the squared acceleration
+# Share of the largest |u|^2 from which a sample is computed again: rounding may hide which sample is the largest
 MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 
 
@@ -112,7 +112,7 @@ def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, 
 
 @njit(nogil=True)
 def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound: Array) -> None:
-    """Set what all phases share at sample n: exp(s t) of both harmonics, and an upper bound on |u|^2 from there on."""
+    """Set exp(s t) of both harmonics at sample n, `grown`, and a bound on |u|^2 from there on, for any phases."""
     largest = 0.0
     for harmonic in range(2):
         size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
@@ -123,7 +123,7 @@ def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound
 
 @njit(nogil=True)
 def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
-    """Return |u|^2 at a sample, with other rounding than in `_square_and_slopes`; turn: exp(i phase), (2, 2)."""
+    """Return |u|^2 at a sample from its exp(s t), `grown`; turn: exp(i phase) of both harmonics, (2, 2)."""
     value = 0.0
     for k in range(3):
         u = 0.0

@@ -57,7 +57,7 @@ def exponents(scene: Scene) -> NDArray[np.complex128]:
 @require_scene
 def loading_period(scene: Scene) -> float:
     """
-    Return the time in which the ground acceleration changes.
+    Return the shortest period of the ground acceleration, s.
 
     Parameters
     ----------

@@ -48,9 +48,9 @@ from reference.support.scene_error import IS_UNKNOWN, SceneError, printable
 if TYPE_CHECKING:
     import xarray as xr
 
-ALL_MOTIONS = "all"  # stands for every motion of a suite
+ALL_MOTIONS = "all"  # value of the key `motion` that stands for every motion of a suite
 MOTION_KEY = ("excitation", "record", "motion")  # path of the key that chooses a motion of a suite
-COMBINATIONS = ("product", "zip")  # every value with every other one; or the n-th values of all keys together
+COMBINATIONS = ("product", "zip")  # ways to combine keys: all combinations of values, or the n-th values of all keys
 MAX_SCENES = 1000  # a family has at most so many scenes
 MAX_BODIES_IN_ALL = 50_000  # all scenes of a family together have at most so many bodies
 MAX_KEYS = 20  # at most so many keys of a file may have several values
@@ -59,9 +59,9 @@ BOUND_NAMES = ("lower bound", "upper bound")  # names of the scenes with the sma
 BOUND_FACTOR = Range(0.01, 100.0)  # factor of friction in `isolator.bounds`
 BOUND_DIGITS = 12  # digits to which a bound's coefficient is rounded: 0.075, not 0.07500000000000001
 
-Value = float | int | str  # one of the values that a key of a family takes
+Value = float | int | str  # a number or text that a key with several values takes
 FilesByDirection = dict[str, str]  # file names of one record by direction
-NumbersByKey = dict[str, float]  # the numbers of one table, such as that of friction
+NumbersByKey = dict[str, float]  # numbers of one table, such as that of friction, by key
 
 
 @dataclass(frozen=True)
@@ -95,12 +95,12 @@ class Family:
 
     @property
     def bodies(self) -> int:
-        """Number of bodies of a scene: no range changes their number."""
+        """Number of bodies, which is the same in all scenes."""
         return len(self.scenes[0].bodies)
 
     def to_xarray(self, results: Sequence[Any]) -> xr.Dataset:
         """
-        Return results of the scenes as one data set, with the values that run as coordinates.
+        Return results of the scenes as one data set, with the values of the varied keys as coordinates.
 
         Parameters
         ----------
@@ -154,7 +154,7 @@ def load_family(
     source: str | Path, amplitude: float | None = None, bounds: tuple[float, float] | None = None
 ) -> Family:
     """
-    Return every scene of a built-in name or a TOML file in which one value may run.
+    Return every scene of a built-in name or of a TOML file in which keys may have several values.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def make_family(data: dict[str, Any], label: str, amplitude: float | None = None
 
 @contextmanager
 def _collect_errors(wrong: list[SceneError]) -> Iterator[None]:
-    """Add an error of a file that the block raises, and all that it carries, to a list."""
+    """Catch a SceneError that the block raises, and add it and all other errors that it carries to the list `wrong`."""
     try:
         yield
     except SceneError as error:
@@ -239,7 +239,7 @@ def _find_running_keys(
     data: dict[str, Any], label: str, wrong: list[SceneError]
 ) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter], dict[str, Any]]:
     """
-    Return the tables of the scenes, the bounds of friction if given, the keys with several values, and their tables.
+    Return the tables of a file, its bounds of friction if given, its keys with several values, and the values' tables.
 
     Errors of keys with several values are added to `wrong`, and these keys are left out of the list.
     """
@@ -248,7 +248,7 @@ def _find_running_keys(
     running: list[_VariedParameter] = []
     named: dict[str, Any] = {}
     with _collect_errors(wrong):
-        named[".".join(MOTION_KEY)] = ALL_MOTIONS  # runs, even if the motions cannot be listed
+        named[".".join(MOTION_KEY)] = ALL_MOTIONS  # has several values, even if the motions cannot be listed
         tables = _expand_motions(tables, label)
         named.clear()
     with _collect_errors(wrong):
@@ -269,7 +269,7 @@ def _find_running_keys(
 def _make_member_scene(
     tables: dict[str, Any], label: str, name: str, chosen: Sequence[tuple[_VariedParameter, int]]
 ) -> Scene:
-    """Return the scene in which each of the chosen keys has the value of its step. Raises SceneError."""
+    """Return the scene in which each of the `chosen` keys has one of its values, given by index. Raises SceneError."""
     changed = tables
     for key, step in chosen:
         changed = _replace_value(changed, key.path, key.listed[step])
@@ -290,7 +290,7 @@ def _add_other_errors(
     label: str,
     keys: Sequence[_VariedParameter],
 ) -> SceneError:
-    """Return the errors of keys with several values together with all others of the file, without those that follow."""
+    """Return `wrong`, errors of keys with several values, joined with all other errors that do not follow from them."""
     isolator = tables.get("isolator")
     if isinstance(isolator, dict):
         tables = {**tables, "isolator": {key: value for key, value in isolator.items() if key != "bounds"}}
@@ -311,7 +311,7 @@ def _add_other_errors(
 def _locate_bound_error(
     error: SceneError, tables: dict[str, Any], data: dict[str, Any], label: str, factors: Sequence[Value]
 ) -> SceneError:
-    """Return the error of a scene at a friction bound as an error of the stated friction, or else of the bounds."""
+    """Return the error that the file's friction has, or else, if only a friction bound is wrong, one of the bounds."""
     try:
         make_scene({**tables, "isolator": {**tables["isolator"], "friction": data["isolator"]["friction"]}}, label, "")
     except SceneError as own:
@@ -325,6 +325,7 @@ class _VariedParameter:
     def __init__(
         self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Mapping[Any, str]
     ) -> None:
+        """Read the values that `table` gives the key at `path`; motions: names of motions of a suite, by number."""
         self.path = path
         self.name = ".".join(map(str, path))
         self.short = short_key(self.name)
@@ -340,6 +341,7 @@ class _FrictionBoundsKey(_VariedParameter):
     """The lower and upper bound of friction as a varied key, which sets the whole table of friction."""
 
     def __init__(self, factors: Sequence[float], frictions: Sequence[Any]) -> None:
+        """Take over the two factors, and the tables of friction that they make."""
         self.path, self.name, self.listed = ("isolator", "friction"), BOUNDS_KEY, frictions
         self.values = [*factors]
         self.texts = self.labels = self.entries = [*BOUND_NAMES]
@@ -371,7 +373,7 @@ def _scale_friction(friction: Any, factor: float) -> Any:
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, Any]) -> None:
-    """Check that `combine` fits the number of keys that run, in their `places`, and of values. Raises SceneError."""
+    """Check that `combine` fits the number of keys with several values, and of these values. Raises SceneError."""
     if combine is not None and combine not in COMBINATIONS:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")
     if combine is not None and len(places) < 2:
@@ -401,7 +403,7 @@ def _check_bodies(label: str, bodies: Any, scenes: int) -> None:
 
 
 def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """Return the tables with the numbers of all motions of a suite for `motion = "all"`. Raises SceneError."""
+    """Return the tables of a file with `motion = "all"` replaced by the numbers of all motions. Raises SceneError."""
     excitation = data.get("excitation")
     record = excitation.get("record") if isinstance(excitation, dict) else None
     if not (isinstance(record, dict) and "suite" in record and record.get("motion") == ALL_MOTIONS):
@@ -451,7 +453,7 @@ def _list_values_of_key(
 
 
 def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | FilesByDirection | NumbersByKey]:
-    """Return a list of numbers, of texts, or of tables of files or numbers, not mixed. Raises SceneError."""
+    """Return the values of a key as a list, after a check that all are of one kind. Raises SceneError."""
     kinds = (_is_number, lambda value: isinstance(value, str), _is_table_of_files, _is_table_of_numbers)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MAX_SCENES):

@@ -45,7 +45,7 @@ class Heat:
 
     @classmethod
     def of(cls, radius: float, conductivity: float, diffusivity: float, initial: float, supports: int) -> Heat:
-        """Return the heat law of equal sliders with round contacts of this radius, m; W/(m K), m^2/s and degrees C."""
+        """Return the law of equal sliders with round contacts; units of the arguments: m, W/(m K), m^2/s, degrees C."""
         area = supports * math.pi * radius**2
         return cls(initial, math.sqrt(diffusivity / math.pi) / (conductivity * area), 0.5 * math.sqrt(math.pi) * radius)
 

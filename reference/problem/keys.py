@@ -23,11 +23,12 @@ from reference.problem.validation import LocatedError
 from reference.support.arguments import Range
 from reference.support.plain_values import as_hashable, as_plain_values
 
+# Error of `Table.model_copy` with values to change
 MODEL_COPY_REFUSAL = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
-# Readers of a key: models, or other parts of the program
+# What reads a key, in the words of docs/scene.md: all models, the spatial model, or another part of the program
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
-ENSEMBLE = "`ensemble --check`"
-REQUIRED = ...  # stands as default for a key that every file must have
+ENSEMBLE = "`ensemble --check`"  # the command that reads a key
+REQUIRED = ...  # default of a key that every file must state
 
 
 def key(
@@ -125,9 +126,11 @@ class Table(BaseModel):
         return value
 
     def __eq__(self, other: object) -> bool:
+        """Return True for a table of the same class with the same values."""
         return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
 
     def __hash__(self) -> int:
+        """Return a hash of the values, without those of `long_keys`, which would take long."""
         short = [as_hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
         return hash((type(self).__name__, *short))
 

@@ -24,7 +24,7 @@ ISOLATOR_QUANTITIES = (
     "friction_energy",
     "damping_energy",
 )
-QUANTITIES = (*BODY_QUANTITIES, *ISOLATOR_QUANTITIES)
+QUANTITIES = (*BODY_QUANTITIES, *ISOLATOR_QUANTITIES)  # all quantities that a measured peak can be of
 
 
 def _check_quantity(quantity: str) -> str:

@@ -16,7 +16,7 @@ POINTS_PER_AXIS = Range(1, 10_000)  # number of phases per axis
 
 def check_phases(phases: ArrayLike) -> Array:
     """
-    Return phase pairs (M, 2), rad, as a contiguous array; a phase beyond a full turn moves to (-pi, pi]. ValueError.
+    Return phase pairs (M, 2), rad, with phases beyond a full turn moved to (-pi, pi]. Raises ValueError.
 
     Sine and cosine reduce a double-precision number exactly, so the reduced phase is that of the number given.
     """
@@ -70,7 +70,7 @@ def grid_axes(phases: Array) -> tuple[Array, Array] | None:
 
 def phase_axis(points: int) -> Array:
     """
-    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad; axes that share a phase have the same bits of it.
+    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad; coarser and finer axes share exactly equal phases.
 
     They follow from the fraction k / points in lowest terms. Raises ValueError for no whole number from 1 to 10,000.
     """

@@ -7,17 +7,17 @@ from numpy.typing import NDArray
 
 from reference.problem.scene import Scene
 
-AS_INTEGRATED = "as integrated"
+AS_INTEGRATED = "as integrated"  # a reading of the peak in (5.1)
 """The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
-LITERAL_SUPREMUM = "literal supremum"
+LITERAL_SUPREMUM = "literal supremum"  # a reading of the peak in (5.1)
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
-BOTH_READINGS = "in both readings"
+BOTH_READINGS = "in both readings"  # where both readings of (5.1) agree
 """Reading of a factor without dry friction, which is the same as integrated and as literal supremum."""
-DEFAULT_V_REG = 1e-3
+DEFAULT_V_REG = 1e-3  # m/s
 """Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity on both sides."""
-DEFAULT_V_C = 1e-3
+DEFAULT_V_C = 1e-3  # m/s
 """Slip speed v_c, m/s, above which an integration with steps of about 1 ms sees the motion."""
-SECOND_V_REG_RATIO = 0.1
+SECOND_V_REG_RATIO = 0.1  # ratio of two regularization speeds
 """Second v_reg over the first where two runs estimate the effect of regularization: they show 0.9 of it."""
 
 

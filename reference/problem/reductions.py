@@ -16,22 +16,23 @@ from reference.problem.excitation import exponents
 from reference.problem.scene import Scene
 from reference.support.constants import GRAVITY
 
-# rad: where the fastest vibration turns by more in the whole motion, integration costs less than summation
+# Largest phase, rad, of the fastest vibration in a motion that is summed from harmonics: longer ones are integrated
 MAX_VIBRATION_ANGLE = 2e5
-RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # why a record permits no reduction
+RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # reason why a scene with a record permits no reduction
 
 MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned about the vertical
-LOAD_SHIFT_FACTOR = 2.0  # safety factor on the shift of the load of the supports, which is computed for a level sphere
+LOAD_SHIFT_FACTOR = 2.0  # safety factor on the shift of the supports' load, computed as if all contacts were level
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """Answer whether a scene permits leaving out a part of the work, with the reason; true where it does."""
+    """Answer whether a scene permits leaving out a part of the computation, with the reason; true if it does."""
 
     allowed: bool
     reason: str
 
     def __bool__(self) -> bool:
+        """Return True if the work may be left out."""
         return self.allowed
 
 

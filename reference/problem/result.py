@@ -34,7 +34,7 @@ def _count_statuses(status: NDArray[np.str_]) -> list[str]:
 
 
 def _join_facts(facts: Sequence[str]) -> str:
-    """Return facts as one text, without the middle ones of a long list."""
+    """Return facts joined by commas; of more than 8, only the first 6 and the last."""
     shown = facts if len(facts) <= 8 else [*facts[:6], "...", facts[-1]]
     return ", ".join(shown)
 
@@ -93,6 +93,7 @@ class Amplification:
     displacement_effect: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
+        """Fill fields without values with NaN in their shapes."""
         shape = self.mu.shape[:-1]
         for name in ("cap_share", "displacement", "displacement_effect"):
             if getattr(self, name).shape != shape:
@@ -103,6 +104,7 @@ class Amplification:
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
 
     def __repr__(self) -> str:
+        """Return factors, statuses, reading of (5.1) and friction law in one line."""
         points, bodies = self.status.size, self.mu.shape[-1]
         if points == 1:
             rows = zip(self.mu.reshape(-1), self.error.reshape(-1))
@@ -120,6 +122,7 @@ class Amplification:
         return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {facts}{basis}>"
 
     def _repr_html_(self) -> str:
+        """Return a table of mu of each body for notebooks."""
         bodies = self.mu.shape[-1]
         rows = []
         for body, (mu, error) in enumerate(zip(*(each.reshape(-1, bodies).T for each in (self.mu, self.error))), 1):
@@ -130,7 +133,7 @@ class Amplification:
 
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
         """
-        Return the points in another shape.
+        Return the same factors with their phase pairs arranged in another shape.
 
         Parameters
         ----------
@@ -277,18 +280,21 @@ class Trajectory:
     law: str = ""
 
     def __post_init__(self) -> None:
+        """Fill fields without values with NaN in their shapes."""
         unknown = {"peak": self.position.shape[1:2], "ground": (len(self.time), 3), "friction_power": self.time.shape}
         for name, shape in unknown.items():
             if not len(getattr(self, name)):
                 object.__setattr__(self, name, np.full(shape, np.nan))
 
     def __repr__(self) -> str:
+        """Return scene, time span, rests, largest displacement and status in one line."""
         span = f"{len(self.time)} instants to {self.time[-1]:g} s" if len(self.time) else "no samples"
         moved = np.linalg.norm(self.position[:, 0, :2], axis=-1).max(initial=0.0)
         facts = [span, f"{len(self.stick)} rests", f"platform at most {1e3 * moved:.4g} mm off", self.status]
         return f"<Trajectory of {self.scene.name}: {_join_facts(facts)}{'; ' * bool(self.law)}{self.law}>"
 
     def _repr_html_(self) -> str:
+        """Return a table of the largest displacement and acceleration of each body for notebooks."""
         moved = np.linalg.norm(self.position[:, :, :2], axis=-1).max(axis=0, initial=0.0)
         rows = [
             (body, text_of_number(1e3 * far, 4), text_of_number(peak, 5))
@@ -455,7 +461,7 @@ class State:
     velocity: Array
 
 
-require_motion = require_type(
+require_motion = require_type(  # decorator of functions of a Trajectory: TypeError for any other argument
     Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return"
 )
 """Decorator of functions whose first argument is a motion."""

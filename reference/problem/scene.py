@@ -34,7 +34,7 @@ from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000  # largest number of bodies in a scene
-MIN_STATIC_SHARE = 1e-9  # support load over the weight: a support with a smaller share carries nothing
+MIN_STATIC_SHARE = 1e-9  # smallest load of a support at rest, over the weight: a smaller one counts as none
 MAX_SUPPORT_DEFLECTION = 0.1  # largest deflection of the supports under the weight, over the radius
 DERIVED_ROUNDING = 1e-12  # relative rounding error of a value that is computed from other values
 
@@ -250,6 +250,7 @@ class Scene(Table):
             raise MisfitError(f"bodies.{giving[0]}.bars", stated and stated.model_dump(exclude_none=True), rule)
 
     def __repr__(self) -> str:
+        """Return name, bodies, mass, radius, kind of loading and duration in one line."""
         kind = "record" if isinstance(self.excitation, Record) else "two-frequency motion"
         bodies = f"{len(self.bodies)} bod{'y' if len(self.bodies) == 1 else 'ies'}, {self.total_mass:.4g} kg"
         return f"<Scene {self.name}: {bodies}, radius {self.radius:.4g} m, {kind}, {self.duration:g} s>"
@@ -257,6 +258,7 @@ class Scene(Table):
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
+        """Return a table of masses, stiffness and damping for notebooks."""
         links = [*zip(self.stiffness, self.damping)]
         columns = [["", ""], *([", ".join(f"{value:.4g}" for value in pair) for pair in link] for link in links)]
         rows = [(n, f"{mass:.4g}", *cells) for n, (mass, cells) in enumerate(zip(self.masses, columns), 1)]
@@ -301,7 +303,7 @@ class Scene(Table):
         changes = []
         for name, value in values.items():
             before = value_at(data, str(name))
-            # a key inside a table that is given as well must not change the caller's table
+            # a copy: another given key inside this table must not change the caller's table
             own = deepcopy(value) if isinstance(value, dict | list) else value
             put_value(self.name, data, str(name), own, KEYS)
             changes.append(name_change(str(name), before, own))
@@ -314,7 +316,7 @@ class Scene(Table):
 
     @property
     def radius(self) -> float:
-        """rho = R - r in m, inf for a flat slider; of the period of one mass alone, g T_c^2 / (4 pi^2) (section 5)."""
+        """Pendulum length rho = R - r, m: as stated, or g T_c^2 / (4 pi^2) of the period T_c; inf for a flat slider."""
         if self.isolator.radius is not None:
             return self.isolator.radius
         assert self.isolator.period is not None
@@ -343,7 +345,7 @@ class Scene(Table):
 
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:
-        """Link stiffness k_{i+1,i} in x and y, (N-1, 2), N/m; row i links body i and body i + 1."""
+        """Stiffness k_{i+1,i} of the links along x and y, (N-1, 2), N/m; row i: the link of bodies i and i + 1."""
         rows = [_link_stiffness(body, load) for body, load in zip(self.bodies[1:], self.loads_above)]
         return np.array(rows, dtype=float).reshape(-1, 2)
 
@@ -355,14 +357,14 @@ class Scene(Table):
 
     @property
     def bar_links(self) -> list[BarLink | None]:
-        """Column links, flexible in shear, bending, axially and in torsion, from below; None for any other link."""
+        """Stiffness of links of flexible bars in shear, bending, tension, torsion, lowest first; None: other links."""
         return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property
     def damping(self) -> NDArray[np.float64]:
-        """Link damping c_{i+1,i} in x and y, (N-1, 2), N s/m; row i links body i and body i + 1."""
+        """Damping c_{i+1,i} of the links along x and y, (N-1, 2), N s/m; row i: the link of bodies i and i + 1."""
         if (ratio := self._first_mode_ratio) is not None:
-            # damping in proportion to stiffness, D0 = beta C0, has the modal damping ratios beta omega / 2
+            # damping equal to beta times stiffness has the modal damping ratios beta omega / 2
             first = [solve_chain_modes(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T]
             proportional: NDArray[np.float64] = 2.0 * ratio / np.array(first) * self.stiffness
             return proportional
@@ -418,8 +420,7 @@ class Scene(Table):
     @property
     def friction_coefficient(self) -> float:
         """
-        Dry friction coefficient mu under the weight, the largest where it depends on the velocity; f_c in s/m when
-        lubricated.
+        Dry friction coefficient mu under the weight, at the speed where it is largest; if lubricated, f_c in s/m.
         """
         if self.isolator.lubrication is not None:
             return self.isolator.lubrication
@@ -445,7 +446,7 @@ class Scene(Table):
             raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
 
     def with_yield_displacement(self, way: float) -> Scene:
-        """Return the scene, of the same name, with friction that slides after an elastic `way`, m; rigid for 0."""
+        """Return the scene, of the same name, with friction that slides after an elastic displacement `way`, m."""
         friction = self.isolator.friction
         if not isinstance(friction, VelocityFriction) or (way == 0.0 and not self.dry_friction.elastic):
             return self if way == 0.0 else self._with_friction({"slow": friction, "yield_displacement": way})
@@ -460,7 +461,7 @@ class Scene(Table):
 
     @property
     def has_dry_friction(self) -> bool:
-        """True if dry friction is rigid and not zero: only then a law can be regularized and a motion comes to rest."""
+        """True for rigid dry friction that is not zero: only this can be regularized, and brings a motion to rest."""
         return not self.lubricated and self.friction_coefficient != 0.0 and not self.dry_friction.elastic
 
     @property
@@ -507,7 +508,7 @@ class Scene(Table):
 
     def with_amplitude(self, amplitude: float) -> Scene:
         """
-        Return the scene with its loading scaled.
+        Return the scene with its loading scaled to an amplitude, m/s^2.
 
         Parameters
         ----------
@@ -587,6 +588,7 @@ class Scene(Table):
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
+# Decorator of functions of a Scene: TypeError if the first argument is anything else
 require_scene = require_type(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
 """Decorator of functions whose first argument is a scene."""
 
@@ -600,7 +602,7 @@ def _link_stiffness(body: Body, load: float) -> list[float]:
     return [body.mass * (2.0 * math.pi / period) * (2.0 * math.pi / period) for period in body.period or ()]
 
 
-KEYS: dict[str, tuple[str, ...]] = {
+KEYS: dict[str, tuple[str, ...]] = {  # valid keys of a scene, by dotted name of their table
     "": tuple(Scene.model_fields),
     "isolator": tuple(Isolator.model_fields),
     "isolator.friction": tuple(VelocityFriction.model_fields),

@@ -18,7 +18,7 @@ from reference.support.arguments import require_type
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
 
-# Keys of every table of a file, as errors list them: a file names no scene, and may state several
+# Valid keys of a scene file by table, for errors: unlike a scene, a file has no name, and may combine several values
 FILE_KEYS = {
     **KEYS,
     "": ("combine", *(key for key in KEYS[""] if key != "name")),
@@ -28,10 +28,10 @@ RANGE_KEYS, VALUES_KEYS = {"range", "steps"}, {"values"}  # keys of an inline ta
 MAX_BYTES = 2**22  # a scene file has at most so many bytes
 MAX_NESTING = 10  # a scene file nests at most so many tables and lists in one another
 RECORD_KEYS = (*TWO_FREQUENCY_KEYS, *READER_KEYS)  # keys of [excitation] that the reader of records checks
-RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # stands for an unreadable one
-# One part of a dotted TOML key: bare, in double quotes, or in single quotes
+RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # for an unreadable record
+# Pattern of one part of a dotted TOML key: bare, in double quotes, or in single quotes
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
-# A key of that many parts is nested too deep, and the parser's time grows as the square of their number.
+# Pattern of a dotted key with too many parts: the TOML parser's time grows as the square of their number.
 LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NESTING}}}", re.ASCII)
 
 
@@ -71,7 +71,7 @@ def example_scenes() -> list[str]:
 @require_type(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     """
-    Read a scene.
+    Return the scene of a built-in name or of a TOML file.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def scene_text(source: str | Path) -> bytes:
 @require_type(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
 def parse_scene(text: bytes, label: str) -> Scene:
     '''
-    Return the scene in a text.
+    Return the scene that the text of a scene file states.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
         raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
     if data and data.keys().isdisjoint(
         (*FILE_KEYS[""], "name")
-    ):  # an error shows nothing of a file that may be anything
+    ):  # an error shows nothing of a file that may not be a scene at all
         raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(FILE_KEYS[''])}")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")

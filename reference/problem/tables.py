@@ -123,7 +123,7 @@ class Isolator(Table):
 
     @model_validator(mode="after")
     def _check_alternatives(self) -> Isolator:
-        """Require one key of each pair that states the same, and the keys that other keys need."""
+        """Require exactly one key of each pair of alternatives, and the keys that other keys need."""
         require_exactly_one(self, "period", "radius")
         require_exactly_one(self, "friction", "lubrication")
         bearings = self.support_stiffness

@@ -21,25 +21,26 @@ from reference.support.scene_error import (
 
 # Names of the forms of a table or key: pydantic puts the name of the intended form into the location of an error
 EXCITATION_FORMS = ("two frequencies", "recorded motion")
-SUPPORT_FORMS = ("number of supports", "positions of supports")
-FRICTION_FORMS = ("constant friction", "velocity-dependent friction")
+SUPPORT_FORMS = ("number of supports", "positions of supports")  # forms of `isolator.supports`
+FRICTION_FORMS = ("constant friction", "velocity-dependent friction")  # forms of `isolator.friction`
 ALONG_AXES = {  # form of the keys of a body whose values are lists
     "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
 }  # fmt: skip
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list means several sliding surfaces
-# For each of pydantic's errors of length, its name of the limit, and the words that precede the limit
+# For each error that pydantic raises on the length of a list: its name of the limit, and the words before the limit
 LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
 MISSING_TABLE_RULES = {  # rules in the errors for missing tables
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
 }
-DAMPING_FORMS = ("damping ratio", "damping coefficients")
+DAMPING_FORMS = ("damping ratio", "damping coefficients")  # forms of the damping of a link
 
 
 class LocatedError(ValueError):
     """A number that is not allowed, with its indices in the nested lists of its key."""
 
     def __init__(self, place: tuple[int, ...], value: float, rule: str) -> None:
+        """Set the indices of the number, the number, and the rule that it breaks."""
         self.place, self.value, self.rule = place, value, rule
         super().__init__(rule)
 

@@ -16,7 +16,7 @@ G_UNIT_QUESTION = (
     "which motions.csv has in its column unit"
 )
 MAX_STEP_VARIATION = 0.01  # relative difference of two steps above which a column of times counts as uneven
-MIN_SAMPLES = 100  # with fewer samples no zero line is judged
+MIN_SAMPLES = 100  # in a record with fewer samples the zero line is not checked
 # A final velocity above this share of the largest gives a warning; 289 public records have at most 0.07
 MAX_FINAL_VELOCITY_SHARE = 0.2
 MIN_CLIPPED_SAMPLES = 4  # so many equal samples in a row at the peak count as clipped
@@ -129,6 +129,7 @@ class RecordDescription:
         return f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"
 
     def __str__(self) -> str:
+        """Return the description as one text."""
         return "\n".join(self.lines)
 
 
@@ -166,8 +167,8 @@ def describe_samples(
 def _list_warnings(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
     """Return warnings about values of one direction that are hardly intended."""
     warnings = []
-    # A zero line left in lets the velocity grow with time: its end then exceeds by far how much it departs from the
-    # straight line between its ends. Under noise both are about equal.
+    # An offset of the zero line lets the velocity grow with time: the final velocity then far exceeds the departure of
+    # the velocity from the straight line between its ends. With noise alone both are about equal.
     strayed = float(np.abs(velocity - velocity[-1] * time / time[-1]).max())
     drifts = abs(one.final_velocity) > MAX_FINAL_VELOCITY_SHARE * strayed
     if drifts and len(values) >= MIN_SAMPLES and detrend is None:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-HORIZONTAL, VERTICAL = "xy", "z"
+HORIZONTAL, VERTICAL = "xy", "z"  # axes of horizontal directions, and of the vertical one
 SPELLINGS = {  # words that name a direction, by axis
     "x": ("H1", "E", "W", "EW", "E-W", "WE", "EAST", "L", "LN", "LONG", "L1", "FN", "X", "HN1", "BH1", "HH1"),
     "y": ("H2", "N", "S", "NS", "N-S", "SN", "NORTH", "T", "TR", "TRAN", "TRANS", "T1", "FP", "Y", "HN2", "BH2", "HH2"),
@@ -19,14 +19,14 @@ SPELLINGS = {  # words that name a direction, by axis
 CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # SEED channel codes that precede E, N, Z
 AXIS_OF = {word: axis for axis, words in SPELLINGS.items() for word in words}  # axis that each word names
 AXIS_OF |= {f"{band}{end}": axis for band in CHANNEL_BANDS for end, axis in zip("ENZ", "xyz")}
-MAX_WORD_LETTERS = max(map(len, AXIS_OF))
+MAX_WORD_LETTERS = max(map(len, AXIS_OF))  # letters of the longest word for a direction
 WORD_INSIDE_NAME = re.compile(  # channel code between separators inside the name of a file
     rf"(?P<base>.+[._-])(?P<word>(?:{'|'.join(CHANNEL_BANDS)})[ENZ123])(?P<rest>[._-].+)", re.IGNORECASE
 )
 WORD_AS_SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)  # direction as suffix of a file
-# Degrees: azimuths of two horizontal components differ by so much, as few instruments stand askew
+# Degrees between the azimuths of two horizontal components: few instruments are less or more than a right angle apart
 RIGHT_ANGLE_RANGE = 75.0, 105.0
-KNOWN_SPELLINGS = (  # examples of them in an error
+KNOWN_SPELLINGS = (  # examples of spellings of directions, for an error
     "H1 H2 V, azimuths as 090, E N Z, EW NS UD, L T V, LN TR, L1 T1, FN FP, UP DWN, HNE HNN HNZ, N18E S72E, X Y Z"
 )
 

@@ -103,7 +103,7 @@ def shipped_examples() -> list[str]:
 
 
 def _read_named_file(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
-    """Return the name of a file, given as a text or as a table with options, and what it holds. SceneError."""
+    """Return the name of a file, given as text or as a table with options, and its samples. Raises SceneError."""
     options: Mapping[str, Any] = file if isinstance(file, dict) else {}
     for option, value in options.items():
         if option not in OPTIONS:

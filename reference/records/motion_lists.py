@@ -22,7 +22,7 @@ COLUMNS = ("name", *AXES, "factor")  # columns of motions.csv
 OPTION_COLUMNS = ("step", "unit", "skip", "column")  # optional columns with options of plain texts
 MAGNITUDE_COLUMN = "magnitude"  # optional column with the magnitude of the earthquake
 MAX_BYTES = 2**20  # largest size of motions.csv, bytes
-MAX_NAMED_FILES = 3  # a sentence names so many ignored files of a kind
+MAX_NAMED_FILES = 3  # a sentence names at most so many ignored files of a kind
 MAX_FACTOR = 1e6  # largest factor of a motion
 MAX_STEP = 1e3  # s, largest sampling interval of a plain text
 MAX_NUMBER = 10_000  # largest number of lines to skip, and largest number of a column
@@ -123,7 +123,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
 
 
 def _split_cells(text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the columns of the file in small letters, and the cells of its other lines by number. RecordError."""
+    """Return columns in small letters, and the cells of all other lines with line numbers. Raises RecordError."""
     first = next((line for line in text.splitlines() if line.strip()), "")
     reader = csv.reader(text.splitlines(), delimiter=next((mark for mark in "\t;," if mark in first), ","))
     rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
@@ -161,7 +161,7 @@ def _read_motion(row: Mapping[str, str], folder: Path) -> Motion:
 
 
 def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) -> dict[str, Path]:
-    """Return the files of a motion by axis: one file along each axis of several columns. Raises RecordError."""
+    """Return the files of a motion by axis; of several columns of one file, each is an axis. Raises RecordError."""
     files = {axis: folder / row[axis] for axis in AXES if row.get(axis)}
     if not row.get("name") or not files:
         raise RecordError("must have a name, and a file along x, y or z")
@@ -198,7 +198,7 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
 
 
 def _name_in_list(file: Path, folder: Path | None) -> str:
-    """Return the name of a file as a list in a folder states it; None for the file's own folder."""
+    """Return the name of a file as motions.csv in `folder` states it; folder None: the folder of the file."""
     if folder is None:
         return file.name
     return str(file.relative_to(folder) if file.is_relative_to(folder) else file)

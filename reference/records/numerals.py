@@ -11,8 +11,8 @@ from reference.records.samples import MAX_ACCELERATION, RecordError
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-MAX_LINE, MAX_CELL = 1000, 100  # letters of a line that is searched, and of a number
-MAX_HEADER_LINES = 100  # a header is sought in so many lines from the first
+MAX_LINE, MAX_CELL = 1000, 100  # largest numbers of letters of a line that is searched, and of a number
+MAX_HEADER_LINES = 100  # a header is searched for in at most so many first lines
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
 UNITS |= {"cm/s²": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "ft/s^2": 0.3048}
 UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"
@@ -121,7 +121,7 @@ def holds_numbers(line: str) -> bool:
 
 def read_values(lines: Sequence[str], first: int, count: int, stated: str) -> tuple[list[float], tuple[str, ...]]:
     """
-    Return exactly `count` numbers from lines that start at line number `first` of the file, and notes. RecordError.
+    Return `count` numbers from lines that start at line number `first` of a file, and notes. Raises RecordError.
 
     stated: what the header says of the count. Lines with words behind the last value are no data.
     """

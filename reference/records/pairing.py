@@ -13,15 +13,16 @@ MAX_NAMED = 20  # an error names at most so many files
 
 
 class SuiteError(ValueError):
-    """Error of a suite, or of a motion that it does not have, with the key of the record and the rule."""
+    """Error for a wrong suite, or for a motion that it does not have: the key that names it, and the rule it breaks."""
 
     def __init__(self, key: str, rule: str) -> None:
+        """Set the key of the record that is wrong, and the rule that it breaks."""
         super().__init__(f"{key}: {rule}")
         self.key, self.rule = key, rule
 
 
 def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
-    """Return files by the part of their names that others may share; the longest spelling of a direction counts."""
+    """Return files, with their directions, by the rest of their names, which components of one motion share."""
     groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
     for file in files:
         for base, direction in split_name(file.stem, file.suffix):
@@ -53,7 +54,7 @@ def find_motion(file: Path, files: Sequence[Path]) -> Motion:
 
 
 def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
-    """Return one message on all components that make no motion."""
+    """Return an error message on all files that could not be paired into motions."""
     shares: dict[str, list[Path]] = {}
     for file in files:
         bases = [base.upper() for base, _ in split_name(file.stem, file.suffix)]

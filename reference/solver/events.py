@@ -18,33 +18,33 @@ from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, 
 # a given one. Integers of NumPy: numba would compile a function again for every literal (system.py).
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
 NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
-# Number of golden sections in the search for an event between two stages: one shorter than 1e-6 of a step is ignored
+# Number of golden sections in the search for a short event: an event shorter than 1e-6 of a step is ignored
 GOLDEN_SECTIONS = 30
 GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
 MAX_SECANTS = 200  # largest number of iterations of regula falsi
 SECANTS_PER_HALVING = 3  # after so many iterations that do not halve the interval, a bisection follows
 LOCATION_TOLERANCE = 1e-15  # error of the location of an event, as a share of the step
-# Largest change of the excess at rest between two stages, as a share of the squared friction limit
+# Largest rise of the excess over the condition for rest from stage to stage, as a share of the squared friction limit
 NEAR_LIMIT = 0.5
 
 
 @compiled
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
-    """Return the first theta at which the polynomial through `values` passes `target`, coming from `start`."""
+    """Return the first share of the step at which the polynomial through `values` passes `target` from `start`."""
     expand_level(work, values, target)
     return locate_first_event(system, work, LEVEL_EVENT, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
 def expand_level(work: Workspace, values: Row, target: float) -> None:
-    """Set powers[0] to the coefficients of the polynomial through `values`, less `target`."""
+    """Set work.powers[0] to the coefficients of the polynomial through stage `values`, minus `target`."""
     set_coefficients(values, work.powers[0])
     work.powers[0, 0] -= target
 
 
 @compiled
 def locate_onset(system: System, work: Workspace) -> float:
-    """Return the first theta at which friction can no longer hold the platform; set the reaction at the stages."""
+    """Return the share of the step at which friction can no longer hold the platform; set the stages' reactions."""
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
@@ -67,7 +67,7 @@ def expand_drive(work: Workspace) -> None:
 
 @compiled
 def excess_at(system: System, work: Workspace, theta: float) -> float:
-    """Return the excess over the condition for rest at theta of a step at rest, after a call of `expand_drive`."""
+    """Return squared drive minus squared friction limit at the share theta of a step at rest, after `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -84,7 +84,7 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
 @compiled
 def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
-    Set the polynomials for `speed_excess` over the squared sliding speed `target` in a step of length h, s.
+    Set the polynomials from which `speed_excess` computes the squared sliding speed minus `target`; h: step length, s.
 
     The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
     the stages would miss a small speed in a step whose speed becomes large.
@@ -123,7 +123,7 @@ def speed_excess(work: Workspace, theta: float) -> float:
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """Return a value that is positive past an event at theta; `way` is 1 for an upward event, -1 for a downward one."""
+    """Return a value at theta that is positive after an event; way: 1 if a rise is the event, -1 if a fall is."""
     if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
@@ -131,7 +131,7 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """Return the first theta after `begin` at which `event_value` is positive; `start` is its value at `begin`."""
+    """Return the first theta after `begin` at which `event_value` is positive; start: what it tests, at `begin`."""
     # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
     # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
     # no more than the largest change from point to point. Then a golden-section search looks for a positive value
@@ -165,7 +165,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
 
 @compiled
 def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
-    """Return the theta between low and high at which `event_value` becomes positive."""
+    """Return the share theta of the step, between low and high, at which `event_value` becomes positive."""
     # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
     # halved. Where the values at the ends differ by orders of magnitude the secants creep; a bisection follows after
     # SECANTS_PER_HALVING secants that have not halved the interval. The end with the positive value is returned, so

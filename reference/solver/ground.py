@@ -10,7 +10,7 @@ from reference.solver.rows import broadcast_like, put, row
 from reference.solver.system import Array, Ground, System
 from reference.solver.work import SERIES_TERMS, Workspace
 
-MAX_SERIES_ANGLE = 2.0  # rad: beyond this angle and decay of a harmonic in a step its Taylor series would lose digits
+MAX_SERIES_ANGLE = 2.0  # rad, largest turn and decay of a harmonic in a step at which its Taylor series is accurate
 SERIES_ROUNDING = 1e-17  # share of the harmonic: the Taylor series ends at a term of this size
 
 
@@ -29,7 +29,7 @@ def next_knot(record: Array, t: float) -> int:
 
 @compiled
 def friction_temperature_factor_at(system: System, t: float) -> float:
-    """Return the friction factor k_T at time t from the polynomial of its piece; after the last piece its end value."""
+    """Return the temperature factor of friction, k_T, at time t: the polynomial of its piece, at last a constant."""
     table = system.k_t
     if table.shape[0] == 0:
         return 1.0
@@ -42,7 +42,7 @@ def friction_temperature_factor_at(system: System, t: float) -> float:
 
 @compiled
 def record_acceleration_at(system: System, t: float) -> Ground:
-    """Return the ground acceleration of a record, linear between its knots and zero behind them, and k_T."""
+    """Return the ground acceleration of a record, linear between knots and zero after them, and k_T at time t."""
     record, k_t = system.record, friction_temperature_factor_at(system, t)
     k = next_knot(record, t)
     if k == 0:
@@ -56,7 +56,7 @@ def record_acceleration_at(system: System, t: float) -> Ground:
 
 @compiled
 def ground_at(system: System, work: Workspace, t: float) -> Ground:
-    """Return the ground acceleration (xi'', eta'', zeta''), m/s^2, and the friction factor k_T at time t."""
+    """Return the ground acceleration, m/s^2, and k_T, the temperature factor of friction, at time t."""
     if system.record.shape[0] > 0:
         return record_acceleration_at(system, t)
     e0, e1 = system.exponents[0], system.exponents[1]
@@ -89,7 +89,7 @@ def set_harmonic_step_factors(system: System, work: Workspace, h: float) -> None
 
 @compiled
 def next_ground(system: System, work: Workspace, t: float) -> Ground:
-    """Return the ground at t: the time of `set_harmonics`, or one step after the last call."""
+    """Return ground acceleration and k_T at t, which is the time of `set_harmonics`, or one step after the last t."""
     if system.record.shape[0] > 0:
         return record_acceleration_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
@@ -104,7 +104,7 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_ground_at_stages(system: System, work: Workspace) -> None:
-    """Set work.ground after `set_harmonics`, by Taylor series, which are quicker than sines at every stage."""
+    """Set ground acceleration and k_T at the stages, after `set_harmonics`, by Taylor series where these are exact."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
@@ -130,7 +130,7 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
 
 @compiled
 def expand_harmonics(work: Workspace, e0: complex, e1: complex) -> int:
-    """Set work.series for a time in which the harmonics change by exp(e0), exp(e1); return the number of terms."""
+    """Set the Taylor series of harmonics that change by exp(e0), exp(e1) in a step; return the number of terms."""
     series, z0, z1 = work.series, work.waves[0], work.waves[1]
     enough = SERIES_ROUNDING * SERIES_ROUNDING * min(squared_modulus(z0), squared_modulus(z1))
     for n in range(SERIES_TERMS):

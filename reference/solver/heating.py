@@ -23,27 +23,27 @@ from reference.support.build_cache import cache_on_disk
 
 # Newton iterations to the instant at which the slider begins or stops covering the center of the concave surface
 NEWTON_STEPS = 8
-# Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
+# Ends of pieces of time after a kink of friction power, as shares of a step: temperature changes like a root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
 MIN_PIECE = 1e-10  # share of the duration that the shortest piece has
 # Distances in time, in lengths of the piece: beyond the first the kernel is integrated by quadrature at the nodes,
 # beyond the second by the moments of the heat, also for whole blocks of pieces in lengths of the block.
-FAR_DISTANCE = 4.0
-BLOCK_DISTANCE = 30.0
-MAX_LAST_CHANGE = 1e-14  # largest change of the friction factor k_T that ends the iteration within a piece
-MAX_ITERATIONS = 50  # largest number of iterations within a piece
+FAR_DISTANCE = 4.0  # piece lengths, for quadrature
+BLOCK_DISTANCE = 30.0  # piece or block lengths, for moments
+MAX_LAST_CHANGE = 1e-14  # change of the temperature factor k_T that ends the iteration within a piece of time
+MAX_ITERATIONS = 50  # largest number of iterations within a piece of time
 NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
 
 
 def set_initial_friction_factor(system: System) -> System:
-    """Return the system with the friction factor k_T at the initial temperature throughout."""
+    """Return the system with the temperature factor of friction, k_T, constant at its initial value."""
     k_t = np.zeros((1, 3 + STAGES))
     k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])
     return system._replace(k_t=k_t)
 
 
 def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
-    """Return the system with the friction factor k_T by the heat of a run that ends at `end`, s."""
+    """Return the system with the temperature factor of friction, k_T(t), from the heat of a run up to `end`, s."""
     # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or covers the
     # center of the concave surface: there k_T changes like a root of time. So pieces are graded behind these instants,
     # and those of the jump are located by Newton's method. By the error of the integration k_T jumps from piece to
@@ -79,24 +79,24 @@ def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System
 
 
 def mean_factor(system: System) -> float:
-    """Return the mean of the friction factor k_T over time."""
+    """Return the mean of the temperature factor of friction, k_T, over time."""
     lengths, coefficients = system.k_t[:, 1], system.k_t[:, 2:]
     return float(lengths @ coefficients @ (1.0 / np.arange(1, STAGES + 2)) / lengths.sum())
 
 
 def _nodes_of_pieces(bounds: Array) -> Array:
-    """Return the instants of the collocation nodes of all pieces, (K S,), s."""
+    """Return the instants of the S collocation nodes of all K pieces of time between `bounds`, (K S,), s."""
     return (bounds[:-1, None] + np.diff(bounds)[:, None] * NODES).ravel()
 
 
 def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
-    """Return the squared displacement less the squared largest one at which the slider covers the center, m^2."""
+    """Return the squared displacement minus the largest square at which the slider covers the center, (T,), m^2."""
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
 
 def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
-    """Return the power of friction over m1 with the factor k_T = 1, m^2/s^3."""
+    """Return the power of friction over m1 without its temperature factor k_T, (T,), m^2/s^3."""
     x, v = motion.x[:, 0], motion.v[:, 0]
     squared_speed = (v**2).sum(axis=1)
     if not system.small:
@@ -108,7 +108,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
 
 @njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
-    """Return the conduction integral of a piece at theta: its heat, a polynomial in u, over sqrt(theta - u)."""
+    """Return the integral over a piece of its heat, a polynomial in u, over sqrt(theta - u): its effect at theta."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
     moment = 2.0 * (np.sqrt(theta) - beyond)
     total = moment * coefficients[0]
@@ -120,7 +120,7 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
 
 @njit(**NUMBA_OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
-    """Return the conduction integral of a piece far from theta, by quadrature of its heat `power` at the nodes."""
+    """Return the integral over a piece of its heat over sqrt(theta - u), by quadrature, for theta far behind it."""
     total = 0.0
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
@@ -138,7 +138,7 @@ def past_temperature(
     coefficients: Array,
     moments: Array,
 ) -> float:
-    """Return the temperature at a time within a piece that the heat of all pieces before it causes."""
+    """Return the temperature, degrees C, at a time within a piece of time, from the heat of all pieces before it."""
     # The temperature is a sum over all pieces before. For pieces long past, only sum, mean time and variance of the
     # heat of a block of pieces count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
     # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
@@ -166,7 +166,7 @@ def past_temperature(
 
 @njit(**NUMBA_OPTIONS)
 def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficients: Array, k_t: Array) -> None:
-    """Set heat, its polynomial and k_T of a piece, whose power and k_T depend on each other by its own heat."""
+    """Solve for the heat of a piece of time, its polynomial, and k_T, which depend on each other, by iteration."""
     for _ in range(MAX_ITERATIONS):
         change = 0.0
         for k in range(STAGES):
@@ -228,5 +228,5 @@ def join_blocks(a: Array, b: Array, both: Array) -> None:
 
 @njit(**NUMBA_OPTIONS)
 def temperature_factor(temperature: float) -> float:
-    """Return the friction factor k_T at a temperature in degrees C, as `Heat.factor`."""
+    """Return k_T, the temperature factor of friction, at a temperature in degrees C, as `Heat.factor` does."""
     return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)

@@ -29,8 +29,8 @@ def _ones_where(chosen: NDArray[np.bool_]) -> Array:
 
 # Masks of every column: its places above the diagonal, on it and below it
 ABOVE_DIAGONAL = _ones_where(_PLACES[:, None] > _PLACES)
-IDENTITY = _ones_where(_PLACES[:, None] == _PLACES)
-BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)
+IDENTITY = _ones_where(_PLACES[:, None] == _PLACES)  # places on the diagonal
+BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)  # places below the diagonal
 
 
 @compiled
@@ -88,7 +88,7 @@ def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> f
 
 @compiled
 def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
-    """Return the place of a column's largest entry from a row of a block on: ROW_LENGTH times block, plus row."""
+    """Return where a column's largest entry is, from row `first` of a block on: ROW_LENGTH times block, plus row."""
     best, place = 0.0, block * ROW_LENGTH + first
     for b in range(block, blocks):
         for k in range(first if b == block else 0, STAGES):
@@ -99,7 +99,7 @@ def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
 
 @compiled
 def exchange(column: Array, block: int, k: int, place: int) -> None:
-    """Exchange two entries of a column (blocks, ROW_LENGTH)."""
+    """Exchange two entries of a column (blocks, ROW_LENGTH): entry k of a block, and the one at `place`."""
     other, m = place // ROW_LENGTH, place % ROW_LENGTH
     column[block, k], column[other, m] = column[other, m], column[block, k]
 

@@ -49,14 +49,14 @@ LARGE_FRACTION = 0.85
 MIN_DISTANCE_TO_SINGULARITY = 0.1
 MAX_SLOW_STEPS = 2.0  # a slide is near its stop if friction would stop it in fewer steps
 DIRECTION_MARGIN = 0.35  # rad, uncertainty of the direction of a slide near its stop
-MIN_SURE_DRIVE = 0.5  # share of the friction limit; a smaller drive may point anywhere at the stop
-MAX_HELD_DRIVE = 0.8  # share of the squared friction limit: a larger drive may move a platform at rest
+MIN_SURE_DRIVE = 0.5  # smallest drive, over the friction limit, whose direction at a stop is sure in a rough run
+MAX_HELD_DRIVE = 0.8  # largest squared drive, over the squared friction limit, at which a platform at rest surely stays
 LOOK_AHEAD_DELAY = 0.25  # time from the last large value until the run looks ahead, over RunSettings.period
 
 
 @compiled
 def end_run_early(system: System, work: Workspace, settings: RunSettings) -> None:
-    """End the run in the state x, v if no large value can follow; set the time of the next look ahead."""
+    """End the run if a rough run ahead shows that no larger peak can follow; set the time of the next such look."""
     # The run looks ahead a quarter of a period after its last large value, and only if the rough run takes at most
     # fifty times as many steps as the accurate ones so far: then both cost about the same. If the rough run finds a
     # large value, the next look follows that one, so that all rough runs together cover the motion at most once. The
@@ -75,7 +75,7 @@ def end_run_early(system: System, work: Workspace, settings: RunSettings) -> Non
 
 @compiled
 def rough_step_length(system: System, settings: RunSettings) -> float:
-    """Return the length of the steps of a rough run, s."""
+    """Return the step length, s, of a rough run, which shows whether the accurate run can end early."""
     h = settings.period / STEPS_PER_PERIOD
     if system.fastest > 0.0:
         h = min(h, MAX_CHAIN_ANGLE / system.fastest)
@@ -84,7 +84,7 @@ def rough_step_length(system: System, settings: RunSettings) -> float:
 
 @compiled
 def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
-    """Return the instant, s, of the next large value, from the state on in rough steps h, s; infinity if none comes."""
+    """Return when, s, rough steps of length h, s, from the present state meet a large value; infinity for never."""
     bodies = work.x.shape[0]
     for i in range(bodies):  # x1, v1 keep the state here, as the next accurate step sets them anew
         for axis in range(2):
@@ -103,7 +103,7 @@ def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
 
 @compiled
 def make_rough_step(system: System, work: Workspace, time: float, h: float) -> bool:
-    """Move x, v by h and set a0 of the bodies above the platform; return True if a value may become large meanwhile."""
+    """Make one rough step of length h, s; return True if an acceleration or displacement may become large in it."""
     move_at_velocity(work, 0.5 * h)
     ground = next_ground(system, work, time + 0.5 * h)
     set_chain_acceleration(system, work, ground)
@@ -190,7 +190,7 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
 def bound_held_acceleration(
     system: System, load: Load, ground: Ground, excess: float, reaction: float
 ) -> tuple[bool, float]:
-    """Return True if the drive of a platform at rest comes near its limit, and a bound on its acceleration, m/s^2."""
+    """Return True if the drive of a platform at rest is near the friction limit; and a bound on its acceleration."""
     largest = sqrt(ground.x * ground.x + ground.y * ground.y)
     limit = static_limit(system, load.k_t, reaction)
     nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -202,7 +202,7 @@ def bound_held_acceleration(
 
 @compiled
 def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) -> tuple[float, float]:
-    """Return the slip vector (friction.py) at the velocity before the step; zero if a slide begins."""
+    """Return the slip vector (friction over normal force) at the velocity before a rough step; zero from rest."""
     if squared_speed == 0.0:
         return 0.0, 0.0
     contact = SLIDING

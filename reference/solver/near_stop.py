@@ -45,17 +45,17 @@ from reference.solver.work import (
 )
 
 MAX_ITERATIONS = 40  # iterations of Newton's method after which a step counts as unsolved
-SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which the slopes are computed again
+SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which Newton's derivatives are computed again
 ROUNDING_ANGLE = 1e-13  # rad, change of the angles that rounding alone makes
 DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, which needs only a few digits
 SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by the logarithm of the speed
-MAX_GUESSED_TURN = 0.5  # rad: the direction turns towards the force, and the guess must not turn beyond it
+MAX_GUESSED_TURN = 0.5  # rad, largest turn in the first guess: a slide turns towards the force, and never beyond it
 MAX_CHANGE = 1e3  # a larger change of the angle, rad, or of the logarithm of the speed ends the iteration
 
 
 @compiled
 def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
-    """Solve a step of length h in stretched time until angles change by `tolerance` at most; return its outcome."""
+    """Solve a step of length h in stretched time (see above) to `tolerance`, rad, of its angles; return its outcome."""
     # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
     # (`set_motion_at_stages`). These give ground, springs and dampers (`set_drive_at_stages`): a fixed-point iteration
     # for the chain, which converges as the chain hardly moves in it. The forces give the platform's acceleration along
@@ -105,7 +105,7 @@ def guess_near_stop(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
-    """Set speed, time, velocities and positions at the stages."""
+    """Set speed, time, velocities and positions at the stages of a step near a stop, by integration."""
     x, v, a, turning = work.x, work.v, work.a, work.turning
     for k in range(STAGES):
         turning[COSINE, k], turning[SINE, k] = slip_direction_cosines(turning[DIRECTION, k], system.axes)
@@ -126,7 +126,7 @@ def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
-    """Set ground, chain and drive at the stages; return the largest change of the chain's velocity over the speed."""
+    """Set ground, chain and drive at the stages; return the largest correction of the chain's velocity, m/s."""
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0
@@ -163,7 +163,7 @@ def is_inside_rim(system: System, work: Workspace) -> bool:
 
 @compiled
 def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
-    """Set the platform's acceleration at the stages, along and across its direction; if `fresh`, its slopes as well."""
+    """Set the platform's acceleration at the stages along and across its direction; if `fresh`, also derivatives."""
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
     ax, ay, reaction, ratio = acceleration_along(system, load, speed, ex, ey)
@@ -188,7 +188,7 @@ def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
 
 @compiled
 def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> float:
-    """Correct directions and speeds by Newton's method, with `fresh` or kept slopes; return the largest change."""
+    """Correct directions and speeds by Newton's method; fresh: renew its matrix; return the largest change."""
     # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, linearized by the
     # derivative of the sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from
     # the corrected directions, since constant friction hardly depends on the speed. Where friction depends on the

@@ -24,18 +24,18 @@ from reference.solver.work import SQUARED_SPEED, Workspace
 # In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
 # exceeds the higher one by less than this share of the squared acceleration.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_PATH_FACTOR = 1.5  # bound on the path in a step over its duration times the larger speed at its ends
+MAX_PATH_FACTOR = 1.5  # largest path in a step, over its duration times the larger of the speeds at its ends
 NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
-IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components; integers of NumPy (system.py)
+IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # components of a vector; integers of NumPy, see system.py
 # SEARCH_POINTS in rows of ROW_LENGTH; the last row repeats the first points
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
 MAX_RATE = 60.0  # largest rate times step length that counts: a faster response of friction adds nothing to the error
-SETTLED_FRACTION = 0.9  # an acceleration below this share of the largest so far is not near a peak
+SETTLED_FRACTION = 0.9  # an acceleration, or displacement, below this share of the largest so far is not near it
 
 
 @compiled
 def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[float, float, float]:
-    """Return the sum of the squares of the first polynomials in `powers` at theta, and its first two derivatives."""
+    """Return the sum of squares of the first `components` polynomials in `powers` at theta, and two derivatives."""
     value = slope = curvature = 0.0
     for n in range(components):
         p = dp = ddp = 0.0
@@ -51,7 +51,7 @@ def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[floa
 
 @compiled
 def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
-    """Return the largest sum of squares of the first polynomials in `powers` over [low, high], and its theta."""
+    """Return the largest sum of squares of the first `components` polynomials in `powers` on [low, high], and where."""
     # SEARCH_POINTS are twice as many as the stages, so the best point is next to the largest maximum of a step that
     # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
     # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
@@ -86,7 +86,7 @@ def largest_square(work: Workspace, components: int, low: float, high: float) ->
 
 @compiled
 def velocity_defect(work: Workspace, body: int, axis: int) -> float:
-    """Return what the polynomial through a body's stage velocities misses at the start of a step, over its length."""
+    """Return the misfit of the polynomial through a body's stage velocities at a step's start, over the step length."""
     missed = 0.0
     for k in range(STAGES):
         missed += VELOCITY_AT_START[k] * work.a[body, axis, k]
@@ -112,7 +112,7 @@ def link_error_rate(system: System, work: Workspace, h: float, body: int) -> flo
 
 @compiled
 def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
-    """Return the rate, 1/s, at which friction turns an error of the platform's velocity into one of acceleration."""
+    """Return the rate, 1/s, by which friction turns an error of the platform's velocity into one of acceleration."""
     if contact == REST:
         return 0.0
     if contact != SLIDING:
@@ -134,7 +134,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
         missed = missed * theta + DEFECT_POLYNOMIAL[k]
         integral = integral * theta + DEFECT_INTEGRAL[k]
     error = abs(missed) * work.defect[body]
-    if contact != STOPPING:  # steps near a stop are short, and their length is no time
+    if contact != STOPPING:  # steps near a stop are short, and their length h is no time in s
         rate = link_error_rate(system, work, h, body)
         if body == PLATFORM:
             rate += min(friction_error_rate(system, work, contact), MAX_RATE / h) * work.defect[body]
@@ -144,7 +144,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best (N,) to the largest squared acceleration in a part of the step; return True if any is near it."""
+    """Raise the largest squared accelerations, work.best, by a part of the step; return True if any is near them."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))

@@ -7,6 +7,7 @@ from reference.solver.compiled import compiled
 from reference.solver.rows import Row, combine_columns, put
 from reference.solver.system import Array
 
+# Columns of matrices of collocation.py: from stage values to integrals, to second integrals, and to coefficients
 A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns_as_rows(A), columns_as_rows(A2), columns_as_rows(MONOMIALS)
 NODES_ROW = columns_as_rows(NODES[:, None])[0]  # stages c_i, as shares of a step, in a row
 POWERS = STAGES + 2  # number of coefficients: a position is the second integral of a polynomial through the stages
@@ -14,7 +15,7 @@ POWERS = STAGES + 2  # number of coefficients: a position is the second integral
 
 @compiled
 def integrate_to_stages(values: Row) -> Row:
-    """Return the integrals from the start of the step to every stage, over the length of the step."""
+    """Return integrals of the polynomial through `values` from the step's start to every stage, over its length."""
     return combine_columns(A_COLUMNS, values)
 
 

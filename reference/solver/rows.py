@@ -42,6 +42,7 @@ class _RowType(types.Type):  # type: ignore[misc]
     """Numba's type of a row."""
 
     def __init__(self) -> None:
+        """Give the type its name."""
         super().__init__(name="Row")
 
 
@@ -50,6 +51,7 @@ class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
     """Type of a row in LLVM."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
+        """Set LLVM's type of a row."""
         super().__init__(manager, kind, _VECTOR)
 
 
@@ -73,7 +75,7 @@ def _broadcast(builder: Any, number: Any) -> Any:
 
 
 def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
-    """Write code that makes rows of all numbers."""
+    """Write code that makes a row of every number that is not one yet."""
     return [number if kind == _ROW else _broadcast(builder, number) for number, kind in zip(numbers, kinds)]
 
 
@@ -161,7 +163,7 @@ for _function in (math.exp, math.expm1, math.log):
 
 @type_callable(operator.getitem)
 def _type_getitem(context: Any) -> Callable[..., Any]:
-    """Type row[k] as a float, for a whole number k."""
+    """Tell numba that row[k] is a float for a whole number k."""
     return lambda values, k: types.float64 if values == _ROW and isinstance(k, types.Integer) else None
 
 
@@ -277,7 +279,7 @@ def is_finite(context: Any, values: Any) -> Any:
 
 @compiled
 def combine_columns(columns: NDArray[np.float64], values: Row) -> Row:
-    """Return the sum of the columns of a matrix (M, ROW_LENGTH), each times its number."""
+    """Return the sum of the columns of a matrix, given as rows (M, ROW_LENGTH), each times its number in `values`."""
     total = row(columns, 0) * values[0]
     for m in range(1, columns.shape[0]):
         total += row(columns, m) * values[m]

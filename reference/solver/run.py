@@ -49,15 +49,15 @@ from reference.solver.work import (
 
 # Lengths of time below are in units of RunSettings.period, the time in which forces change.
 FIRST_STEP = 0.02  # length of the first step of a run
-NEGLIGIBLE_REMAINDER = 1e-8  # time before its end: a run that fails later counts as finished
+NEGLIGIBLE_REMAINDER = 1e-8  # time before the end of a run: if the run fails later than this, it counts as finished
 HOLDING_TIME = 1e-6  # time for which the contact keeps rest or creep in a state on the border of two phases
-RIM_SQUARED_FRACTION = 0.998  # share of rho^2: a run that fails farther out has reached the rim
+RIM_SQUARED_FRACTION = 0.998  # squared displacement over rho^2 beyond which a run that fails has reached the rim
 # Phases in succession that last no time: after more of them the state is on the border of two phases, each of which
 # ends at once in favor of the other.
 MAX_IDLE_PHASES = 4
-# Share of the inertia determinant without friction below which a run that fails has come to Painleve's paradox
+# Inertia determinant, over that without friction, below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # share of the loading's velocity: a slower slide that cannot go on has not moved
+MAX_CRAWL_SPEED = 1e-8  # speed, over the loading's velocity, below which a slide that cannot go on counts as rest
 
 
 @compiled

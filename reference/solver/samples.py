@@ -11,7 +11,7 @@ from reference.solver.collocation import MONOMIALS, STAGES, A
 from reference.solver.system import STOPPING, Array, StepRecord
 
 BISECTIONS = 60  # number of bisections that locate an instant in a step near a stop to rounding
-INSTANTS_PER_BLOCK = 1024  # number of instants at a time, whose stages fit into the processor's cache
+INSTANTS_PER_BLOCK = 1024  # number of instants sampled at a time: their stage values fit into the processor's cache
 MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP = 4, 48  # bounds on the number of instants per step in `step_instants`
 
 
@@ -71,7 +71,7 @@ def step_instants(record: StepRecord, count: int, most: int) -> Array:
 
 
 def _locate_in_steps(clock: Array, times: Array) -> Array:
-    """Return the place of each time in its step near a stop, where time is a polynomial of the step's variable."""
+    """Return the share of its step near a stop at which each time lies; `clock`: times at the stages of the steps."""
     coefficients = clock @ MONOMIALS.T
     low, high = np.zeros(len(times)), np.ones(len(times))
     for _ in range(BISECTIONS):

@@ -26,8 +26,8 @@ ERROR_ORDER = 7.0  # order in the step length of the error estimate
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
 # before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
-FATAL_STEP = 1e-9
-MIN_STEP = 1e-16
+FATAL_STEP = 1e-9  # before an outcome such as the rim
+MIN_STEP = 1e-16  # without a solution
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
 NEWTON_FRACTION = 0.01  # share of the tolerance: a smaller change of the accelerations ends Newton's method
@@ -74,7 +74,7 @@ def count_step(work: Workspace, settings: RunSettings) -> bool:
 
 @compiled
 def negligible_time(system: System, settings: RunSettings) -> float:
-    """Return the time within which no acceleration changes, s."""
+    """Return the longest time, s, that is too short for any acceleration to change."""
     return NEGLIGIBLE_TIME * min(settings.period, system.duration)
 
 
@@ -104,7 +104,7 @@ def propose_plain_length(system: System, work: Workspace, settings: RunSettings)
 
 @compiled
 def guess_from_last_step(work: Workspace, h: float) -> None:
-    """Set the first guess of the platform's stage accelerations to the last step's polynomial, where that reaches."""
+    """Set the first guess of the platform's stage accelerations: the last step's polynomial, or constant ones."""
     old = work.last_length
     theta = row(NODES_ROW, ())
     near = 0.0 < h <= MAX_EXTRAPOLATION * old
@@ -146,7 +146,7 @@ def is_too_short(work: Workspace, contact: int, settings: RunSettings, h: float,
 
 @compiled
 def set_length(work: Workspace, contact: int, h: float) -> None:
-    """Set the length of the next step, in the time of the phase."""
+    """Set the length of the next step: in stretched time near a stop, in s otherwise."""
     if contact == STOPPING:
         work.stretched_length = h
     else:
@@ -155,7 +155,7 @@ def set_length(work: Workspace, contact: int, h: float) -> None:
 
 @compiled
 def adapt_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the next length after a step that met the tolerance; a step cut short by an event shortens nothing."""
+    """Set the next step's length after one that met the tolerance; one cut short by an event does not reduce it."""
     if h * factor > work.length or h == work.length:
         work.length = h * factor
 

@@ -43,17 +43,17 @@ from reference.solver.work import (
 
 MAX_ITERATIONS = 14  # iterations of Newton's method after which a step counts as unsolved
 SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed again
-FORCE_ROUNDING = 1e-13  # share of the forces: rounding leaves so much in the defect at the start of a step
+FORCE_ROUNDING = 1e-13  # rounding error in the defect at the start of a step, over the forces
 ROUNDING_CHANGE = 4e-15  # relative change of the accelerations from iteration to iteration that rounding alone makes
-# Growth of a slide's squared speed beyond which a derivative understates tenfold the turn of the direction
+# Largest growth of a slide's squared speed for which a derivative is kept: with this growth it is ten times too large
 MAX_SPEED2_GROWTH = 100.0
-# Share of rho^2: a step farther out whose iteration leaves the concave surface has reached the rim
+# Squared displacement over rho^2 beyond which a step whose iteration leaves the concave surface has reached the rim
 RIM_SQUARED_FRACTION = 0.99
 
 
 @compiled
 def set_step_loads(system: System, work: Workspace, h: float) -> None:
-    """Set the ground at the stages and the load that it and the state put on the platform through the chain."""
+    """Set the ground at the stages, and the driving force on the platform from the ground and the bodies above."""
     put(work.elapsed, (), h * row(NODES_ROW, ()))
     set_harmonics(system, work, work.time)
     set_ground_at_stages(system, work)

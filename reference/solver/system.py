@@ -29,7 +29,7 @@ SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...
 
 
 class System(NamedTuple):
-    """The paper's system in accelerations: link stiffness and damping over the mass of the body they act on."""
+    """Scene in compiled form, in accelerations: stiffness and damping of links are over the mass that they act on."""
 
     small: bool  # True for equations (4.3) instead of (3.9)
     law: int  # SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
@@ -52,13 +52,13 @@ class System(NamedTuple):
     amplitudes: Array  # (3, 2), m/s^2, amplitudes of the two harmonics along x, y, z
     exponents: Complex  # (2,), 1/s, exponents s_i = -lambda_i + i nu_i of the harmonics
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
-    heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) if cold
+    heat: Array  # (3,) fields of Heat: initial, degrees C; rise times m1, K s^2.5/m^2; cover, m; (0,) without heating
     k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without heating
-    kinks: Array  # (J, 1) s, instants from which the friction factor k_T changes like a root of time
+    kinks: Array  # (J, 1) s, instants from which k_T, the temperature factor of friction, changes like a root of time
     duration: float  # s
     axes: int  # 1 for a motion in the plane of x and z, where y stays exactly zero; otherwise 2
     fastest: float  # rad/s, upper bound on the chain's natural frequencies and rates of decay
-    damping_rate: float  # 1/s, upper bound on the rates of the chain's dampers alone
+    damping_rate: float  # 1/s, upper bound on the rates of decay that the chain's dampers alone cause
 
 
 class Ground(NamedTuple):
@@ -73,7 +73,7 @@ class Ground(NamedTuple):
 class Load(NamedTuple):
     """Position of the platform and all that acts on it, at one instant or at all stages of a step (equations.py)."""
 
-    px: Number  # m
+    px: Number  # m, position relative to the plate
     py: Number
     fx: Number  # driving acceleration, m/s^2
     fy: Number
@@ -107,10 +107,10 @@ class RunSettings(NamedTuple):
     tolerance: float  # relative error of the accelerations inside a step
     unit: float  # m/s^2, size of the loading: errors of smaller accelerations are measured against a share of it
     period: float  # s, time in which forces change (time_scale of reference/surface.py)
-    cutoff: float  # m/s, v_c of the resolved peak; 0 for the supremum
+    cutoff: float  # m/s, slip speed v_c above which accelerations count for the peak; 0 for the supremum
     step_limit: int  # number of steps after which the run ends with STEP_LIMIT
     early: bool  # True if the run ends where no peak can grow any more (look_ahead.py)
-    damped_weight: float = 30.0  # factor of the error of a step that damps a vibration (docs/decisions/0002)
+    damped_weight: float = 30.0  # factor on the error of a step that damps a vibration (docs/decisions/0002)
 
 
 def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:

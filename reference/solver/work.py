@@ -18,7 +18,7 @@ from reference.solver.compiled.by_reference import ByReference, empty_structure,
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
-# Rows of Workspace.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
+# Rows of Workspace.stage: position, velocity and drive (x, then y); reaction / m1, squared speed, inertia determinant
 POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
 # First rows of Workspace.slopes with derivatives by position, velocity and drive; two rows for each of x and y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
@@ -64,16 +64,16 @@ class Workspace:
     angle: float  # rad, direction of a slide that begins or stops
     log_speed: float  # logarithm of the horizontal speed near a stop
     log_ratio: float  # logarithm of full over horizontal speed near a stop
-    squared_start_speed: float  # m^2/s^2, squared sliding speed
+    squared_start_speed: float  # m^2/s^2, squared sliding speed at the start of the step
     # Proposal for the next step
-    length: float  # s
+    length: float  # s, length of the next step in time
     stretched_length: float  # length near a stop, in stretched time
     fitting_length: float  # length with which the last step near a stop would have met the tolerance, in stretched time
-    max_growth: float  # largest factor from one length to the next
+    max_growth: float  # largest factor from one step length to the next
     hold_time: float  # s, time for which the contact keeps rest or creep under any force; 0 if it need not
     # State of the contact in the present phase
-    first_log_speed: float  # logarithm of the speed at which stretched time began
-    early_rest: float  # s, time left of the slide when the phase of rest begins
+    first_log_speed: float  # logarithm of the speed at which stretched time (near_stop.py) began
+    early_rest: float  # s, time that the platform still slides after the phase of rest has begun
     # Step that is being solved
     x1: Array  # (N, 2) m, positions at the end of the step
     v1: Array  # (N, 2) m/s, velocities there
@@ -86,44 +86,44 @@ class Workspace:
     load: Complex  # (N, 2, CHANNELS) loads of the eliminated chain
     channels: Array  # (L,) one number in every channel: real parts, imaginary parts
     gain: Complex  # (2, CHANNELS) response of the platform's drive to its own acceleration through the chain
-    stage: Array  # (9, L) state of the platform at the stages, in the rows above
-    slopes: Array  # (12, L) derivatives of the platform's acceleration, in the rows above
+    stage: Array  # (9, L) state of the platform at the stages, in the rows POSITION to DETERMINANT
+    slopes: Array  # (12, L) derivatives of the platform's acceleration, from the rows BY_POSITION to BY_DRIVE on
     matrix: Array  # (2 S, 2, L) matrix of Newton's method, by columns (linear_solve.py)
-    residual: Array  # (2, L) right side of its equations, then their correction
+    residual: Array  # (2, L) right side of Newton's equations, then their solution, the correction
     turn_matrix: Array  # (S, 1, L) matrix of Newton's method for the directions near a stop
     pivots: Array  # (2 S,) row exchanges of the factorized matrix
     positions: Array  # (N, 2, L) m, positions of the bodies at the stages of a step near a stop
     velocities: Array  # (N, 2, L) m/s, their velocities there
-    turning: Array  # (12, L) direction, speed and time at the stages near a stop, in the rows above
+    turning: Array  # (12, L) direction, speed and time at the stages near a stop, in the rows DIRECTION and following
     levels: Array  # (L,) logarithm of the sliding speed at the stages near a stop
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
     powers: Array  # (5, POWERS) coefficients of polynomials in theta, the elapsed share of the step
     dense: Array  # (2, L) sums of squares at collocation.SEARCH_POINTS, in the rows of peaks.SEARCH_ROWS
-    scale: Array  # (N,) m/s^2, accelerations that errors are relative to
+    scale: Array  # (N,) m/s^2, accelerations to which the errors of the bodies are related
     defect: Array  # (N,) m/s^2, interpolation error at the start of the step
     force: Array  # (2,) m/s^2, friction that yields, over m1, at the start of the step
-    shear: Array  # (15, L) friction that yields at the stages, in the rows above
-    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and rate by eight arguments; last both themselves
-    shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method
-    shear_right: Array  # (4 S,) right side of its equations, then their correction
+    shear: Array  # (15, L) motion and friction that yields at the stages, in the rows ARGUMENTS to FRICTION_LIMIT
+    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and force rate by 8 arguments; at last both themselves
+    shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method for friction that yields
+    shear_right: Array  # (4 S,) right side of these equations, then their solution, the correction
     shear_pivots: Array  # (4 S,) row exchanges of the factorized matrix
     # Last step
-    last_length: float  # s; 0 where its polynomial is no guess for the next step
+    last_length: float  # s, length of the last step; 0 if its polynomial is no guess for the next step
     guess: Array  # (2, POWERS) coefficients of the platform's acceleration in the last step
     waves: Complex  # (2,) harmonics of the ground at the start of the step
     turns: Complex  # (2,) factors by which `waves` change in a step of a rough run
     elapsed: Array  # (L,) s, time from the start of the step to its stages
     series: Array  # (SERIES_TERMS, 2) Taylor series of the harmonics in the step
-    # Run as a whole
+    # State and results of the run as a whole
     end: float  # s, end of the run, at most the duration
     steps: float  # number of steps so far
     best: Array  # (N,) m^2/s^4, largest squared absolute acceleration so far
-    reading_error: Array  # (N,) m/s^2, error of reading it inside its step, with the drift of the steps before
+    reading_error: Array  # (N,) m/s^2, error of the largest acceleration inside its step, with the drift before
     drift: Array  # (N,) m/s^2, error that the steps so far have left in the chain's fastest vibration
     squared_reach: float  # m^2, largest squared displacement of the platform
     last_peak: float  # s, end of the last step with an acceleration near the largest
     last_large: float  # s, end of the last step with an acceleration or a displacement near the largest
-    look_time: float  # s, instant after which the run looks ahead, or ends if it must not end early by itself
+    look_time: float  # s, instant after which the run looks ahead, or ends if its end is given
 
 
 def _allocate_fields(work: Workspace, bodies: int) -> None:
@@ -181,10 +181,11 @@ def _allocate_fields(work: Workspace, bodies: int) -> None:
     work.squared_reach = work.last_peak = work.last_large = work.look_time = 0.0
 
 
+# Functions of compiled code that make a structure, passed by reference, from a named tuple
 system_by_reference, record_by_reference = structure_from_tuple(_SystemType), structure_from_tuple(_StepRecordType)
 _fields = SimpleNamespace()  # an example of all fields, which shows numba their types
 _allocate_fields(_fields, 2)  # type: ignore[arg-type]
-_empty_workspace, _compiled_allocation = (
+_empty_workspace, _compiled_allocation = (  # functions that make a workspace, and that fill its fields with zeros
     empty_structure(_WorkspaceType, vars(_fields)),
     njit(nogil=True)(_allocate_fields),
 )

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Parameters = ParamSpec("Parameters")
-Result = TypeVar("Result")
+Parameters = ParamSpec("Parameters")  # parameters of a decorated function
+Result = TypeVar("Result")  # result of a decorated function
 MAX_QUOTED_LETTERS = 80  # an error quotes at most so many letters of a value
 MAX_LENGTH = 10**8  # an object that is no array has at most so many entries
 MISSING = object()  # stands for an argument that the caller has not given
@@ -53,6 +53,7 @@ class Range:
         return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}{hint}"
 
     def __contains__(self, value: float) -> bool:
+        """Return True for a number within the range."""
         return bool(self.lowest <= value <= self.highest) or (self.or_infinite and value == math.inf)
 
 
@@ -62,7 +63,7 @@ def require_type(
     """Return a decorator that raises TypeError, a line that ends with `rule`, if the first argument is not a `kind`."""
 
     def with_check(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-        """Return a function that checks its first argument and then does the same."""
+        """Return the function with a check of its first argument's type before each call."""
         name = next(iter(signature(function).parameters))
 
         @wraps(function)

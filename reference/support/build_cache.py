@@ -25,8 +25,8 @@ import platformdirs
 from numba.core.compiler import Compiler
 
 CACHE_NAME = "phase-resonance"  # name of the folder in the user's cache
-njit: Any = numba.njit
-config: Any = numba.config
+njit: Any = numba.njit  # numba has no type hints
+config: Any = numba.config  # numba's settings
 
 
 class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]

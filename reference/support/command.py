@@ -26,6 +26,7 @@ from reference.support.version import __version__
 
 # Exit codes: after an error that no rule foresees, and after the reader of standard output has closed it
 UNEXPECTED_ERROR_CODE, CLOSED_OUTPUT_CODE = 3, 141
+# Signals that end the process
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
@@ -33,14 +34,16 @@ class StoppedError(KeyboardInterrupt):
     """Interrupt of the run by the signal `number`."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
+        """Set the number of the signal."""
         super().__init__(number)
         self.number = number
 
 
 class OutputError(Exception):
-    """Error of standard output, which takes no more text; no OSError, which would mean an unwritable file."""
+    """Error for standard output that takes no more text; not an OSError, which would stand for an unwritable file."""
 
     def __init__(self, error: OSError) -> None:
+        """Set the error of the operating system as its text."""
         super().__init__(error.strerror or str(error))
         self.closed = isinstance(error, BrokenPipeError)
 
@@ -53,11 +56,12 @@ class OneLineParser(argparse.ArgumentParser):
     """Parser that raises UsageError instead of printing the usage, and permits no shortened options."""
 
     def __init__(self, prog: str, description: str) -> None:
+        """Make the parser of the command `prog`."""
         super().__init__(prog=prog, description=description, allow_abbrev=False)
         self.add_argument("--version", action="version", version=f"phase-resonance {__version__}")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Return parsed words; "--" is no value of an option, for which argparse would take it as empty."""
+        """Return the parsed words; refuse "--" as value of an option, which argparse would take as empty."""
         words = list(sys.argv[1:] if args is None else args)
         options = words[: words.index("--")] if "--" in words else words
         for option, _, value in (word.partition("=") for word in options if word.startswith("--")):
@@ -66,7 +70,7 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError with one line, without the middle of a long one."""
+        """Raise UsageError with the message in one line, from which the middle is cut if it is long."""
         text = message if message.isprintable() else repr(message)
         if len(text) > 2 * MAX_LETTERS:
             text = f"{text[:MAX_LETTERS]}...{text[-MAX_LETTERS:]}"
@@ -118,6 +122,7 @@ class _CheckedStdout:
     """Standard output that raises OutputError where it cannot be written."""
 
     def __init__(self, stream: TextIO) -> None:
+        """Wrap the stream."""
         self._stream = stream
 
     def write(self, text: str) -> int:
@@ -135,6 +140,7 @@ class _CheckedStdout:
             raise OutputError(error) from None
 
     def __getattr__(self, name: str) -> Any:
+        """Return any other attribute of the stream."""
         return getattr(self._stream, name)
 
 
@@ -179,7 +185,7 @@ def _write_traceback_file() -> str:
 
 
 def _print_line(line: str) -> None:
-    """Write one line to standard error, if anybody listens."""
+    """Write one line to standard error, or nothing if standard error is closed."""
     with suppress(Exception):  # nobody may be reading the terminal
         print(line, file=sys.stderr, flush=True)
 

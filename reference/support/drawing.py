@@ -60,7 +60,7 @@ def _mark_quarter_turns(axis: Axis, span: float) -> None:
 
 def write_half_turns(phase: float) -> str:
     """
-    Return the text of a multiple of pi / 2.
+    Return a multiple of pi / 2, rad, as text such as "3π/2".
 
     >>> [write_half_turns(quarters * np.pi / 2.0) for quarters in (-1, 0, 1, 2, 3, 4)]
     ['-π/2', '0', 'π/2', 'π', '3π/2', '2π']

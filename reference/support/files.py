@@ -138,12 +138,12 @@ def clear_staging(folder: Path) -> None:
 
 
 def _content_of_mark(folder: Path, place: Path) -> bytes:
-    """Return the content of the mark in a staging directory of `place`."""
+    """Return the content of the file MARK_FILE for a staging directory `folder` of `place`."""
     return json.dumps({"what": "staging directory of phase-resonance", "name": folder.name, "for": place.name}).encode()
 
 
 def _is_marked(folder: Path, place: Path) -> bool:
-    """Return True if a directory has the mark of a staging directory of `place`."""
+    """Return True if the MARK_FILE in a directory shows that it is a staging directory of `place`."""
     try:
         return read_file(folder / MARK_FILE, CHUNK_BYTES) == _content_of_mark(folder, place)
     except OSError:

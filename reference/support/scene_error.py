@@ -9,7 +9,7 @@ from typing import Any
 from reference.support.arguments import quote
 
 MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
-MAX_ERRORS = 50  # a line has at most so many errors of one file, and the number of the others
+MAX_ERRORS = 50  # a message lists at most so many errors of one file, and counts the others
 # Spellings of one word share at least this ratio of their letters; words of other meanings share less
 MIN_SPELLING_SIMILARITY = 0.7
 # Beginnings of rules about a missing key, a missing table and an unknown key
@@ -78,6 +78,7 @@ class SceneError(ValueError):
     """
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
+        """Set file, key, value and rule of the error, and the other errors of the file."""
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
         shown = (self, *self.others[: MAX_ERRORS - 1])
         said = "; also ".join(
@@ -94,6 +95,7 @@ class SceneError(ValueError):
         return f"{one_line(self.key)}{value}: {printable(self.rule)}"
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
+        """Return class and arguments, from which pickle makes the error again."""
         # Worker processes send the error to the main process
         return SceneError, (self.file, self.key, self.value, self.rule, self.others)
 
@@ -102,6 +104,7 @@ class MisfitError(ValueError):
     """Error for values that are wrong together though each is valid alone; `first_scene_error` words it."""
 
     def __init__(self, key: str, value: Any, rule: str) -> None:
+        """Set the key to name, its value, and the rule that the values break together."""
         self.key, self.value, self.rule = key, value, rule
         super().__init__(f"{key}: {rule}")
 
@@ -124,7 +127,7 @@ def keys_of_table(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str
 
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
-    """Return the error for an unknown dotted `key` where `valid` keys belong: its meaning here, or the nearest key."""
+    """Return the error for an unknown dotted `key`, with what to write instead, or the nearest of the `valid` keys."""
     *table, last = [part for part in key.split(".") if not part.isdecimal()] or [""]
     letters = "".join(filter(str.isalnum, last[:MAX_LETTERS].lower()))
     if hint := HINTS.get(f"{'.'.join(table)}.{letters}", HINTS.get(letters)):

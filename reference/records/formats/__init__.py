@@ -38,7 +38,7 @@ READERS = (  # readers of all formats: the first that recognizes a file reads it
     Reader(jma.FORMAT, jma.recognizes_jma, jma.read_jma),
     Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv, ".csv"),
 )
-READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
+READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}  # by suffix of the file
 NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
 OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a table that gives one file
 

@@ -13,14 +13,14 @@ from reference.records.samples import RecordError, RecordSamples, make_even_samp
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-FORMAT = "PEER .AT2"
+FORMAT = "PEER .AT2"  # name of the format
 MAX_HEADER_LINES = 20  # the header ends within so many lines
 MAX_COUNT_DIGITS = 9  # digits of the number of samples, NPTS
 SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit glued to the value of DT
-NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)  # words in files of other quantities
+NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)  # words in files without accelerations
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)  # header line with a unit
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
-ACCELERATION_LINE = re.compile(r"\bACC(?:EL\w*)?\b", re.IGNORECASE)
+ACCELERATION_LINE = re.compile(r"\bACC(?:EL\w*)?\b", re.IGNORECASE)  # header line that names an acceleration
 ACCELERATION_IN_G = re.compile(r"ACC(?:EL\w*)?\b[^,;]*?(?:\bIN |, ?|[\[(])[\[(]?G[\])]? ?\.?", re.IGNORECASE)
 
 
@@ -54,7 +54,7 @@ def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
 
 
 def _shorten_lines(lines: Sequence[str]) -> list[str]:
-    """Return the first lines, each cut and with single blanks."""
+    """Return the first MAX_HEADER_LINES lines, cut to MAX_LINE letters, with single blanks between words."""
     return [" ".join(line[:MAX_LINE].split()) for line in lines[:MAX_HEADER_LINES]]
 
 

@@ -12,7 +12,7 @@ from reference.records.numerals import parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import quote
 
-FORMAT = "COSMOS V2"
+FORMAT = "COSMOS V2"  # name of the format
 BLOCK_HEADER = re.compile(  # COSMOS: line above the block of accelerations
     r"\s*(?P<count>[0-9]{1,9}) acceleration pts,.*units ?= ?(?P<unit>[^,(]+)"
     r".*format ?= ?\([0-9]+[fe](?P<width>[0-9]{1,3})\.",

@@ -28,12 +28,12 @@ from reference.records.numerals import (
 from reference.records.samples import AXES, RecordError, RecordSamples
 from reference.support.arguments import quote
 
-FORMAT = "CSV"
-HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
-MAX_PREAMBLE = 20  # the header follows after at most so many lines
+FORMAT = "CSV"  # name of the format
+HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"  # words of errors
+MAX_PREAMBLE = 20  # at most so many lines may precede the header
 TIME_NAMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
-SECOND_NAMES = {"", "s", "sec", "secs", "second", "seconds", "秒"}
-ACCELERATION_NAMES = {
+SECOND_NAMES = {"", "s", "sec", "secs", "second", "seconds", "秒"}  # spellings of the unit of time
+ACCELERATION_NAMES = {  # words in a header that name an acceleration
     "a",
     "acc",
     "accel",
@@ -157,7 +157,7 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
 
 
 def _header_columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
-    """Return the columns of the header; an error quotes nothing of a file without a valid column. RecordError."""
+    """Return the columns of the header. Raises RecordError, which quotes nothing of a file without a valid column."""
     columns = [_header_column(place, cell) for place, cell in enumerate(cells)]
     times = [column for column in columns if column.kind == "time"]
     usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
@@ -214,7 +214,7 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
 
 
 def _header_column(place: int, cell: str) -> HeaderCell:
-    """Return a cell of the header; its kind is "wrong" for the unit of an acceleration without the name of one."""
+    """Return the header cell that a text means; kind "wrong": it has a unit of acceleration but no name of one."""
     name, unit = _name_and_unit(cell)
     words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
     if words and all(word in TIME_NAMES for word in words):
@@ -227,7 +227,7 @@ def _header_column(place: int, cell: str) -> HeaderCell:
         return HeaderCell(place, cell, "acceleration", name)
     if len(rest) == 1 and parse_direction(rest[0]) is not None and (told or unit or not rest[0].isdigit()):
         if unit and unit_factor(unit) is None and not told:
-            return HeaderCell(place, cell, "other")  # its unit is of no acceleration: N [counts], v [m/s]
+            return HeaderCell(place, cell, "other")  # its unit is not one of acceleration: N [counts], v [m/s]
         return HeaderCell(place, cell, "acceleration", rest[0].upper() if len(rest[0]) < 4 else rest[0])
     return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 

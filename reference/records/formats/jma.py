@@ -13,7 +13,7 @@ from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_fact
 from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import quote
 
-FORMAT = "JMA CSV"
+FORMAT = "JMA CSV"  # name of the format
 SAMPLING_RATE_LINE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
 UNIT_LINE = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
 

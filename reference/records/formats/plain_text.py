@@ -30,7 +30,7 @@ from reference.records.numerals import (
 from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import as_float, quote
 
-FORMAT = "plain text"
+FORMAT = "plain text"  # name of the format
 OPTIONS = ("step", "unit", "skip", "column")  # keys with which a scene states how to read a plain text
 MAX_SKIP = 10_000  # `skip` may leave out at most so many lines
 MAX_COLUMN = 100  # largest number of the column that `column` chooses
@@ -76,7 +76,7 @@ def read_plain_text(
     return replace(_read_stated(text, name, spacing, factor, skip, column), format=f"{FORMAT} in {unit}")
 
 
-@lru_cache(maxsize=64)  # the caller has checked the arguments: the cache needs their hashes
+@lru_cache(maxsize=64)  # the cache hashes the arguments, whose types the caller has checked
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
     """Return the values of a text; spacing: step, s; factor: of its unit to m/s^2. Raises RecordError."""
     lines, propose = text.splitlines(), partial(propose_line, text, name)
@@ -226,7 +226,7 @@ def _column_values(
 def _check_widths(
     rows: Sequence[tuple[int, list[float]]], column_unstated: bool, counted: bool, propose: Callable[[], str]
 ) -> None:
-    """Raise RecordError if lines may be rows of columns, or differ in the number of their values."""
+    """Raise RecordError if lines of a text without stated column may be table rows, or lines differ in length."""
     widths = [len(row) for _, row in rows]
     alike = len(set(widths)) == 1 and widths[0] > 1
     if column_unstated and alike and _even_step([row for _, row in rows]) is not None:

@@ -27,16 +27,17 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
     """Numba's type of a structure passed by reference; each subclass has one set of fields."""
 
     def __init_subclass__(cls) -> None:
+        """Register numba's model of the data of a structure for the subclass."""
         default_manager.register(cls, StructRefModel)
 
     @property
     def mangling_args(self) -> tuple[str, tuple[()]]:
-        """Name of the type within the names of compiled functions, with its variant (variants.py)."""
+        """Name of the type in names of compiled functions: it includes the fields that are None (variants.py)."""
         return "_".join([self._typename, *(name for name, kind in self._fields if kind == types.none)]), ()
 
     @cached_property
     def field_dict(self) -> dict[str, Any]:
-        """Types of all fields."""
+        """Types of all fields of the structure, by name."""
         return dict(self._fields)
 
     @cached_property
@@ -45,7 +46,7 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
         return {}
 
     def pointer(self, context: Any, builder: Any, reference: Any, name: str) -> Any:
-        """Write code for the pointer to a field."""
+        """Write code that computes the pointer to a field, and return this pointer."""
         if name not in self.places:
             model = context.data_model_manager[self.get_data_type()]
             whole, position = model.get_value_type(), model.get_field_position(name)
@@ -59,7 +60,7 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
 @infer_getattr
 class _Fields(AttributeTemplate):  # type: ignore[misc]
-    """Types of the fields of a structure, as numba asks for them."""
+    """Lookup by which numba learns the type of a field of a structure."""
 
     key = ByReference
 
@@ -70,7 +71,7 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
 
 @lower_getattr_generic(ByReference)
 def _read(context: Any, builder: Any, kind: ByReference, reference: Any, name: str) -> Any:
-    """Write code that reads a field, whose reference stays with the structure."""
+    """Write code that reads a field, without counting a new reference to it."""
     value = builder.load(kind.pointer(context, builder, reference, name))
     return impl_ret_borrowed(context, builder, kind.field_dict[name], value)
 

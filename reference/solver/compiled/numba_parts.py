@@ -23,18 +23,18 @@ from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 # Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
 # functions that numba inlines before their types are known, and no variable whose end must be marked.
 UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
-PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # such as operator.add
+PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # functions such as operator.add
 
 
 class _NoEnvironment:
     """Substitute for numba's code generator, which hands a function the Python objects that its wrapper needs."""
 
     def set_env(self, name: str, environment: object) -> None:
-        """Do nothing: a part has no wrapper."""
+        """Do nothing: no Python code calls a part, so that it needs no Python objects."""
 
 
 class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """Code of one part as numba writes it, which entry points link, optimize and translate."""
+    """Code of one part (a function only called by compiled code), which entry points link, optimize and translate."""
 
     codegen = _NoEnvironment()
     _whole: Any = None
@@ -75,6 +75,7 @@ class _LowerAsPart(LoweringPass):  # type: ignore[misc]
     _name = "as_part"
 
     def __init__(self) -> None:
+        """Make the pass."""
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
@@ -90,6 +91,7 @@ class _RememberedFunctions(Context):  # type: ignore[misc]
     """Numba's lookup of the types of functions, which remembers the answer for every function and its arguments."""
 
     def __init__(self, context: Context) -> None:
+        """Share the contents of one of numba's contexts, and start without remembered answers."""
         self.__dict__ = context.__dict__
         self._known: dict[Any, Any] = {}
 
@@ -109,12 +111,12 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
     """Compiler with numba's own passes except those that a part does not need, and with `_LowerAsPart`."""
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a Python function."""
+        """Compile a Python function as a part, with remembered lookups of types."""
         self.state.typingctx = remembered_functions(self.state.typingctx)
         return super().compile_extra(func)
 
     def define_pipelines(self) -> list[Any]:
-        """Return the passes in their order."""
+        """Return the passes by which numba compiles a part, in their order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED_PASSES]
         passes.add_pass_after(_LowerAsPart, AnnotateTypes)

@@ -20,7 +20,7 @@ from typing import Any
 
 import numba
 
-njit: Any = numba.njit
+njit: Any = numba.njit  # numba has no type hints
 NEWEST_KNOWN = 0, 68  # newest version of numba on which its internals were tested (oldest: 0.61)
 
 

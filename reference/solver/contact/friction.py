@@ -27,13 +27,13 @@ SMALLEST_SPEED = 1e-200  # m/s: the square of a slower speed underflows, so a sl
 
 @compiled
 def static_coefficient(system: System) -> float:
-    """Return the friction coefficient that holds the platform at rest, under the weight."""
+    """Return the static friction coefficient of the platform when the contact carries just the weight."""
     return system.friction
 
 
 @compiled
 def kinetic_coefficient(system: System) -> float:
-    """Return the friction coefficient of a slide at vanishing speed, under the weight."""
+    """Return the friction coefficient in sliding at vanishing speed when the contact carries just the weight."""
     return system.friction
 
 
@@ -45,13 +45,13 @@ def viscous_factor(system: System) -> float:
 
 @compiled
 def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the largest friction force at rest under a reaction, both over the mass m1 of the platform, m/s^2."""
+    """Return the largest static friction force for a normal force `reaction`, both over the platform's mass, m/s^2."""
     return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
 @compiled
 def coefficient(system: System, speed: Number) -> Number:
-    """Return the dry friction coefficient mu at the sliding speed (3.8), m/s, under the weight."""
+    """Return the dry friction coefficient at a sliding speed, m/s, when the contact carries just the weight."""
     if system.rate == 0.0:
         return broadcast_like(system.friction, speed)
     return system.friction - system.rise * expm1(-system.rate * speed)
@@ -65,7 +65,7 @@ def coefficient_slope(system: System, speed: Number) -> Number:
 
 @compiled
 def rising_rate(system: System, speed: float) -> float:
-    """Return the rate at which friction damps the speed, 1/s, if friction rises with the speed; 0 otherwise."""
+    """Return the rate, 1/s, at which the growth of friction with speed damps the speed; 0 if friction does not grow."""
     return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
@@ -82,7 +82,7 @@ def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy
 @compiled
 def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return how far the squared tangential force exceeds the squared static limit, and the reaction: T4 of theory.md.
+    Return by how much the squared tangential force exceeds the squared static friction limit, and the reaction.
 
     The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
     at most mu times its normal part N > 0, that is while the excess |T|^2 - (mu N)^2 is not positive.
@@ -102,7 +102,7 @@ def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Numbe
 @compiled
 def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return how far the squared tangential force exceeds the squared static limit, and the vertical reaction, (4.3).
+    Return squared tangential force minus squared friction limit at rest, and the reaction, in the small equations.
 
     Mf = mu (R I - u p^T / rho) with R = M (g + zeta''); F_3 = f - R p / rho. The excess is |adj F_3|^2 - det^2 with
     Mf^-1 = adj / det, so that nothing is divided by a small number.
@@ -119,14 +119,14 @@ def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Numbe
     hx = d * gx - b * gy
     hy = a * gy - c * gx
     det = a * d - b * c
-    scale = friction * friction * reaction * reaction  # with this divisor the excess has the unit of the exact one
+    scale = friction * friction * reaction * reaction  # divisor that gives the excess the unit m^2/s^4
     return where_positive(scale, (hx * hx + hy * hy - det * det) / scale, gx * gx + gy * gy), reaction
 
 
 @compiled
 def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     """
-    Return how far the squared tangential force exceeds the squared limit of (4.6) as printed, over m1^2, m^2/s^4.
+    Return by how much the squared tangential force exceeds the squared friction limit (4.6) as printed, m^2/s^4.
 
     The components of F_F are mu N each, so the limit is sqrt(2) mu N at the origin. F_3 has gravity and spring with the
     printed signs. It serves to measure the effect of this misprint.
@@ -135,7 +135,7 @@ def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     friction = scale_by_load(system, load.k_t, reaction, static_coefficient(system))
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
-    # The printed equation has the spring force f + u with the opposite sign.
+    # The printed equation has the spring force, here f + u, with the opposite sign.
     gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius
     gy = -(2.0 * load.uy + load.fy) + reaction * load.py / system.radius
     return gx * gx + gy * gy - lx * lx - ly * ly
@@ -143,7 +143,7 @@ def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
 
 @compiled
 def slip_direction_cosines(angle: float, axes: int) -> tuple[float, float]:
-    """Return cosine and sine of a slip direction; exactly along x if the motion stays in the plane of x and z."""
+    """Return cosine and sine of the angle of a slip direction; exactly 1 or -1, and 0, in motions along x alone."""
     cosine, sine = cos(angle), sin(angle)  # side by side, so that LLVM makes one call of both
     if axes == 1:
         return (1.0 if cosine > 0.0 else -1.0), 0.0
@@ -155,7 +155,7 @@ def slip_vector(
     system: System, px: Number, py: Number, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number]:
     """
-    Return the slip vector of dry sliding along (ex, ey), and the ratio of full to horizontal speed.
+    Return the slip vector (friction over normal force) of sliding along (ex, ey), and full over horizontal speed.
 
     `speed` is the horizontal one, m/s.
     """
@@ -166,14 +166,14 @@ def slip_vector(
 
 @compiled
 def largest_coefficient(system: System) -> float:
-    """Return the largest coefficient of friction at any speed, under the weight."""
+    """Return the largest friction coefficient over all speeds when the contact carries just the weight."""
     largest: float = system.friction + max(0.0, system.rise)
     return largest
 
 
 @compiled
 def decay_rate(system: System, contact: int) -> float:
-    """Return the rate at which friction alone makes the velocity decay, 1/s, where friction is linear in it."""
+    """Return the rate, 1/s, at which friction that is linear in the velocity makes it decay, without other forces."""
     largest = largest_coefficient(system)
     factor = largest / system.v_reg if contact == CREEPING else largest
     rate: float = factor * system.mass_ratio * system.gravity
@@ -182,6 +182,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Return the rate at which friction makes a velocity across the direction of a slide decay, 1/s."""
+    """Return the rate, 1/s, at which friction makes the velocity component across the direction of sliding decay."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
     return rate

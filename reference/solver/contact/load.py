@@ -19,51 +19,51 @@ from reference.solver.rows import Number, broadcast_like, row_maximum, where_pos
 from reference.solver.system import Load, System
 
 MAX_ITERATIONS = 40  # largest number of Newton iterations for the reaction
-LAST_CHANGE = 1e-8  # relative change of the reaction that ends the iteration: the next change would be below rounding
-# Residual of the equation for the reaction over the drive along the normal: above it the iteration found no solution
+LAST_CHANGE = 1e-8  # relative change of the reaction that ends its iteration: the next one would be below rounding
+# Largest residual of the equation for the reaction, over the normal drive: above it the iteration has found no solution
 MAX_MISFIT = 1e-7
 
 
 @compiled
 def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
-    """Return the friction coefficient unchanged: friction depends on neither load nor temperature."""
+    """Return `coefficient` unchanged: variant for friction that depends on neither load nor temperature."""
     return coefficient
 
 
 @compiled
 def _coefficient_at_load_and_temperature(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
-    """Return the friction coefficient at the temperature factor k_T and under a reaction, from the cold one."""
+    """Return the cold `coefficient` under the weight, corrected for the temperature factor k_T and the reaction."""
     return coefficient * load_factor(system, k_t, reaction)
 
 
 @compiled
 def _keep_slip(system: System, reaction: Number, slip: Number) -> Number:
-    """Return a component of the slip vector unchanged: friction does not depend on the load."""
+    """Return a component of the slip vector unchanged: variant for friction that does not depend on the load."""
     return slip
 
 
 @compiled
 def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number:
-    """Return a component of the slip vector times the ratio of relative changes of friction and reaction."""
+    """Return a component of the slip vector times the relative change of friction per relative change of reaction."""
     return slip * (1.0 + elasticity(system, reaction))
 
 
 scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
 """Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
 
-scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)
+scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)  # for derivatives
 """Return a slip vector times the relative change of the friction force over that of the reaction."""
 
 
 @compiled
 def load_factor(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the ratio of the friction coefficient at k_T and under a reaction to the cold one under the weight."""
+    """Return the friction coefficient at temperature factor k_T and a reaction, over the cold one under the weight."""
     return k_t * exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
 
 
 @compiled
 def elasticity(system: System, reaction: Number) -> Number:
-    """Return the ratio of the relative change of the friction force to that of the reaction."""
+    """Return the relative change of the friction coefficient per relative change of the reaction."""
     above = reaction - LEAST_LOAD * system.mass_ratio * system.gravity
     return where_positive(above, broadcast_like(system.exponent, above), broadcast_like(0.0, above))
 
@@ -72,7 +72,7 @@ def elasticity(system: System, reaction: Number) -> Number:
 def _acceleration_of_given_slip(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return acceleration, reaction and determinant for a slip vector that is independent of the reaction."""
+    """Return (ax, ay, reaction / m1, inertia determinant) for a slip vector that does not depend on the reaction."""
     pressure = system.gravity + load.uz
     return exact_acceleration(
         load.px, load.py, load.fx, load.fy, pressure, squared_speed, sx, sy, system.mass_ratio, system.radius
@@ -83,7 +83,7 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return acceleration, reaction and determinant where friction depends on the reaction, by Newton's method."""
+    """Return (ax, ay, reaction / m1, inertia determinant) if friction depends on the reaction, by Newton's method."""
     # A friction coefficient that falls with the load (n < 0) makes the equation for R nonlinear. The derivative of this
     # equation takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's
     # paradox). If the iteration ends far from a solution, no acceleration exists either: the determinant is set to -1,
@@ -111,5 +111,5 @@ def _acceleration_of_load(
     return load.fx + reaction * (nx - sx), load.fy + reaction * (ny - sy), reaction, determinant
 
 
-exact_equations = choose_variant("exponent", _acceleration_of_given_slip, _acceleration_of_load)
+exact_equations = choose_variant("exponent", _acceleration_of_given_slip, _acceleration_of_load)  # (3.9)-(3.13)
 """Return (ax, ay, reaction / m1, inertia determinant) by the exact equations."""

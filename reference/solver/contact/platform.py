@@ -21,12 +21,12 @@ from reference.solver.rows import Number, broadcast_like, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
 from reference.solver.work import DRIVE, POSITION, Workspace
 
-ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which a drive may exceed it by rounding alone
+ROUNDING_EXCESS = 1e-12  # excess of squared drive over squared friction limit, over the latter, by rounding alone
 
 
 @compiled
 def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
-    """Return position, drive and ground acceleration of the platform in the state x, v at the start of the step."""
+    """Return the platform's position, driving force over m1 and ground acceleration at the start of a step."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
@@ -38,7 +38,7 @@ def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
 
 @compiled
 def load_at_stages(work: Workspace) -> Load:
-    """Return position, drive and ground acceleration of the platform at the stages, from `stage` and `ground`."""
+    """Return the platform's position, driving force over m1 and ground acceleration at the stages of a step."""
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
@@ -48,7 +48,7 @@ def load_at_stages(work: Workspace) -> Load:
 
 @compiled
 def slip_factor(system: System, contact: int, squared_speed: Number) -> Number:
-    """Return the ratio of the slip vector (friction.py) to the horizontal velocity, s/m."""
+    """Return the slip vector (friction over normal force) per unit of horizontal velocity, s/m."""
     if contact == SLIDING:
         speed = sqrt(squared_speed)
         return coefficient(system, speed) / speed

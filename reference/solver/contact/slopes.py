@@ -96,7 +96,7 @@ def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
     radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
     rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
     lean = nx * vx + ny * vy
-    share = ratio / determinant  # ratio of the change of the reaction to the load along the normal
+    share = ratio / determinant  # change of the reaction per change of the load along the normal
     turn = reaction * (ratio - 1.0) / determinant
     dn = -1.0 / radius
     tx, ty = scale_by_response(system, reaction, sx), scale_by_response(system, reaction, sy)

@@ -16,14 +16,14 @@ from reference.solver.contact.platform import acceleration_along, solve_platform
 from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48  # number of directions per full turn at which an arc is sampled
-# Rad, first stride of the search for the direction that does not turn, which may be close to the present one
+# First stride, rad, of the search for the direction in which a slide does not turn, which may be close to the present
 FIRST_STRIDE = 1e-3
 GOLDEN_SECTIONS = 20  # golden sections around the best sample, which leave 1e-5 of the distance of two samples
 # A peak between two samples exceeds the largest squared sample by at most this share
 MAX_RISE_BETWEEN_SAMPLES = 0.1
-# Sideways acceleration, as a share of the driving one, that counts as rounding
+# Largest sideways acceleration of a slide, over its driving acceleration, that counts as rounding
 MAX_ROUNDING_TURN = 1e-9
-# Deceleration, as a share of friction, that rounding of the instant may give a slide as it begins
+# Largest deceleration of a slide as it begins, over friction, that counts as rounding of the instant
 MAX_ROUNDING_BRAKING = 1e-6
 
 
@@ -47,8 +47,8 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return the direction to which a slide turns from `angle` at its stop; no_turn: negligible share of the drive."""
-    # theta' keeps its sign until it vanishes, so the first zero of a . e_perp in the sense of the turning is the end.
+    """Return the direction to which a slide turns from `angle` at its stop; no_turn: sideways share to neglect."""
+    # The direction turns one way until its turning vanishes: at the first zero of the sideways acceleration that way.
     # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
     # up to the distance of two samples, and ends at the first change of sign, or after a full turn.
     here = turning_acceleration(system, load, angle)
@@ -68,7 +68,7 @@ def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) 
 
 @compiled
 def can_begin_slide(system: System, load: Load, angle: float) -> bool:
-    """Return True if a slide from rest in this direction has an acceleration (Painleve) and is not braked."""
+    """Return True if a slide from rest in this direction is possible (no Painleve paradox) and is not braked."""
     ex, ey = cos(angle), sin(angle)
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, 0.0, sx, sy)

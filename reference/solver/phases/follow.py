@@ -68,12 +68,12 @@ from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 # Rounding error of an acceleration, which is a difference of forces, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
 MAX_VIBRATION_ANGLE = 5.0  # rad, largest phase angle of the chain's fastest vibration in a step that resolves it
-# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the phase angle of the
-# vibration. The vibration itself is the defect over twice this power (docs/decisions/0002).
+# Error that a step leaves in a free vibration, over the step's defect times the seventh power of the vibration's phase
+# angle, rad. The vibration itself is the defect over twice DRIFT_SHARE times this power (docs/decisions/0002).
 DRIFT_SHARE = 6e-8
-# Rad: a hundred steps with smaller angles add less than a thousandth of their tolerance to the drift
+# Smallest phase angle, rad, of steps that count for the drift: hundred others add less than 1e-3 of their tolerance
 MIN_DRIFT_ANGLE = 2.0
-# Factor of the tolerance of Newton's method where friction depends on the speed
+# Factor on the tolerance of Newton's method where friction depends on the speed
 VARYING_NEWTON_FRACTION = 1e-3
 
 
@@ -194,7 +194,7 @@ def begin_contact_phase(system: System, work: Workspace, contact: int, settings:
 
 @compiled
 def propose_length(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Return the length of the next step in the time of the phase; 0 if stretched time begins instead."""
+    """Return the length of the next step, s, or in stretched time (near_stop.py); 0 if stretched time is to begin."""
     if contact == SLIDING:
         return propose_sliding_length(system, work, settings)
     if contact == STOPPING:
@@ -238,7 +238,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 def limit_step_to_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float
 ) -> tuple[float, int]:
-    """Return the length of the step up to its first event, 0 for one at its start, and the contact's state then."""
+    """Return the step length up to its first event, 0 for one at its start, and the contact's state at that length."""
     if contact == REST:
         return shorten_step_to_onset(system, work, h)
     if contact == SLIDING:

@@ -16,8 +16,8 @@ from reference.solver.work import REACTION, Workspace
 # Excess over the condition for rest at an onset, as shares of the squared friction limit: a slide that begins with less
 # has no direction beyond rounding
 ONSET_EXCESS = 1e-12
-MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS
-ONSET_DIFFERENCE = 1e-4  # share of the time to the onset that is the step of the difference quotient of the excess
+MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # smallest excess at an onset that is located well enough
+ONSET_DIFFERENCE = 1e-4  # step of the difference quotient of the excess, over the time to the onset
 ONSET_ITERATIONS = 8  # iterations of Newton's method for the onset
 
 

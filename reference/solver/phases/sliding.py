@@ -47,31 +47,31 @@ from reference.solver.work import SQUARED_SPEED, VELOCITY, Workspace
 # "Period" below is RunSettings.period, the time in which forces change.
 # Longest first step of a slide from rest, in periods, over the seventh root of the tolerance (ERROR_ORDER)
 MAX_FIRST_STEP = 0.57
-CAUTIOUS_GROWTH = 2.0  # largest ratio of a step to the one before after that had to be shortened
-# Stretched time begins where the slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME periods, and the
-# chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
-STOP_WITHIN_STEPS = 1.5
-STOP_WITHIN_TIME = 0.05
-MAX_CHAIN_ANGLE = 0.5
+CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if the present one had to be shortened
+# Stretched time (near_stop.py) begins where a slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME
+# periods, and the chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
+STOP_WITHIN_STEPS = 1.5  # steps
+STOP_WITHIN_TIME = 0.05  # periods
+MAX_CHAIN_ANGLE = 0.5  # rad, phase angle of the chain's fastest vibration until the stop
 # Longest step as a share of the time to the stop: a longer one ends too close to where the direction turns fast
 MAX_WAY_TO_STOP = 0.55
 # Smallest cosine of the turn of the velocity between two stages: a step with a larger turn is not smooth
 MIN_TURN_COSINE = 0.3
 LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which a slide has reached v_reg
 NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: a slower slide may pass v_reg between two stages
-# Share of the friction limit times the step: the direction of a slower slide follows the force within the step
+# Speed over friction limit times step length below which the direction of a slide follows the force within a step
 STIFF_SPEED_FRACTION = 0.03
-# Smallest acceleration of a slide as a share of the drive: below it the slide has no direction
+# Smallest acceleration that a slide's first guess has, over the drive: with a smaller one it would have no direction
 MIN_ACCELERATION_FRACTION = 1e-12
-# Share of the squared friction limit: with a smaller excess of the drive a slide need not begin yet
+# Excess of the squared drive over the squared friction limit, over the latter, with which no slide need begin yet
 BARELY_SLIPPING_EXCESS = 1e-4
-# A slide that cannot begin with a step of this share of the period, or of the time in which friction responds to the
-# speed, moves nothing: it is replaced by rest for NEGLIGIBLE_HOLD periods. A crossing this early in a step (share of
-# the step) means that the phase begins at v_reg.
-NEGLIGIBLE_STEP = 1e-6
-NEGLIGIBLE_RESPONSE = 1e-3
-NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP
-MAX_LENGTH_RATIO = 3.0  # a step so much shorter than the last one does not begin from that one's polynomial
+# A slide that cannot begin with a step of NEGLIGIBLE_STEP periods, or of NEGLIGIBLE_RESPONSE times the time in which
+# friction responds to the speed, moves nothing: rest replaces it for NEGLIGIBLE_HOLD periods. A slide that passes v_reg
+# within the share NEGLIGIBLE_STEP of a step begins at v_reg.
+NEGLIGIBLE_STEP = 1e-6  # periods; share of a step for a crossing
+NEGLIGIBLE_RESPONSE = 1e-3  # share of the time in which friction responds
+NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest
+MAX_LENGTH_RATIO = 3.0  # a step shorter than the last one by a larger factor takes no first guess from it
 
 
 @compiled
@@ -104,7 +104,7 @@ def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> Non
 
 @compiled
 def propose_sliding_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
+    """Return the length of the next step, s; 0 if the slide is so near its stop that near_stop.py takes over."""
     # Close to a stop the direction of slip turns like a power of the speed (T6 of docs/theory.md), which no polynomial
     # in time resolves. So a slide that would stop within a step or two goes on in stretched time (near_stop.py), unless
     # the chain would vibrate in the time left: stretched time solves the chain by iteration. A step of a slide that
@@ -160,7 +160,7 @@ def guess_slide(system: System, work: Workspace, h: float) -> None:
 @compiled
 def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
     """
-    Set the first guess along the directions in which the drive at each stage does not turn a slow slide.
+    Set the first guess of a slow slide's accelerations along the directions in which no stage's drive turns it.
 
     A light platform under a tower turns by hundreds of rad/s where it begins to slide.
     """
@@ -249,7 +249,7 @@ def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[floa
 
 @compiled
 def adapt_sliding_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the length of the next step after a step that was committed."""
+    """Set the length of the next sliding step; factor: with it the last step's error would just meet the tolerance."""
     if h * factor > work.length or h == work.length:
         work.length = h * min(factor, work.max_growth)
     work.max_growth = MAX_LENGTH_FACTOR

@@ -13,14 +13,14 @@ from reference.solver.system import CREEPING, SLIDING, System
 from reference.solver.work import SQUARED_SPEED, Workspace
 
 LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which creep has reached v_reg
-EARLY_CROSSING = 1e-6  # share of a step: an earlier crossing means that the phase begins at v_reg
+EARLY_CROSSING = 1e-6  # share of a step: if v_reg is crossed earlier, the phase counts as begun at v_reg
 NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: a faster creep may pass v_reg between two stages
 MAX_FIRST_DECAY = 2.0  # longest first step of creep, in decay times of the velocity
 
 
 @compiled
 def begin_smooth(system: System, work: Workspace, contact: int) -> None:
-    """Prepare a phase without a corner of friction; creep begins with a step that the decay by friction allows."""
+    """Prepare a phase of lubricated sliding, or of creep, whose first step is at most MAX_FIRST_DECAY decay times."""
     begin_from_state(system, work, contact)
     if contact == CREEPING:
         work.length = min(work.length, MAX_FIRST_DECAY / decay_rate(system, contact))

@@ -28,7 +28,7 @@ MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the la
 MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the chain's fastest vibration in one step
 # A slide that gathers speed returns from stretched to plain time where speed over acceleration exceeds both of these.
 LEAVING_TIME_FRACTION = 0.3  # share of the length of a plain step
-MIN_LEAVING_TIME = 0.05  # share of the period of the run
+MIN_LEAVING_TIME = 0.05  # share of RunSettings.period
 # Speed below which a platform that friction can hold may count as stopped, over the loading's velocity and the root of
 # the tolerance
 MAX_STOPPED_SPEED = 0.03
@@ -39,32 +39,32 @@ MAX_DAMPED_JUMP = 0.01
 # DECISIVE_ARC_FRACTION of the platform's peak so far, nor below DECISIVE_RISE_FRACTION of the squared peak of a body
 # above, which the arc reaches by its vertical acceleration alone.
 MIN_FOLLOWED_SPEED = 1e-10
-DECISIVE_ARC_FRACTION = 0.97
-DECISIVE_RISE_FRACTION = 0.999
-# Share of a squared peak: a smaller rise of the squared acceleration along the arc does not count
+DECISIVE_ARC_FRACTION = 0.97  # share of the platform's peak
+DECISIVE_RISE_FRACTION = 0.999  # share of the squared peak of a body above
+# Smallest rise of the squared acceleration along the arc that counts, over the squared peak
 NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
-EARLY_CROSSING = 1e-9  # share of a step: an earlier crossing means that the phase begins at v_reg
+EARLY_CROSSING = 1e-9  # share of a step: if v_reg is crossed earlier, the phase counts as begun at v_reg
 # Time left to the stop in which forces count as constant, over the period and the root of the tolerance
 MAX_FROZEN_TIME = 0.01
-# Share of the rise of friction from rest to high speed: a smaller change until rest counts as none
+# Largest change of friction until rest that counts as none, over its rise from rest to high speed
 NEGLIGIBLE_FRICTION_RISE = 1e-12
-# Duration of a slide at almost constant speed, as a multiple of the time within which a slide counts as stopping
+# Time to the stop from which a slide counts as one at constant speed, over the time in which it counts as stopping
 MIN_STEADY_TIMES = 2.0
 MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction: with a smaller one a slide turns back on its own line
-# Share of the loading's velocity: a slower straight slide that friction cannot hold reverses
+# Speed, over the loading's velocity, below which a straight slide that friction cannot hold reverses
 MAX_TURNING_POINT_SPEED = 1e-12
 NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of the angle ends Newton's method
 # Bounds on the change of ln v in one step. Time and position are integrals of v and v^2 over tau: where forces stay
 # constant, the accelerations do not show the error of these integrals. With the bounds this error stays below 1e-8 of
 # the time and the distance to the stop at the start of the step.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
-LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of that bound per unit by which ln v has fallen since
+LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of the bound in later steps, per unit by which ln v has fallen since the first
 
 
 @compiled
 def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> None:
-    """Prepare a phase in stretched time: set the accelerations in the state and the length of the first step."""
+    """Prepare a phase in stretched time (near_stop.py): set accelerations and the length of the first step."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -77,11 +77,11 @@ def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> No
 
 @compiled
 def propose_stretched_length(system: System, work: Workspace) -> float:
-    """Return the longest next step, in stretched time, that resolves time, position and the chain's vibration."""
+    """Return the longest next step in stretched time (near_stop.py) that resolves time, position and vibration."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
-    if along > 0.0:  # the slide gathers speed, so that the end of the step limits its length
+    if along > 0.0:  # the slide gathers speed, so that the bound must hold for the speed at the step's end
         change /= 1.0 + LOG_SPEED_CHANGE_GROWTH
     h = min(work.stretched_length, change / max(abs(along), 1e-300))
     return min(h, MAX_CHAIN_ANGLE / (system.fastest * exp(work.log_speed))) if system.fastest > 0.0 else h

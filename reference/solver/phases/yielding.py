@@ -48,7 +48,7 @@ from reference.solver.work import (
 # Step of the difference quotients for Newton's method, as a share of radius, speed, gravity or friction force; and the
 # step by the velocity of a platform at rest, m/s
 DIFFERENCE_STEP, MIN_SPEED = 1e-7, 1e-10
-FIRST_NODE = float(NODES[0])  # theta of the first stage
+FIRST_NODE = float(NODES[0])  # first stage, as a share of the step
 LATE_EVENT_SHARE = 1e-10  # share of a step: a later event counts as one at its end
 MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of the step
 
@@ -106,7 +106,7 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def set_motion(system: System, work: Workspace, contact: int) -> None:
-    """Set the motion at the stages in `shear` from its arguments there, and reaction and determinant in `stage`."""
+    """Compute the platform's motion at the stages from its arguments in work.shear; store it there, too."""
     shear, ground = work.shear, work.ground
     load = Load(
         row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, DRIVE_ARGUMENT), row(shear, DRIVE_ARGUMENT + 1),
@@ -178,9 +178,9 @@ def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
 @compiled
 def set_yielding_matrix(work: Workspace, h: float) -> None:
     """Set the derivative of the stage equations by the stage accelerations and the friction force at the stages."""
-    # Both, x and y, are the unknowns z; unknown m of a kind is z[kind * STAGES + m]. A change of one acts at stage i on
-    # position, velocity and drive there, and so on the accelerations and on the rates of the force, which the matrix A
-    # of the collocation integrates.
+    # The unknowns z are of four kinds: acceleration along x and y, then friction force along x and y. Kind k at stage m
+    # is z[k * STAGES + m]. A change of one acts at stage i on position, velocity and drive there, and so on
+    # accelerations and on rates of the force, which the matrix A of the collocation integrates.
     matrix, slopes, feedback = work.shear_matrix, work.shear_slopes, work.feedback
     for kind in range(4):
         axis = kind % 2
@@ -219,7 +219,7 @@ def correct_unknowns(work: Workspace) -> float:
 
 @compiled
 def expand_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Set powers[0] to the polynomial above zero past the event that ends the phase; return its value at stage 1."""
+    """Set powers[0] to a polynomial that is positive after the event that ends the phase; return its first value."""
     # Elastic friction yields where its force reaches the friction limit. Plastic friction unloads where the rate of
     # slip, the velocity along the force less the rate of the limit over k, passes zero.
     shear = work.shear
@@ -239,8 +239,8 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
 @compiled
 def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
     """Return the share of the step up to the first event in it, 0 for one at its start, NOT_IN_STEP for none."""
-    # At the start of a phase the value is zero up to rounding, and the polynomial through the stages misses it there:
-    # in the first step the first stage decides. In any other step the polynomial may be positive at its start by error.
+    # At the start of a phase the tested value is zero up to rounding, and its polynomial misses this zero: in the first
+    # step the value at stage 1 decides. In any other step the polynomial may be positive at its start by error.
     first = expand_event(system, work, contact, h)
     if begun and first > 0.0:
         return 0.0
@@ -252,7 +252,7 @@ def locate_event(system: System, work: Workspace, contact: int, h: float, begun:
 
 @compiled
 def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return the relative change of the step's length that puts its end at the event; NOT_IN_STEP if it turns back."""
+    """Return the relative change of the step's length that puts its end at the event; NOT_IN_STEP without one."""
     expand_event(system, work, contact, h)
     slope = 0.0
     for k in range(1, STAGES):
