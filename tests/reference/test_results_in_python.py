@@ -11,6 +11,7 @@ from chains import chain, refusal
 import multibody
 import reference
 from reference.problem import Amplification
+from reference.problem.phases import phase_coordinates
 
 SCENE = reference.load_scene("fig4-dry").with_values({"duration": 3.0})
 PAIRS = reference.phase_grid(3)
@@ -51,6 +52,8 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     data = surface.to_xarray()
     assert data["mu"].dims == ("phase", "body")
     np.testing.assert_array_equal(data["alpha2"], PAIRS[:, 1])
+    across = PAIRS.reshape(3, 3, 2) + [0.0, 0.1]  # no phase on both axes
+    assert phase_coordinates(across)[1]["alpha2"][1].tolist() == across[0, :, 1].tolist()
     grid = reference.amplification(SCENE, PAIRS.reshape(3, 3, 2), tolerance=1e-4).to_xarray()
     assert grid["mu"].dims == ("alpha1", "alpha2", "body")
     at = grid.sel(alpha1=PAIRS[5, 0], alpha2=PAIRS[5, 1])

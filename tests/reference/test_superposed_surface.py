@@ -1,5 +1,7 @@
 """A surface of linear equations is a sum of one motion per harmonic: the integrated one, and only where that holds."""
 
+import math
+
 import numpy as np
 import pytest
 from chains import chain
@@ -42,6 +44,13 @@ def test_the_sum_is_the_integrated_surface_on_any_chain(scene):
     assert ok.any()
     assert np.all(np.abs(reduced.mu - full.mu)[ok] <= (reduced.error + full.error)[ok])
     assert np.all(reduced.error[ok] <= 1e-8 * reduced.mu[ok])
+    np.testing.assert_allclose(reduced.displacement[ok], full.displacement[ok], rtol=1e-6)
+
+
+def test_the_displacement_on_a_plane_is_that_of_a_run():
+    reduced, full = both(frictionless(radius=math.inf))
+    assert full.displacement.min() > 0.01
+    np.testing.assert_allclose(reduced.displacement, full.displacement, rtol=1e-6)
 
 
 def test_phases_at_which_the_rim_is_reached_are_told_as_by_a_run():

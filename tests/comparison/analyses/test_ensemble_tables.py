@@ -507,6 +507,12 @@ def test_the_answer_is_of_the_bound_where_each_demand_is_largest() -> None:
         f"Isolator displacement: {said[0]}; base shear: {said[1]}. Outcomes by the equations: 10 ok."
     )
     assert "at the travel" not in str(drawn(panels.make_isolator_panels(found))), "none reaches it"
+    both = plant()
+    ended = [*both.ended, *(replace(each, scale=0.8) for each in both.ended)]
+    plots = drawn(panels.make_isolator_panels(replace(both, ended=ended))).values()
+    assert [each["x"] for plot in plots for each in plot["series"] if "at the travel" in each["name"]] == [
+        [0.8, 0.8]
+    ], "where it begins"
     heads = [
         sentences.word_heading(replace(found, scales=scales, stripes=[])) for scales in ((1.0,), (0.5,), (0.5, 1.0))
     ]

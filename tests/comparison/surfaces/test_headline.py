@@ -164,7 +164,7 @@ def test_no_main_cause_is_named_where_means_differ_by_less_than_their_errors() -
     assert (set(numbers.causes), numbers.main_cause) == ({GEOMETRY, TURNING}, "")
 
 
-@pytest.mark.parametrize(("first", "second"), [(0.02, 0.001), (0.001, 0.02)])
+@pytest.mark.parametrize(("first", "second"), [(0.02, 0.001), (0.001, 0.02), (8e-3, 8e-3)])
 def test_the_errors_of_both_means_leave_open_which_cause_is_the_largest(first: float, second: float) -> None:
     nothing = {"share": math.nan, "elsewhere": math.nan, "order": "", "interaction": math.nan, "supremum": math.nan}
 

@@ -91,6 +91,13 @@ def test_bars_that_cannot_hold_the_bodies_upright_are_refused() -> None:
         FIG3.with_values({"bodies": bodies})
         bodies[2]["mass"] = 144.7
         assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.2.bars"
+        # a body above, on a link that is soft along one axis alone
+        below, above = {"mass": 2.0, "height": 3.0, "bars": loaded["bodies.1.bars"]}, {"mass": 60.0, "height": 6.0}
+        bodies = [{"mass": 1.0, "height": 0.2}, below, {**above, "stiffness": [1e12, 1e12]}]
+        FIG3.with_values({"bodies": bodies})
+        for soft in ([200.0, 1e12], [1e12, 200.0]):
+            bodies[2]["stiffness"] = soft
+            assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.1.bars"
 
 
 def test_both_sides_agree_like_for_like_with_softened_bars() -> None:

@@ -52,6 +52,8 @@ def test_a_record_is_read_beside_its_scene_and_scaled(folder, monkeypatch):
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801, "a shipped one"
     (folder / "synthetic-pair.csv").write_text(CSV)
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == len(KNOTS), "one's own"
+    (folder / "synthetic-pair").write_text(CSV)
+    assert len(load_scene(written(folder, 'record = "synthetic-pair"')).record) == len(KNOTS), "one's own, too"
 
 
 def test_acceleration_is_linear_between_samples_and_integrated_exactly(folder):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from reference.support import build_cache as module
-from reference.support.build_cache import user_cache
+from reference.support.build_cache import build_folder, user_cache
 
 ROOT = Path(__file__).parents[3]
 
@@ -49,6 +49,15 @@ def test_without_a_home_a_private_directory_takes_its_place_and_none_of_others(
         monkeypatch.setattr(module.os, "getuid", lambda: other)
         folder.rename(fresh / f"phase-resonance-{other}")
     assert module.user_cache() == (folder if planted == "nothing" else None), "the same in every process"
+
+
+def test_a_source_in_a_folder_below_has_builds_of_its_own(tmp_path: Path) -> None:
+    (tmp_path / "below").mkdir()
+    folders = set()
+    for source, text in (("one.py", "1"), ("below/two.py", "2"), ("below/two.py", "3")):
+        (tmp_path / source).write_text(text)
+        folders.add(build_folder(tmp_path))
+    assert len(folders) == 3
 
 
 def test_a_first_call_says_once_that_it_compiles(tmp_path: Path) -> None:
