@@ -52,7 +52,7 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     data = surface.to_xarray()
     assert data["mu"].dims == ("phase", "body")
     np.testing.assert_array_equal(data["alpha2"], PAIRS[:, 1])
-    across = PAIRS.reshape(3, 3, 2) + [0.0, 0.1]  # no phase on both axes
+    across = PAIRS.reshape(3, 3, 2) + np.array([0.0, 0.1])  # no phase on both axes
     assert phase_coordinates(across)[1]["alpha2"][1].tolist() == across[0, :, 1].tolist()
     grid = reference.amplification(SCENE, PAIRS.reshape(3, 3, 2), tolerance=1e-4).to_xarray()
     assert grid["mu"].dims == ("alpha1", "alpha2", "body")

@@ -510,9 +510,8 @@ def test_the_answer_is_of_the_bound_where_each_demand_is_largest() -> None:
     both = plant()
     ended = [*both.ended, *(replace(each, scale=0.8) for each in both.ended)]
     plots = drawn(panels.make_isolator_panels(replace(both, ended=ended))).values()
-    assert [each["x"] for plot in plots for each in plot["series"] if "at the travel" in each["name"]] == [
-        [0.8, 0.8]
-    ], "where it begins"
+    arrows = [each["x"] for plot in plots for each in plot["series"] if "at the travel" in each["name"]]
+    assert arrows == [[0.8, 0.8]], "where it begins"
     heads = [
         sentences.word_heading(replace(found, scales=scales, stripes=[])) for scales in ((1.0,), (0.5,), (0.5, 1.0))
     ]
