@@ -82,15 +82,15 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
     table = make_table("ring, m", "heights x", "supports", "uneven", "change, %", "u_D, %", "outcomes")
     bodies, radius = range(1, len(scene.bodies) + 1), scene.support_radius or 0.0
     for cell in cells:
-        each = cell.variation
+        varied = cell.variation
         changes = [largest_change(found, cell, body) for body in bodies]
         table.add_row(
-            f"{each.ring * radius:g}",
-            f"{each.height:g}",
-            str(each.supports or scene.isolator.support_count),
-            _word_uneven_variation(each, radius),
-            "  ".join(f"{100.0 * change.size:+.3f}" for change in changes),
-            "  ".join(f"{100.0 * change.error:.3f}" for change in changes),
+            f"{varied.ring * radius:g}",
+            f"{varied.height:g}",
+            str(varied.supports or scene.isolator.support_count),
+            _word_uneven_variation(varied, radius),
+            "  ".join(f"{100.0 * each.size:+.3f}" if math.isfinite(each.size) else "none" for each in changes),
+            "  ".join(f"{100.0 * each.error:.3f}" if math.isfinite(each.error) else "none" for each in changes),
             NO_EFFECT if cell.no_effect else ", ".join(sorted(set(cell.status))),
         )
     console.print(table)

@@ -97,6 +97,10 @@ def describe_range(validity: ValidityRange) -> str:
     name = f"mu_{validity.body}"
     if validity.no_effect:
         return f"{name} over {VARIED[validity.key]}: {NO_EFFECT}, which is no evidence ({validity.no_effect})"
+    if validity.no_value:
+        if validity.holds is None:
+            return f"{name} over {VARIED[validity.key]}: not compared, a phase pair has no value"
+        fails = fails.replace("longer by", "longer at").replace("no longer", "no value")
     if validity.holds is None:
         where = none
     else:
@@ -118,8 +122,10 @@ def range_cell(validity: ValidityRange) -> str:
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
-        return "no value tried"
-    holds, every = f"{validity.holds:.3g}", " (all tried)" if validity.fails is None else f", not {validity.fails:.3g}"
+        return "not compared" if validity.no_value else "no value tried"
+    beyond = "no value at" if validity.no_value else "not"
+    every = " (all tried)" if validity.fails is None else f", {beyond} {validity.fails:.3g}"
+    holds = f"{validity.holds:.3g}"
     return f"{'≥' if validity.key == 'ring' else '≤'} {holds}{every}"
 
 
@@ -140,7 +146,7 @@ def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
     changes = (
-        f"mu_{body} {word_difference(size, error)}"
+        f"mu_{body} {word_difference(size, error) if math.isfinite(size) else 'no value'}"
         for body, (size, error) in enumerate(zip(trial.change, trial.uncertainty), start=1)
     )
     return f"{what}: {', '.join(changes)}{' (the worst)' if trial.worst else ''}"
@@ -178,11 +184,13 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
 
 
 def assumption_lines(found: Validity, scene: Scene) -> list[str]:
-    """Return the lines below the plots of a scene: no effect by symmetry, worst directions, bars under load."""
+    """Return the lines below the plots: no effect by symmetry, worst directions, bars under load, lost trials."""
     blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
     lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
-    loaded = [cell for cell in found.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
-    return lines + describe_uneven(found, scene) + describe_shortening(loaded)
+    cells = [cell for cell in found.cells if cell.scene == scene.name]
+    loaded = [cell for cell in cells if cell.variation in UNDER_LOAD]
+    lost = dict.fromkeys(f"{cell.status[0]}: {cell.error_message}" for cell in cells if cell.error_message)
+    return [*lines, *describe_uneven(found, scene), *describe_shortening(loaded), *lost]
 
 
 def list_turning_changes(found: Validity, scene: str) -> list[Change]:

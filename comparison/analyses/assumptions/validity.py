@@ -1,6 +1,7 @@
 """The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry."""
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, get_args
@@ -38,13 +39,13 @@ from reference.problem.readings import AS_INTEGRATED
 
 # rad; rotation changes mu most at the first phase pair in fig3-I, at the second in fig3-II
 PHASES = ((0.0, 0.0), (2.0, 0.7))
-MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
+MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command
 SIZES, MORE_SIZES = 2, 8  # number of sizes along the worst direction of an assumption: in a study, in the command
 
 
 @result
 class AssumptionCell:
-    """Change of mu from translational to spatial model under a variation, as integrated (v_reg = 1 mm/s)."""
+    """The spatial model of one variation against the translational model, as integrated (v_reg = 1 mm/s)."""
 
     scene: Annotated[Text, "name of the scene"]
     variation: Annotated[Variation, "what is varied"]
@@ -65,13 +66,13 @@ class AssumptionCell:
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:
-        """Return whether mu_i changes by at most `share` at every phase pair, uncertainty included."""
+        """Return whether mu_i stays within `share` at every phase pair, uncertainty included."""
         return self.largest(body) + self.error_estimate(body) <= share
 
 
 @result
 class ValidityRange:
-    """Range of one varied quantity in which mu of one body stays within a share of the translational result."""
+    """Range of one line of variations in which mu of one body stays within a fraction of the translational result."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -84,6 +85,7 @@ class ValidityRange:
         None
     )
     no_effect: Annotated[Text, "why symmetry leaves every trial without effect: nothing is shown; else empty"] = ""
+    no_value: Annotated[bool, "whether mu has no value at `fails`, so that nothing is shown there"] = False
 
 
 def find_validity_ranges(
@@ -108,8 +110,8 @@ def find_validity_ranges(
         telling = [(value * unit, cell) for value, cell in line if key in DIRECTED or not cell.no_effect]
         direction = direction_of(tried[0].variation, key) if tried and not reason else None
         for body, share in itertools.product(bodies, CHANGE_LIMITS):
-            holds, fails = (None, None) if reason else _bracket_share(telling, body, share)
-            found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason))
+            holds, fails, no_value = (None, None, False) if reason else _bracket_share(telling, body, share)
+            found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason, no_value))
     return found
 
 
@@ -128,15 +130,16 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
     return float(np.sign(variation.yaw)) if key == "yaw" else variation.direction
 
 
-def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
-    """Return the last size up to which mu changes by at most `share`, and the first beyond; None if there is none."""
+def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any, bool]:
+    """Return the last size up to which mu changes by at most `share`, the first that fails, and if it has no value."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
-    return next(reversed(held), None), next((value for value, _ in line[len(held) :]), None)
+    fails, cell = line[len(held)] if len(held) < len(line) else (None, None)
+    return next(reversed(held), None), fails, cell is not None and math.isnan(cell.largest(body))
 
 
 @result
 class Assumption:
-    """One of the paper's assumptions (i) to (vi), and how far the engine's models drop it."""
+    """One of the paper's assumptions (i) to (vi)."""
 
     number: Annotated[str, "of the paper"]
     statement: Annotated[str, "what the paper assumes"]
@@ -206,7 +209,7 @@ ASSUMPTIONS = (
 
 @result
 class Validity:
-    """How far the paper's assumptions hold: what was varied, the changes of mu, and the ranges that hold."""
+    """Evidence on the paper's assumptions."""
 
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]
@@ -219,7 +222,7 @@ class Validity:
 
 @dataclass(frozen=True)
 class Assumptions(MappedAnalysis[Validity]):
-    """Analysis that tries the paper's assumptions: it varies each scene and computes by how much mu changes."""
+    """Analysis of the assumptions in the scenes of a study: a few variations, or as many as a command asks for."""
 
     key, stage, needs_compiled_reference = "assumptions", "assumptions", False
     function, without_value = staticmethod(answer_trials), staticmethod(without_answer)
@@ -230,7 +233,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
-        Yield the arguments of a task for each trial, in every scene with phases that has both models of the engine.
+        Yield what is tried in every scene with phases that has both models of the engine.
 
         First None, the translational model of the scene itself, then the variations of the spatial one, then groups of
         axes along whose worst direction sizes are tried: one task each. UNDER_LOAD is added where bars give way.
@@ -267,7 +270,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
-    """Return the change of mu by a variation, from `plain` without it, with the symmetry that makes it zero, if any."""
+    """Return the change of mu by a variation, against `plain` without it; note a symmetry that hides it."""
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""

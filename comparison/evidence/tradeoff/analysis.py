@@ -73,9 +73,8 @@ def measure_setting(measurement: Measurement) -> SettingResult:
     path, settings = measurement.function
     if path not in _warmed_functions:
         _warmed_functions.add(path)
-        _call_function(
-            measurement.scene.with_values({"duration": WARM_UP_DURATION}), measurement.phases[:1], path, settings
-        )
+        short = measurement.scene.with_values({"duration": min(measurement.scene.duration, WARM_UP_DURATION)})
+        _call_function(short, measurement.phases[:1], path, settings)
     return _call_function(measurement.scene, measurement.phases, path, settings)
 
 
@@ -172,19 +171,22 @@ class TradeOff:
 
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
-    """Return the errors and the time of one setting at M phase pairs, against a reference mu (M, N)."""
+    """
+    Return the errors and the time of one setting at M phase pairs, against a reference mu (M, N).
+
+    Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
+    """
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
-    points = len(measured.mu)
     median, most, estimate = (
         [trade.find_error_quantile(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
     )
     return trade.MeasuredSetting(
         **{field.name: getattr(setting, field.name) for field in fields(trade.StatedSetting)},
-        points=points,
+        points=int(np.isfinite(reference_solution).all(axis=1).sum()),
         answered=int(np.isfinite(error).all(axis=1).sum()),
-        seconds=measured.seconds / points,
+        seconds=measured.seconds / len(measured.mu),
         median=median,
         most=most,
         error_estimate=estimate,
@@ -203,9 +205,11 @@ def _make_solved_question(
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)
     solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
+    points, answered = len(reference_solution.mu), int(np.isfinite(reference_solution.mu).all(axis=1).sum())
     own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
+    own = f"it answers at {answered} of them, {own}" if 0 < answered < points else own
     checks = [own, *_word_agreements(question, entries)]
-    return trade.SolvedQuestion(question.key, question.title, len(reference_solution.mu), solution, error, checks)
+    return trade.SolvedQuestion(question.key, question.title, points, solution, error, checks)
 
 
 def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
@@ -213,7 +217,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
     Return how far the most accurate setting of other methods, else of the same one, agrees with the reference.
     """
     by_engine = question.reference_solution[0].startswith("multibody")
-    candidates = [each for each in entries if each.question == question.key and not each.model_error and each.answered]
+    candidates = [each for each in entries if each.question == question.key and not each.model_error and each.complete]
     families = [(what, [each for each in candidates if each.method.startswith(family)])
                 for family, what in ({} if by_engine else OTHER_METHODS).items()]  # fmt: skip
     if not any(others for _, others in families):

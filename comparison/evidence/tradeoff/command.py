@@ -182,5 +182,5 @@ def print_trade(console: Console, trade: SceneTrade) -> None:
             if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
                 value = f"{entry.value:.0e} {entry.unit}".strip()
-                table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)
-        console.print(table)
+                table.add_row(entry.method, value, f"{entry.seconds:.2g}", *sizes)
+        console.print(table if table.row_count else "  no setting answers at each of these phase pairs")

@@ -10,6 +10,7 @@ import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
 from places import scene_text
+from rich.console import Console
 
 from comparison.analyses.assumptions import command, statements, trials, validity
 from comparison.analyses.assumptions.feature import assumption_panels
@@ -347,6 +348,48 @@ def test_ranges_are_worded_with_direction_and_limit() -> None:
         assert describe_range(each) == f"mu_1 stays within 1 % {text}"
         assert range_cell(each) == short
     assert describe_variation(FIRST, Variation(yaw=-0.2)).endswith("their links turned by -0.2 rad")
+
+
+def test_where_mu_has_no_value_nothing_is_said_to_fail() -> None:
+    """Planted: a scene without any value "stays within 1 % at no ring tried"; NaN in the table."""
+    nan = math.nan
+    rings = [cell(Variation(ring=ring), change) for ring, change in ((2.0, 0.0), (1.0, nan), (0.5, 0.9))]
+    found = found_of([*rings, cell(Variation(height=0.0), nan), cell(Variation(yaw=0.1), 0.0), cell(Variation(yaw=0.2), nan)])
+    said = {(each.key, each.body): each for each in found.ranges if each.share == 0.01}
+    assert describe_range(said["ring", 1]) == "mu_1 stays within 1 % with rings from 2 m, no value at 1 m"
+    assert range_cell(said["ring", 1]) == "≥ 2, no value at 1"
+    assert describe_range(said["height", 1]) == "mu_1 over the heights: not compared, a phase pair has no value"
+    assert range_cell(said["height", 1]) == "not compared"
+    assert said["ring", 2].fails is None and not said["ring", 2].no_value, "mu_2 has values"
+    turned = replace(said["yaw", 1], holds=0.1, fails=0.2, direction=1.0)
+    assert describe_range(turned).endswith("by up to 0.1 rad counterclockwise, no value at 0.2 rad")
+    lost = replace(BLIND, no_effect="", change=(nan, 0.2), uncertainty=(nan, nan))
+    assert describe_direction(FIRST, lost).endswith(": mu_1 no value, mu_2 +20 %")
+
+
+def test_the_table_has_no_nan_and_every_digit_of_many_bodies(capsys: pytest.CaptureFixture[str]) -> None:
+    """Planted: seven numbers in a cell cut the ring's radius, 0.5 m, to "0."."""
+    rows = ((math.nan, *(0.125,) * 6),)
+    wide = AssumptionCell("fig3-I", Variation(ring=0.5, height=0.25), rows, rows, ("ok", "contact lost"))
+    bodies = [*FIRST.model_dump(exclude_none=True)["bodies"], *FIRST.model_dump(exclude_none=True)["bodies"][1:] * 5]
+    tall = FIRST.with_values({"bodies": bodies, "name": "fig3-I"})
+    command._print_assumptions(Console(width=120), tall, found_of([wide], scene=tall))
+    printed = capsys.readouterr().out
+    assert "nan" not in printed
+    assert re.search(r"^ *0\.5 +0\.25 +4 +none  \+12\.500", printed, re.M)
+    assert printed.count("+12.500") == 6
+
+
+def test_a_variation_that_makes_no_scene_loses_its_own_trial_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: one offset beyond the supports takes all ovals, offsets and angles with it."""
+    edge = FIRST.with_values({"bodies.1.offset": [1.39, 0.0], "name": "fig3-I"})  # 0.7 m off the axis by all bodies
+    found = trials.amplification_of(edge, MODEL_HIERARCHY[-1], Variation(offset=0.1), 1e-3, np.array(validity.PHASES))
+    assert (found.status, np.isnan(found.mu).all(), found.mu.shape) == (("refused",) * 2, True, (2, 2))
+    assert "would carry nothing at rest" in found.error_message
+    plain = trials.Trial(None, np.ones((2, 2)), np.zeros((2, 2)), ("ok",) * 2, "", 0.0)
+    lost = validity._make_cell(edge, found, plain)
+    [line] = [line for line in assumption_lines(found_of([lost], scene=edge), edge) if line.startswith("refused: ")]
+    assert line.endswith(found.error_message)
 
 
 def test_panels_show_signed_changes_with_errors_and_bands() -> None:

@@ -74,6 +74,40 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     assert (both.seconds, both.step, both.error_message) == (6.0, pytest.approx(0.2), "no")
 
 
+def test_phase_pairs_without_a_reference_solution_take_no_setting_off_the_front() -> None:
+    """Planted: one motion that ends at the rim makes every setting incomplete, and the front empty."""
+    solution = np.array([[2.0, 4.0], [np.nan, np.nan], [2.0, 4.0]])
+    full, gap, nothing = (
+        make_entry(SETTING, SettingResult(mu, 0.1 * mu, 6.0, np.nan), reference_solution)
+        for mu, reference_solution in (
+            (1.1 * solution, solution),
+            (np.where([[False], [False], [True]], np.nan, solution), solution),
+            (solution, np.full((3, 2), np.nan)),
+        )
+    )
+    assert [(each.points, each.answered, each.complete) for each in (full, gap, nothing)] == [
+        (2, 2, True), (2, 1, False), (0, 0, False)
+    ]  # fmt: skip
+    assert full.seconds == 2.0, "over all phase pairs, which it was asked for"
+    assert [each.pareto_front for each in mark_pareto_fronts([full, gap, nothing], 2)] == [
+        (True, True), (False, False), (False, False)
+    ]  # fmt: skip
+    found = analysis._make_solved_question(QUESTIONS[0], SettingResult(solution, 0.01 * solution, 6.0, np.nan), [gap])
+    assert found.checks == ["it answers at 2 of them, its own error estimate is 1e-02 at most"]
+
+
+def test_a_motion_shorter_than_the_warming_one_is_not_lengthened(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: warmed up over 0.2 s, 2e8 of its periods, which no scene may have; the first answer was lost."""
+    fast = SCENE.with_values({"duration": 3e-6, "excitation.periods": [1e-9, 2e-9]})
+    durations = []
+    monkeypatch.setattr(analysis, "_warmed_functions", set())
+    monkeypatch.setattr(analysis, "_call_function", lambda scene, *rest: durations.append(scene.duration))
+    for scene in (fast, SCENE):
+        analysis._warmed_functions.clear()
+        analysis.measure_setting(Measurement(scene, ("a:b", {}), sample_phases(1)))
+    assert durations == [3e-6, 3e-6, 0.2, SCENE.duration]
+
+
 def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> None:
     mu, share = np.array([[1.0, 2.0], [4.0, 5.0], [7.0, 8.0]]), np.array([[0.01, 0.03], [0.02, 0.005], [0.01, 0.01]])
     plain = make_entry(SETTING, SettingResult(mu, mu, 1.0, np.nan), mu)
@@ -247,11 +281,11 @@ def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureF
         ["fig3-I, exact equations: 3 phase pairs"],
         ["reference solution: the reference; it agrees <with itself>"],
         heads,
-        ["other", "5e-01 s", "0.0010", "1e-09", "2e-09", "3e-08", "4e-08"],
-        ["reference, one run", "1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["other", "5e-01 s", "0.001", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["reference, one run", "1e-03", "0.002", "1e-09", "2e-09", "3e-08", "4e-08"],
         ["fig3-I, nothing: 7 phase pairs"],
         ["reference solution: the reference; it fails; so does that"],
-        heads,
+        ["no setting answers at each of these phase pairs"],
     ]
 
 
