@@ -308,6 +308,21 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
     assert pairs_of_call == {*equations, ("multibody:amplification", 1)}
 
 
+def test_a_scene_that_cannot_grow_keeps_what_can_be_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: a ValidationError of one grown scene takes all measurements with it."""
+    ones = SettingResult(np.ones((1, 1)), np.ones((1, 1)), 2.0, np.nan)
+    monkeypatch.setattr(growth, "measure_setting", lambda measurement: ones)
+    monkeypatch.setattr(growth, "QUANTITIES", [replace(each, values=each.values[:2]) for each in QUANTITIES])
+    alone = SCENE.with_values({"bodies": SCENE.model_dump(exclude_none=True)["bodies"][:1]})
+    fast = alone.with_values({"duration": 1e-3, "excitation.periods": [2e-5, 3e-5]})  # at most 20 s
+    found = computed(CostGrowth(fast))
+    known = [[None, None]] * 3 + [[2.0, None]] * 3 + [[2.0, 2.0]]
+    assert [each.seconds for each in found] == known, "no chain of a platform alone, no motion of 30 s"
+    placed = SCENE.with_values({"isolator.ring": None, "isolator.supports": [[2.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]})
+    tall = split_upper_body(placed, 4)
+    assert (tall.isolator.supports, tall.isolator.ring, len(tall.bodies)) == (3, 4.0, 4)
+
+
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
     bodies = make_cost_series("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
     workers = make_cost_series("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
