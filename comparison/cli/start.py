@@ -12,6 +12,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import subprocess
 import sys
 import time
 import warnings
@@ -21,13 +22,22 @@ from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-SCRIPT_NAME = "phase-resonance"  # name of the console script
+SCRIPT_NAME = "phase-resonance"
 # Thresholds of the garbage collector: imported objects stay, and checking them again takes a tenth of a command
 # that only reads stored results.
 COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
-# Environment variables that Numba, NumPy and Matplotlib read as whole numbers, each with its smallest and largest value
+# Whole numbers that Numba, NumPy and Matplotlib read from the environment, with their range; seconds up to year 9999
 ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402_300_799)}
+
+# Variables that Numba hands to its compiler, which knows their values alone, by the argument that takes them
+COMPILER_VARIABLES = {"cpu": "NUMBA_CPU_NAME", "features": "NUMBA_CPU_FEATURES"}
+# Program that asks the compiler about them: it complains on standard error
+COMPILER_QUESTION = """
+import os, llvmlite.binding as binding
+binding.initialize_native_target()
+binding.Target.from_default_triple().create_target_machine({argument}=os.environ["{name}"])
+"""
 
 PACKAGE_FOLDER = Path(__file__).parents[1]  # the folder comparison/
 
@@ -62,7 +72,7 @@ def _read_purpose(package: str) -> str:
 
 
 class Clock(NamedTuple):
-    """Wall time and processor time, s, of this process and its children; running children count only on Linux."""
+    """Wall time and processor time of this process and its children at an instant, s; on Linux also of running ones."""
 
     wall: float
     processor: float
@@ -117,17 +127,25 @@ def run_command(module: str) -> NoReturn:
 
 
 def _refuse_environment() -> None:
-    """End the process with a line for each variable of ENVIRONMENT whose value keeps a library from loading."""
-    is_wrong = False
+    """End the process with one line where a library would fail or complain while it loads, for what it reads."""
     for name, (least, most) in ENVIRONMENT.items():
         text = os.environ.get(name)
         if text is None or (text.isascii() and text.isdigit() and len(text) < 20 and least <= int(text) <= most):
             continue
-        rule = f"must be a whole number from {least} to {most}: correct this environment variable, or remove it"
-        print(f"environment: {name} = {text[:80]!r}: {rule}", file=sys.stderr)
-        is_wrong = True
-    if is_wrong:
-        raise SystemExit(2)
+        _refuse_variable(name, f"must be a whole number from {least} to {most}")
+    for argument, name in COMPILER_VARIABLES.items():
+        if os.environ.get(name):
+            words = [sys.executable, "-c", COMPILER_QUESTION.format(argument=argument, name=name)]
+            said = subprocess.run(words, capture_output=True, text=True, check=False).stderr.strip()
+            if said:
+                _refuse_variable(name, said.splitlines()[-1].partition(" (ignoring")[0])
+
+
+def _refuse_variable(name: str, rule: str) -> NoReturn:
+    """End the process with one line on an environment variable."""
+    value = os.environ[name][:80]
+    print(f"environment: {name} = {value!r}: {rule}: correct this environment variable, or remove it", file=sys.stderr)
+    raise SystemExit(2)
 
 
 def main() -> NoReturn:

@@ -29,7 +29,10 @@ from reference.problem import Amplification, Scene
 STAGE = "trade-off"  # name of the stage of these tasks on the terminal
 SAMPLE_SEED = 20  # seed of the random phase pairs: every run has the same
 WARM_UP_DURATION = 0.2  # s, duration of a motion that loads and compiles a function before it is timed
-TASK_SECONDS = 3.0  # s, rough processor time of one task
+TASK_SECONDS = 3.0  # s, rough work of one task
+# Processor time after which a task is given up, as an explicit method on stiff links is: this multiple of its rough
+# work, and the spare s for compilation
+TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
 OWN_SOLUTION_SECONDS = 0.01  # s, rough cost per phase pair of a setting's own reference solution
 # Methods whose agreement with a reference solution is stated, by the first word of their names
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
@@ -49,7 +52,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class SettingResult:
-    """Values of mu, their error estimates and the processor time of one measurement."""
+    """Values, errors and time that a measurement gave."""
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
@@ -119,10 +122,10 @@ class TradeOff:
     def tasks(self) -> list[Task]:
         """Return the tasks of every function of every scene; each takes about TASK_SECONDS."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
-        return list({task.key: task for task in tasks}.values())  # Settings with the same function share its tasks.
+        return list({task.key: task for task in tasks}.values())  # Two settings may share a function.
 
     def collect(self, results: TaskResults) -> list[trade.MeasuredTrade]:
-        """Return the measured trade-off of each scene, without the facts of the run, which the command adds."""
+        """Return one diagram for each scene, without the facts of the run, which the command adds."""
         return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
@@ -147,11 +150,14 @@ class TradeOff:
         engine = engine_description(function[1]).get("function", "")
         limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}
         limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
-        more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
+        more: dict[str, Any] = {"about": scene, "group": engine}
         return [
-            Task(measure_setting, Measurement(scene, function, chunk), STAGE, each * len(chunk), **more)
+            Task(
+                measure_setting, Measurement(scene, function, chunk), STAGE, rough := each * len(chunk),
+                timeout=limit * size if limit else TIME_LIMIT_RATIO * rough + SPARE_SECONDS, **more,
+            )
             for chunk in chunks
-        ]
+        ]  # fmt: skip
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
         """Return error over cost of every setting for one scene."""
@@ -208,6 +214,7 @@ def _make_solved_question(
     points, answered = len(reference_solution.mu), int(np.isfinite(reference_solution.mu).all(axis=1).sum())
     own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
     own = f"it answers at {answered} of them, {own}" if 0 < answered < points else own
+    own = f"{own}, its tolerance is not met: no smaller error can be told" if (error or 0.0) > tolerance else own
     checks = [own, *_word_agreements(question, entries)]
     return trade.SolvedQuestion(question.key, question.title, points, solution, error, checks)
 

@@ -13,7 +13,7 @@ from known_results import known_trade
 from rich.console import Console
 from scipy.stats import linregress
 
-from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs, trade
+from comparison.evidence.tradeoff import analysis, command, feature, growth, outside, single_runs, trade
 from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, join_results, make_entry, sample_phases
 from comparison.evidence.tradeoff.growth import (
     QUANTITIES,
@@ -190,6 +190,29 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
         faster = "reference:amplification", {"cutoff": each.value, "tolerance": 1e-10}
         assert each.against == (faster if "faster than v_reg" in each.method else None)
     assert len(model_errors) == 2 * 6
+
+
+def test_every_measurement_ends() -> None:
+    """Planted: an explicit method on stiff links computes for hours, and takes every other setting with it."""
+    tasks = analysis.TradeOff([SCENE, SCENE.with_values({"duration": 2000.0})]).tasks()
+    assert {round(task.timeout - 20.0 * task.seconds, 6) for task in tasks} == {60.0}
+    assert max(task.timeout for task in tasks) == 20.0 * 300.0 + 60.0, "300 s for one phase pair of the spatial engine"
+
+
+def test_no_method_is_recommended_beyond_what_its_reference_solution_can_tell() -> None:
+    """Planted: an error of 0 against a solution that is itself known to 200 only."""
+    ones = np.ones((2, 1))
+    solution = SettingResult(ones, 3e-4 * ones, 1.0, np.nan)
+    entry = make_entry(SETTING, SettingResult(ones, 0.1 * ones, 1.0, np.nan), ones)
+    found = analysis._make_solved_question(QUESTIONS[0], solution, [entry])
+    assert found.checks[0].endswith("3e-04 at most, its tolerance is not met: no smaller error can be told")
+    measured = replace(known_trade("fig3-I"), bodies=1, questions=[found], entries=[entry])
+    [answer] = feature.word_fastest_methods(measured)
+    assert answer["text"] == (
+        "for 1e-02 ask one, step 1 (500 ms, no error estimate); for 1e-03 ask one, step 1 (500 ms, no error estimate); "
+        "for 1e-04 not compared, the reference solution has an error of 3e-04; "
+        "for 1e-06 not compared, the reference solution has an error of 3e-04."
+    )
 
 
 LASTED: list[float] = []  # durations of the scenes that `_known` was asked for
