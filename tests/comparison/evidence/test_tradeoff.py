@@ -93,7 +93,7 @@ def test_phase_pairs_without_a_reference_solution_take_no_setting_off_the_front(
         (True, True), (False, False), (False, False)
     ]  # fmt: skip
     found = analysis._make_solved_question(QUESTIONS[0], SettingResult(solution, 0.01 * solution, 6.0, np.nan), [gap])
-    assert found.checks == ["it answers at 2 of them, its own error estimate is 1e-02 at most"]
+    assert found.checks == ["it answers at 2 of them, its own error estimate is 1e-02 at most, its tolerance is not met: no smaller error can be told"]
 
 
 def test_a_motion_shorter_than_the_warming_one_is_not_lengthened(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,7 +127,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
     assert found.checks == [
-        "its own error estimate is 3e-02 at most",
+        "its own error estimate is 3e-02 at most, its tolerance is not met: no smaller error can be told",
         "SciPy Radau (step 1e-06), another method on the same equations, agrees with it to 3e-05 at 95 %",
         "translational engine, one run (step 5e-01), other code from the bodies up, agrees with it to 2e-03 at 95 %",
     ]
@@ -196,7 +196,7 @@ def test_every_measurement_ends() -> None:
     """Planted: an explicit method on stiff links computes for hours, and takes every other setting with it."""
     tasks = analysis.TradeOff([SCENE, SCENE.with_values({"duration": 2000.0})]).tasks()
     assert {round(task.timeout - 20.0 * task.seconds, 6) for task in tasks} == {60.0}
-    assert max(task.timeout for task in tasks) == 20.0 * 300.0 + 60.0, "300 s for one phase pair of the spatial engine"
+    assert max(task.timeout for task in tasks) == 20.0 * 500.0 + 60.0, "500 s of a phase pair at the finest step"
 
 
 def test_no_method_is_recommended_beyond_what_its_reference_solution_can_tell() -> None:
