@@ -49,7 +49,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
     console = make_wide_console()
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
-    about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over {DURATION:g} s of motion"
+    about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over at most {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")
     assumptions = Assumptions(MANY, MORE_PHASES, MORE_SIZES, tuple((key,) for key in DIRECTED))
     study = Study(tuple(scenes), 1, SUFFICIENT_ERROR)
@@ -97,7 +97,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
     limits = [describe_range(each) for each in found.ranges if each.scene == scene.name]
     directions = [describe_direction(scene, each) for each in found.directions if each.scene == scene.name]
-    for line in [*directions, *limits, *assumption_lines(found, scene)]:
+    for line in dict.fromkeys([*directions, *limits, *assumption_lines(found, scene)]):
         console.print(line)
 
 

@@ -149,7 +149,12 @@ def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
         f"mu_{body} {word_difference(size, error) if math.isfinite(size) else 'no value'}"
         for body, (size, error) in enumerate(zip(trial.change, trial.uncertainty), start=1)
     )
-    return f"{what}: {', '.join(changes)}{' (the worst)' if trial.worst else ''}"
+    return f"{what}: {', '.join(changes)}{f' ({_word_worst(trial)})' if trial.worst else ''}"
+
+
+def _word_worst(trial: DirectionTrial) -> str:
+    """Return that a direction is the worst; one without a value is only taken for it."""
+    return "the worst" if np.isfinite(trial.change).all() else "taken for the worst"
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
@@ -164,7 +169,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
         bodies = range(1, len(scene.bodies) + 1)
         changes = "; ".join(describe_change(largest_change(found, first, body, stated)) for body in bodies)
         telling = sum(not trial.no_effect for trial in trials)
-        worst = f", the worst of {telling} directions" if telling else ""
+        worst = "".join(f", {_word_worst(trial)} of {telling} directions" for trial in trials if trial.worst)
         lines.append(f"{describe_variation(scene, first.variation)}{worst}: {changes}")
     return lines
 

@@ -214,7 +214,7 @@ class Validity:
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]
     phases: Annotated[tuple[Phases, ...], "phase pairs (alpha1, alpha2), rad"]
-    duration: Annotated[float, "duration of the motion, s"]
+    duration: Annotated[float, "duration of the motion, s, of the longest scene"]
     cells: Annotated[tuple[AssumptionCell, ...], "one per scene and variation"]
     directions: Annotated[tuple[DirectionTrial, ...], "one per scene, varied quantity and direction tried"]
     ranges: Annotated[tuple[ValidityRange, ...], "what the cells allow to say"]
@@ -266,7 +266,8 @@ class Assumptions(MappedAnalysis[Validity]):
         within = tuple(
             validity for scene in study.scenes for validity in find_validity_ranges(scene, cells, directions)
         )
-        return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, DURATION, tuple(cells), tuple(directions), within)
+        duration = min(DURATION, max(scene.duration for scene in study.scenes))
+        return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, duration, tuple(cells), tuple(directions), within)
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:

@@ -236,6 +236,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
 
     best = [(what, min(others, key=largest)) for what, others in families if others]
     return [
-        f"{each.method} ({each.parameter} {each.value:.0e}), {what}, agrees with it to {largest(each):.0e} at 95 %"
+        f"{each.method} ({each.parameter} {each.value:.0e}), {what}, "
+        f"{'agrees with it to' if largest(each) < 1.0 else 'differs from it by'} {largest(each):.0e} at 95 %"
         for what, each in best
     ]

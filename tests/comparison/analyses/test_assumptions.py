@@ -365,6 +365,11 @@ def test_where_mu_has_no_value_nothing_is_said_to_fail() -> None:
     assert describe_range(turned).endswith("by up to 0.1 rad counterclockwise, no value at 0.2 rad")
     lost = replace(BLIND, no_effect="", change=(nan, 0.2), uncertainty=(nan, nan))
     assert describe_direction(FIRST, lost).endswith(": mu_1 no value, mu_2 +20 %")
+    lost = replace(lost, worst=True)
+    assert describe_direction(FIRST, lost).endswith(": mu_1 no value, mu_2 +20 % (taken for the worst)")
+    uneven = [cell(Variation(), 0.0), cell(lost.variation, nan)]
+    [line] = statements.describe_uneven(found_of(uneven, [lost, replace(lost, worst=False, change=(0.1, 0.2))]), FIRST)
+    assert ", taken for the worst of 2 directions: mu_1: not compared, " in line
 
 
 def test_the_table_has_no_nan_and_every_digit_of_many_bodies(capsys: pytest.CaptureFixture[str]) -> None:
