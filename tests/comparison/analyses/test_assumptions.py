@@ -354,13 +354,14 @@ def test_where_mu_has_no_value_nothing_is_said_to_fail() -> None:
     """Planted: a scene without any value "stays within 1 % at no ring tried"; NaN in the table."""
     nan = math.nan
     rings = [cell(Variation(ring=ring), change) for ring, change in ((2.0, 0.0), (1.0, nan), (0.5, 0.9))]
-    found = found_of([*rings, cell(Variation(height=0.0), nan), cell(Variation(yaw=0.1), 0.0), cell(Variation(yaw=0.2), nan)])
+    others = [cell(Variation(height=0.0), nan), cell(Variation(yaw=0.1), 0.0), cell(Variation(yaw=0.2), nan)]
+    found = found_of([*rings, *others])
     said = {(each.key, each.body): each for each in found.ranges if each.share == 0.01}
     assert describe_range(said["ring", 1]) == "mu_1 stays within 1 % with rings from 2 m, no value at 1 m"
     assert range_cell(said["ring", 1]) == "≥ 2, no value at 1"
     assert describe_range(said["height", 1]) == "mu_1 over the heights: not compared, a phase pair has no value"
     assert range_cell(said["height", 1]) == "not compared"
-    assert said["ring", 2].fails is None and not said["ring", 2].no_value, "mu_2 has values"
+    assert (said["ring", 2].fails, said["ring", 2].no_value) == (None, False), "mu_2 has values"
     turned = replace(said["yaw", 1], holds=0.1, fails=0.2, direction=1.0)
     assert describe_range(turned).endswith("by up to 0.1 rad counterclockwise, no value at 0.2 rad")
     lost = replace(BLIND, no_effect="", change=(nan, 0.2), uncertainty=(nan, nan))
