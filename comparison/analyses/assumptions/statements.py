@@ -8,7 +8,13 @@ from typing import Literal
 import numpy as np
 
 from comparison.analyses.assumptions.trials import CHANGE_LIMITS, DirectionTrial
-from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, list_cells_by_size
+from comparison.analyses.assumptions.validity import (
+    AssumptionCell,
+    Validity,
+    ValidityRange,
+    hides_limit,
+    list_cells_by_size,
+)
 from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UNDER_LOAD, Axis, Variation
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
@@ -37,6 +43,8 @@ class Change:
     def verdict(self) -> str:
         """Return "met", "not met (by ...)" or "not compared": whether the change, error included, is at most SHARE."""
         if self.no_effect or not math.isfinite(self.size + self.error):
+            return "not compared"
+        if hides_limit(abs(self.size), self.error, SHARE):
             return "not compared"
         excess = abs(self.size) + self.error - SHARE
         return "met" if excess <= 0.0 else f"not met (by {percent(excess)})"
@@ -99,8 +107,8 @@ def describe_range(validity: ValidityRange) -> str:
         return f"{name} over {VARIED[validity.key]}: {NO_EFFECT}, which is no evidence ({validity.no_effect})"
     if validity.no_value:
         if validity.holds is None:
-            return f"{name} over {VARIED[validity.key]}: not compared, a phase pair has no value"
-        fails = fails.replace("longer by", "longer at").replace("no longer", "no value")
+            return f"{name} over {VARIED[validity.key]}: not compared, a phase pair has no value that tells"
+        fails = fails.replace("longer by", "longer at").replace("no longer", "not known")
     if validity.holds is None:
         where = none
     else:
@@ -123,7 +131,7 @@ def range_cell(validity: ValidityRange) -> str:
         return NO_EFFECT
     if validity.holds is None:
         return "not compared" if validity.no_value else "no value tried"
-    beyond = "no value at" if validity.no_value else "not"
+    beyond = "not known at" if validity.no_value else "not"
     every = " (all tried)" if validity.fails is None else f", {beyond} {validity.fails:.3g}"
     holds = f"{validity.holds:.3g}"
     return f"{'≥' if validity.key == 'ring' else '≤'} {holds}{every}"

@@ -85,7 +85,7 @@ class ValidityRange:
         None
     )
     no_effect: Annotated[Text, "why symmetry leaves every trial without effect: nothing is shown; else empty"] = ""
-    no_value: Annotated[bool, "whether mu has no value at `fails`, so that nothing is shown there"] = False
+    no_value: Annotated[bool, "whether mu has no value at `fails`, or an error that hides the limit"] = False
 
 
 def find_validity_ranges(
@@ -131,10 +131,16 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
 
 
 def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any, bool]:
-    """Return the last size up to which mu changes by at most `share`, the first that fails, and if it has no value."""
+    """Return the last size up to which mu changes by at most `share`, the first that fails, and if nothing tells."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     fails, cell = line[len(held)] if len(held) < len(line) else (None, None)
-    return next(reversed(held), None), fails, cell is not None and math.isnan(cell.largest(body))
+    untold = cell is not None and hides_limit(cell.largest(body), cell.error_estimate(body), share)
+    return next(reversed(held), None), fails, untold
+
+
+def hides_limit(size: float, error: float, limit: float) -> bool:
+    """Return whether a size is not known, or within an error larger than the limit of being at most the limit."""
+    return not math.isfinite(size + error) or (error > limit and size - error <= limit)
 
 
 @result

@@ -33,6 +33,8 @@ TASK_SECONDS = 3.0  # s, rough work of one task
 # Processor time after which a task is given up, as an explicit method on stiff links is: this multiple of its rough
 # work, and the spare s for compilation
 TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
+# Steps of the clock of a process, s, which is as coarse as this once a time limit was set; that of a thread is not
+CLOCK_STEP = 0.01
 OWN_SOLUTION_SECONDS = 0.01  # s, rough cost per phase pair of a setting's own reference solution
 # Methods whose agreement with a reference solution is stated, by the first word of their names
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
@@ -83,17 +85,28 @@ def measure_setting(measurement: Measurement) -> SettingResult:
 
 def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> SettingResult:
     """Return mu, its error and the processor time of one call; NaN with the message if it raises an error."""
-    nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
+    nothing, step, begin = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, _read_clocks()
     try:
         answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
-        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, word_exception(error))
-    seconds = time.process_time() - clock
+        return SettingResult(nothing, nothing, _measure_since(begin), np.nan, word_exception(error))
+    seconds = _measure_since(begin)
     if isinstance(answer, tuple):
         answer, step = answer
     if isinstance(answer, Amplification):
         return SettingResult(answer.mu, answer.error, seconds, step)
     return SettingResult(np.asarray(answer, dtype=float), nothing, seconds, step)
+
+
+def _read_clocks() -> tuple[float, float]:
+    """Return the processor time, s, of this thread and of the process with all its threads."""
+    return time.thread_time(), time.process_time()
+
+
+def _measure_since(begin: tuple[float, float]) -> float:
+    """Return the processor time since then, s: that of this thread, or of all where others have computed, too."""
+    own, whole = (now - then for now, then in zip(_read_clocks(), begin))
+    return max(own, whole - CLOCK_STEP)
 
 
 def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:

@@ -313,6 +313,8 @@ def test_a_change_says_reading_base_sign_error_and_place() -> None:
         (0.0, 0.0, ONE_PLANE, "not compared"),
         (math.nan, 0.0, "", "not compared"),
         (0.001, math.nan, "", "not compared"),
+        (12.0, 38.0, "", "not compared"),  # Planted: +1200 ± 3800 % is "not met"
+        (-0.5, 0.02, "", "not met (by 51 %)"),  # a large error that leaves no doubt
     ],
 )
 def test_a_verdict_has_three_words(size: float, error: float, reason: str, verdict: str) -> None:
@@ -357,13 +359,19 @@ def test_where_mu_has_no_value_nothing_is_said_to_fail() -> None:
     others = [cell(Variation(height=0.0), nan), cell(Variation(yaw=0.1), 0.0), cell(Variation(yaw=0.2), nan)]
     found = found_of([*rings, *others])
     said = {(each.key, each.body): each for each in found.ranges if each.share == 0.01}
-    assert describe_range(said["ring", 1]) == "mu_1 stays within 1 % with rings from 2 m, no value at 1 m"
-    assert range_cell(said["ring", 1]) == "≥ 2, no value at 1"
-    assert describe_range(said["height", 1]) == "mu_1 over the heights: not compared, a phase pair has no value"
+    assert describe_range(said["ring", 1]) == "mu_1 stays within 1 % with rings from 2 m, not known at 1 m"
+    assert range_cell(said["ring", 1]) == "≥ 2, not known at 1"
+    assert (
+        describe_range(said["height", 1]) == "mu_1 over the heights: not compared, a phase pair has no value that tells"
+    )
     assert range_cell(said["height", 1]) == "not compared"
+    doubtful = validity.find_validity_ranges(
+        FIRST, [cell(Variation(), 0.2, uncertainty=0.3), cell(Variation(ring=0.5), 1.0)]
+    )
+    assert describe_range(doubtful[0]).endswith("not compared, a phase pair has no value that tells")
     assert (said["ring", 2].fails, said["ring", 2].no_value) == (None, False), "mu_2 has values"
     turned = replace(said["yaw", 1], holds=0.1, fails=0.2, direction=1.0)
-    assert describe_range(turned).endswith("by up to 0.1 rad counterclockwise, no value at 0.2 rad")
+    assert describe_range(turned).endswith("by up to 0.1 rad counterclockwise, not known at 0.2 rad")
     lost = replace(BLIND, no_effect="", change=(nan, 0.2), uncertainty=(nan, nan))
     assert describe_direction(FIRST, lost).endswith(": mu_1 no value, mu_2 +20 %")
     lost = replace(lost, worst=True)

@@ -199,6 +199,19 @@ def test_every_measurement_ends() -> None:
     assert max(task.timeout for task in tasks) == 20.0 * 500.0 + 60.0, "500 s of a phase pair at the finest step"
 
 
+def test_a_time_limit_makes_no_cost_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: on Linux the clock of a process with a limit goes in steps of 4 ms, and most settings cost nothing."""
+    for own, whole, expected in ((25e-5, 0.0, 25e-5), (25e-5, 4e-3, 25e-5), (0.5, 8.0, 7.99)):
+        clocks = iter([(1.0, 2.0), (1.0 + own, 2.0 + whole)])
+        monkeypatch.setattr(analysis, "_read_clocks", lambda clocks=clocks: next(clocks))
+        found = analysis._call_function(SCENE, sample_phases(1), f"{__name__}:_known", {"gap": 0.0})
+        assert found.seconds == pytest.approx(expected)
+    monkeypatch.undo()
+    begin = analysis._read_clocks()
+    sum(range(10**5))
+    assert 0.0 < analysis._measure_since(begin) < 10.0
+
+
 def test_no_method_is_recommended_beyond_what_its_reference_solution_can_tell() -> None:
     """Planted: an error of 0 against a solution that is itself known to 200 only."""
     ones = np.ones((2, 1))
