@@ -400,6 +400,9 @@ def test_a_variation_that_makes_no_scene_loses_its_own_trial_alone(monkeypatch: 
     found = trials.amplification_of(edge, MODEL_HIERARCHY[-1], Variation(offset=0.1), 1e-3, np.array(validity.PHASES))
     assert (found.status, np.isnan(found.mu).all(), found.mu.shape) == (("refused",) * 2, True, (2, 2))
     assert "would carry nothing at rest" in found.error_message
+    tall, engines = PLANAR.with_values({"bodies.1.height": 9e5}), (MODEL_HIERARCHY[-2], MODEL_HIERARCHY[-1])
+    [high] = trials.answer_trials((tall, engines, Variation(height=2.0), 1e-3, validity.PHASES, 3)).trials
+    assert high.status == ("refused",) * 2, "also where it is asked whether symmetry hides its effect"
     plain = trials.Trial(None, np.ones((2, 2)), np.zeros((2, 2)), ("ok",) * 2, "", 0.0)
     lost = validity._make_cell(edge, found, plain)
     [line] = [line for line in assumption_lines(found_of([lost], scene=edge), edge) if line.startswith("refused: ")]
