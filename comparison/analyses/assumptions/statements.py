@@ -19,7 +19,7 @@ from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UND
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
-NO_EFFECT = "no effect by symmetry"  # text in place of a change of mu that a symmetry makes zero
+NO_EFFECT = "no effect by symmetry"
 Base = Literal["the translational model", "the stated spatial model"]  # model from whose mu a change is taken
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
@@ -28,7 +28,7 @@ SHARE = CHANGE_LIMITS[0]  # relative change of mu_i above which an assumption co
 
 @dataclass(frozen=True)
 class Change:
-    """Largest change of mu of one body over the phase pairs: signed size, error, reading of (5.1), base model."""
+    """The change of one mu at the phase pair where it is largest: signed size, error, reading and base."""
 
     scene: str
     body: int
@@ -51,12 +51,12 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return the largest change of mu_i over the phase pairs relative to `stated`, or to the translational model."""
+    """Return the largest change of mu_i over the phase pairs, from `stated` or else from the translational model."""
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
         before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
-        if len(before) < len(sizes):  # by symmetry the change is the same at all phase pairs: one was computed
+        if len(before) < len(sizes):  # computed at one phase pair alone: by symmetry it is the same at all
             before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
         sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
         base = STATED
@@ -68,7 +68,7 @@ def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: Ass
 
 
 def describe_change(change: Change) -> str:
-    """Return a phrase: by how much mu_i changes, with error, reading, base model and phase pair."""
+    """Return what changes, by how much with sign and error, in which reading, against what and where."""
     if change.no_effect:
         return f"mu_{change.body}: {NO_EFFECT}"
     if not math.isfinite(change.size):
@@ -80,19 +80,23 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Phrases by varied quantity: mu within the limit at no size; at zero only; up to {holds}; not at {fails}; at all sizes
+# Words, by axis, where the limit holds: not at the first size, {fails}; at zero only; up to {holds}; not at {fails}; at
+# every further size
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
-    "ring": ("at no ring tried, up to {fails:g} m", "", "with rings from {holds:g} m", "no longer at {fails:g} m",
-             "every smaller one tried too"),
-    "height": ("at no heights tried", "at zero heights", "with heights up to {holds:g} times the stated ones",
-               "no longer at {fails:g} times", "the largest tried"),
-    "oval": ("at none of the ovals tried, not even the stated ring", "with the ring as stated",
+    "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
+             "no longer at {fails:g} m", "every smaller one tried too"),
+    "height": ("with heights of {fails:g} times the stated ones", "at zero heights",
+               "with heights up to {holds:g} times the stated ones", "no longer at {fails:g} times",
+               "the largest tried"),
+    "oval": ("with the ring narrowed by {fails:.2g} of its radius along {direction:.0f} degrees",
+             "with the ring as stated",
              "with the ring narrowed by up to {holds:.2g} of its radius along {direction:.0f} degrees",
              "no longer by {fails:.2g}", "the most tried"),
-    "offset": ("at none of the offsets tried, not even the stated ones", "with centers of mass as stated",
+    "offset": ("with centers of mass moved by {fails:.2g} m towards {direction:.0f} degrees",
+               "with centers of mass as stated",
                "with centers of mass moved by up to {holds:.2g} m towards {direction:.0f} degrees",
                "no longer by {fails:.2g} m", "the largest tried"),
-    "yaw": ("at none of the angles tried, not even the stated ones", "with bodies and links as stated",
+    "yaw": ("with bodies and links turned by {fails:.2g} rad {sense}", "with bodies and links as stated",
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
@@ -100,7 +104,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
 
 
 def describe_range(validity: ValidityRange) -> str:
-    """Return a phrase: up to which size of a variation mu_i stays within a share of the translational result."""
+    """Return up to which size mu_i stays within a share of the translational result, or that symmetry hides it."""
     none, zero, holds, fails, every = WORDS[validity.key]
     name = f"mu_{validity.body}"
     if validity.no_effect:
@@ -110,13 +114,14 @@ def describe_range(validity: ValidityRange) -> str:
             return f"{name} over {VARIED[validity.key]}: not compared, a phase pair has no value that tells"
         fails = fails.replace("longer by", "longer at").replace("no longer", "not known")
     if validity.holds is None:
-        where = none
+        verb, where = "leaves", f"already {zero if validity.fails == 0.0 else none}"
     else:
+        verb = "stays within"
         where = f"{zero if validity.holds == 0.0 else holds}, {every if validity.fails is None else fails}"
     place = math.degrees(validity.direction or 0.0)
     sense = "counterclockwise" if (validity.direction or 0.0) > 0.0 else "clockwise"
     values = {**vars(validity), "direction": place, "sense": sense}
-    return f"{name} stays within {100.0 * validity.share:g} % {where.format(**values)}"
+    return f"{name} {verb} {100.0 * validity.share:g} % {where.format(**values)}"
 
 
 VARIED: dict[Axis, str] = {  # what varies along each axis, in words
@@ -126,11 +131,11 @@ VARIED: dict[Axis, str] = {  # what varies along each axis, in words
 
 
 def range_cell(validity: ValidityRange) -> str:
-    """Return the table text of a validity range: last size within the share, first beyond it, or NO_EFFECT."""
+    """Return the table cell of a range: last size within the share and first beyond it, or no effect by symmetry."""
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
-        return "not compared" if validity.no_value else "no value tried"
+        return "not compared" if validity.no_value else f"not {validity.fails:.3g}"
     beyond = "not known at" if validity.no_value else "not"
     every = " (all tried)" if validity.fails is None else f", {beyond} {validity.fails:.3g}"
     holds = f"{validity.holds:.3g}"
@@ -138,7 +143,7 @@ def range_cell(validity: ValidityRange) -> str:
 
 
 def describe_variation(scene: Scene, variation: Variation) -> str:
-    """Return in words how a variation narrows the ring, moves bodies or turns them."""
+    """Return what an uneven variation does to the scene."""
     radius, towards = scene.support_radius or 0.0, f"{math.degrees(variation.direction):.0f} degrees"
     parts = [f"ring narrowed by {variation.oval:.2g} of its radius along {towards}"] if variation.oval else []
     if variation.offset:
@@ -149,7 +154,7 @@ def describe_variation(scene: Scene, variation: Variation) -> str:
 
 
 def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
-    """Return in words by how much a trial in one direction changed every mu_i, or NO_EFFECT."""
+    """Return by how much one trial of a direction changed mu at one phase pair, or that symmetry leaves no effect."""
     what = describe_variation(scene, trial.variation)
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
@@ -183,7 +188,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
-    """Return a line on assumption (iv): how shortening of bars changes mu; none unless both UNDER_LOAD were tried."""
+    """Return a line on assumption (iv): how shortening of the bars changes mu; none without both of UNDER_LOAD."""
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)

@@ -343,12 +343,22 @@ def test_ranges_are_worded_with_direction_and_limit() -> None:
         ("offset", 0.0, 0.025, 0.0, "with centers of mass as stated, no longer by 0.025 m", "≤ 0, not 0.025"),
         ("yaw", 0.1, None, -1.0, "with bodies and links turned by up to 0.1 rad clockwise, the largest tried",
          "≤ 0.1 (all tried)"),
-        ("oval", None, 0.5, 0.0, "at none of the ovals tried, not even the stated ring", "no value tried"),
         ("ring", 2.0, 1.0, None, "with rings from 2 m, no longer at 1 m", "≥ 2, not 1"),
     ):  # fmt: skip
         each = validity.ValidityRange(**given, key=key, holds=holds, fails=fails, direction=direction)  # type: ignore[arg-type]
         assert describe_range(each) == f"mu_1 stays within 1 % {text}"
         assert range_cell(each) == short
+    for key, fails, direction, text, short in (
+        ("oval", 0.5, math.pi, "with the ring narrowed by 0.5 of its radius along 180 degrees", "not 0.5"),
+        ("oval", 0.0, 0.0, "with the ring as stated", "not 0"),
+        ("height", 0.0, None, "at zero heights", "not 0"),
+        ("height", 0.25, None, "with heights of 0.25 times the stated ones", "not 0.25"),
+        ("ring", 8.0, None, "with a ring of 8 m, the largest tried", "not 8"),
+        ("offset", 0.1, 0.0, "with centers of mass moved by 0.1 m towards 0 degrees", "not 0.1"),
+        ("yaw", 0.1, 1.0, "with bodies and links turned by 0.1 rad counterclockwise", "not 0.1"),
+    ):  # Planted: "at none tried" where the first size fails and a later one holds
+        each = validity.ValidityRange(**given, key=key, holds=None, fails=fails, direction=direction)  # type: ignore[arg-type]
+        assert (describe_range(each), range_cell(each)) == (f"mu_1 leaves 1 % already {text}", short)
     assert describe_variation(FIRST, Variation(yaw=-0.2)).endswith("their links turned by -0.2 rad")
 
 
