@@ -22,12 +22,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-SCRIPT_NAME = "phase-resonance"
+SCRIPT_NAME = "phase-resonance"  # name of the console script
 # Thresholds of the garbage collector: imported objects stay, and checking them again takes a tenth of a command
 # that only reads stored results.
 COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
-# Whole numbers that Numba, NumPy and Matplotlib read from the environment, with their range; seconds up to year 9999
+# Environment variables that Numba, NumPy and Matplotlib read as whole numbers, each with its smallest and largest value
 ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402_300_799)}
 
 # Variables that Numba hands to its compiler, which knows their values alone, by the argument that takes them
@@ -72,7 +72,7 @@ def _read_purpose(package: str) -> str:
 
 
 class Clock(NamedTuple):
-    """Wall time and processor time of this process and its children at an instant, s; on Linux also of running ones."""
+    """Wall time and processor time, s, of this process and its children; running children count only on Linux."""
 
     wall: float
     processor: float
@@ -127,25 +127,23 @@ def run_command(module: str) -> NoReturn:
 
 
 def _refuse_environment() -> None:
-    """End the process with one line where a library would fail or complain while it loads, for what it reads."""
+    """End the process with a line for each variable whose value keeps a library or its compiler from working."""
+    wrong = {}
     for name, (least, most) in ENVIRONMENT.items():
         text = os.environ.get(name)
         if text is None or (text.isascii() and text.isdigit() and len(text) < 20 and least <= int(text) <= most):
             continue
-        _refuse_variable(name, f"must be a whole number from {least} to {most}")
+        wrong[name] = f"must be a whole number from {least} to {most}"
     for argument, name in COMPILER_VARIABLES.items():
         if os.environ.get(name):
             words = [sys.executable, "-c", COMPILER_QUESTION.format(argument=argument, name=name)]
-            said = subprocess.run(words, capture_output=True, text=True, check=False).stderr.strip()
-            if said:
-                _refuse_variable(name, said.splitlines()[-1].partition(" (ignoring")[0])
-
-
-def _refuse_variable(name: str, rule: str) -> NoReturn:
-    """End the process with one line on an environment variable."""
-    value = os.environ[name][:80]
-    print(f"environment: {name} = {value!r}: {rule}: correct this environment variable, or remove it", file=sys.stderr)
-    raise SystemExit(2)
+            if said := subprocess.run(words, capture_output=True, text=True, check=False).stderr.strip():
+                wrong[name] = said.splitlines()[-1].partition(" (ignoring")[0]
+    for name, rule in wrong.items():
+        value = f"{os.environ[name][:80]!r}: {rule}"
+        print(f"environment: {name} = {value}: correct this environment variable, or remove it", file=sys.stderr)
+    if wrong:
+        raise SystemExit(2)
 
 
 def main() -> NoReturn:

@@ -19,7 +19,7 @@ from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UND
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
-NO_EFFECT = "no effect by symmetry"
+NO_EFFECT = "no effect by symmetry"  # text in place of a change of mu that a symmetry makes zero
 Base = Literal["the translational model", "the stated spatial model"]  # model from whose mu a change is taken
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
@@ -28,7 +28,7 @@ SHARE = CHANGE_LIMITS[0]  # relative change of mu_i above which an assumption co
 
 @dataclass(frozen=True)
 class Change:
-    """The change of one mu at the phase pair where it is largest: signed size, error, reading and base."""
+    """Largest change of mu of one body over the phase pairs: signed size, error, reading of (5.1), base model."""
 
     scene: str
     body: int
@@ -51,12 +51,12 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return the largest change of mu_i over the phase pairs, from `stated` or else from the translational model."""
+    """Return the largest change of mu_i over the phase pairs relative to `stated`, or to the translational model."""
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
         before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
-        if len(before) < len(sizes):  # computed at one phase pair alone: by symmetry it is the same at all
+        if len(before) < len(sizes):  # by symmetry the change is the same at all phase pairs: one was computed
             before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
         sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
         base = STATED
@@ -68,7 +68,7 @@ def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: Ass
 
 
 def describe_change(change: Change) -> str:
-    """Return what changes, by how much with sign and error, in which reading, against what and where."""
+    """Return a phrase: by how much mu_i changes, with error, reading, base model and phase pair."""
     if change.no_effect:
         return f"mu_{change.body}: {NO_EFFECT}"
     if not math.isfinite(change.size):
@@ -80,8 +80,7 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Words, by axis, where the limit holds: not at the first size, {fails}; at zero only; up to {holds}; not at {fails}; at
-# every further size
+# Phrases by varied quantity: mu beyond the limit at the first size; at zero only; up to {holds}; not at {fails}; at all
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
              "no longer at {fails:g} m", "every smaller one tried too"),
@@ -104,7 +103,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
 
 
 def describe_range(validity: ValidityRange) -> str:
-    """Return up to which size mu_i stays within a share of the translational result, or that symmetry hides it."""
+    """Return a phrase: up to which size of a variation mu_i stays within a share of the translational result."""
     none, zero, holds, fails, every = WORDS[validity.key]
     name = f"mu_{validity.body}"
     if validity.no_effect:
@@ -131,7 +130,7 @@ VARIED: dict[Axis, str] = {  # what varies along each axis, in words
 
 
 def range_cell(validity: ValidityRange) -> str:
-    """Return the table cell of a range: last size within the share and first beyond it, or no effect by symmetry."""
+    """Return the table text of a validity range: last size within the share, first beyond it, or NO_EFFECT."""
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
@@ -143,7 +142,7 @@ def range_cell(validity: ValidityRange) -> str:
 
 
 def describe_variation(scene: Scene, variation: Variation) -> str:
-    """Return what an uneven variation does to the scene."""
+    """Return in words how a variation narrows the ring, moves bodies or turns them."""
     radius, towards = scene.support_radius or 0.0, f"{math.degrees(variation.direction):.0f} degrees"
     parts = [f"ring narrowed by {variation.oval:.2g} of its radius along {towards}"] if variation.oval else []
     if variation.offset:
@@ -154,7 +153,7 @@ def describe_variation(scene: Scene, variation: Variation) -> str:
 
 
 def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
-    """Return by how much one trial of a direction changed mu at one phase pair, or that symmetry leaves no effect."""
+    """Return in words by how much a trial in one direction changed every mu_i, or NO_EFFECT."""
     what = describe_variation(scene, trial.variation)
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
@@ -188,7 +187,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
-    """Return a line on assumption (iv): how shortening of the bars changes mu; none without both of UNDER_LOAD."""
+    """Return a line on assumption (iv): how shortening of bars changes mu; none unless both UNDER_LOAD were tried."""
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)

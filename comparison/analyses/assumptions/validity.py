@@ -39,13 +39,13 @@ from reference.problem.readings import AS_INTEGRATED
 
 # rad; rotation changes mu most at the first phase pair in fig3-I, at the second in fig3-II
 PHASES = ((0.0, 0.0), (2.0, 0.7))
-MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command
+MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
 SIZES, MORE_SIZES = 2, 8  # number of sizes along the worst direction of an assumption: in a study, in the command
 
 
 @result
 class AssumptionCell:
-    """The spatial model of one variation against the translational model, as integrated (v_reg = 1 mm/s)."""
+    """Change of mu from translational to spatial model under a variation, as integrated (v_reg = 1 mm/s)."""
 
     scene: Annotated[Text, "name of the scene"]
     variation: Annotated[Variation, "what is varied"]
@@ -66,13 +66,13 @@ class AssumptionCell:
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:
-        """Return whether mu_i stays within `share` at every phase pair, uncertainty included."""
+        """Return whether mu_i changes by at most `share` at every phase pair, uncertainty included."""
         return self.largest(body) + self.error_estimate(body) <= share
 
 
 @result
 class ValidityRange:
-    """Range of one line of variations in which mu of one body stays within a fraction of the translational result."""
+    """Range of one varied quantity in which mu of one body stays within a share of the translational result."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -145,7 +145,7 @@ def hides_limit(size: float, error: float, limit: float) -> bool:
 
 @result
 class Assumption:
-    """One of the paper's assumptions (i) to (vi)."""
+    """One of the paper's assumptions (i) to (vi), and how far the engine's models drop it."""
 
     number: Annotated[str, "of the paper"]
     statement: Annotated[str, "what the paper assumes"]
@@ -215,7 +215,7 @@ ASSUMPTIONS = (
 
 @result
 class Validity:
-    """Evidence on the paper's assumptions."""
+    """How far the paper's assumptions hold: what was varied, the changes of mu, and the ranges that hold."""
 
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]
@@ -228,7 +228,7 @@ class Validity:
 
 @dataclass(frozen=True)
 class Assumptions(MappedAnalysis[Validity]):
-    """Analysis of the assumptions in the scenes of a study: a few variations, or as many as a command asks for."""
+    """Analysis that tries the paper's assumptions: it varies each scene and computes by how much mu changes."""
 
     key, stage, needs_compiled_reference = "assumptions", "assumptions", False
     function, without_value = staticmethod(answer_trials), staticmethod(without_answer)
@@ -239,7 +239,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
-        Yield what is tried in every scene with phases that has both models of the engine.
+        Yield the arguments of a task for each trial, in every scene with phases that has both models of the engine.
 
         First None, the translational model of the scene itself, then the variations of the spatial one, then groups of
         axes along whose worst direction sizes are tried: one task each. UNDER_LOAD is added where bars give way.
@@ -277,7 +277,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
-    """Return the change of mu by a variation, against `plain` without it; note a symmetry that hides it."""
+    """Return the change of mu by a variation, from `plain` without it, with the symmetry that makes it zero, if any."""
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""

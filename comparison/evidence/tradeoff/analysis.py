@@ -29,7 +29,7 @@ from reference.problem import Amplification, Scene
 STAGE = "trade-off"  # name of the stage of these tasks on the terminal
 SAMPLE_SEED = 20  # seed of the random phase pairs: every run has the same
 WARM_UP_DURATION = 0.2  # s, duration of a motion that loads and compiles a function before it is timed
-TASK_SECONDS = 3.0  # s, rough work of one task
+TASK_SECONDS = 3.0  # s, rough processor time of one task
 # Processor time after which a task is given up, as an explicit method on stiff links is: this multiple of its rough
 # work, and the spare s for compilation
 TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
@@ -54,7 +54,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class SettingResult:
-    """Values, errors and time that a measurement gave."""
+    """Values of mu, their error estimates and the processor time of one measurement."""
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
@@ -135,10 +135,10 @@ class TradeOff:
     def tasks(self) -> list[Task]:
         """Return the tasks of every function of every scene; each takes about TASK_SECONDS."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
-        return list({task.key: task for task in tasks}.values())  # Two settings may share a function.
+        return list({task.key: task for task in tasks}.values())  # Settings with the same function share its tasks.
 
     def collect(self, results: TaskResults) -> list[trade.MeasuredTrade]:
-        """Return one diagram for each scene, without the facts of the run, which the command adds."""
+        """Return the measured trade-off of each scene, without the facts of the run, which the command adds."""
         return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
