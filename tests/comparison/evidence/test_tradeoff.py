@@ -4,12 +4,15 @@ import inspect
 import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 from known_analyses import computed
 from known_results import known_trade
+from places import scene_text
 from rich.console import Console
 from scipy.stats import linregress
 
@@ -387,3 +390,13 @@ def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(calls) == 3 * growth.WORKER_CALLS + 2 * (1 + 2 + 3), (
         "the same work for all, and two calls to warm each up"
     )
+
+
+def test_two_files_of_one_name_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    """Planted: "warm: same name as warm", which tells no file."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").mkdir()
+    for file in ("warm.toml", "a/warm.toml"):
+        (tmp_path / file).write_text(scene_text("fig3-I"))
+    assert command.main(["warm.toml", "a/warm.toml"]) == 2
+    assert capsys.readouterr().err.startswith("a/warm.toml: scene = 'warm': same name as warm.toml, which")
