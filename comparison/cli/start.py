@@ -12,6 +12,7 @@ from __future__ import annotations
 import gc
 import os
 import signal
+import subprocess
 import sys
 import time
 import warnings
@@ -28,6 +29,15 @@ COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
 # Environment variables that Numba, NumPy and Matplotlib read as whole numbers, each with its smallest and largest value
 ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402_300_799)}
+
+# Variables that Numba hands to its compiler, which knows their values alone, by the argument that takes them
+COMPILER_VARIABLES = {"cpu": "NUMBA_CPU_NAME", "features": "NUMBA_CPU_FEATURES"}
+# Program that asks the compiler about them: it complains on standard error
+COMPILER_QUESTION = """
+import os, llvmlite.binding as binding
+binding.initialize_native_target()
+binding.Target.from_default_triple().create_target_machine({argument}=os.environ["{name}"])
+"""
 
 PACKAGE_FOLDER = Path(__file__).parents[1]  # the folder comparison/
 
@@ -117,16 +127,22 @@ def run_command(module: str) -> NoReturn:
 
 
 def _refuse_environment() -> None:
-    """End the process with a line for each variable of ENVIRONMENT whose value keeps a library from loading."""
-    is_wrong = False
+    """End the process with a line for each variable whose value keeps a library or its compiler from working."""
+    wrong = {}
     for name, (least, most) in ENVIRONMENT.items():
         text = os.environ.get(name)
         if text is None or (text.isascii() and text.isdigit() and len(text) < 20 and least <= int(text) <= most):
             continue
-        rule = f"must be a whole number from {least} to {most}: correct this environment variable, or remove it"
-        print(f"environment: {name} = {text[:80]!r}: {rule}", file=sys.stderr)
-        is_wrong = True
-    if is_wrong:
+        wrong[name] = f"must be a whole number from {least} to {most}"
+    for argument, name in COMPILER_VARIABLES.items():
+        if os.environ.get(name):
+            words = [sys.executable, "-c", COMPILER_QUESTION.format(argument=argument, name=name)]
+            if said := subprocess.run(words, capture_output=True, text=True, check=False).stderr.strip():
+                wrong[name] = said.splitlines()[-1].partition(" (ignoring")[0]
+    for name, rule in wrong.items():
+        value = f"{os.environ[name][:80]!r}: {rule}"
+        print(f"environment: {name} = {value}: correct this environment variable, or remove it", file=sys.stderr)
+    if wrong:
         raise SystemExit(2)
 
 

@@ -25,6 +25,8 @@ from reference.problem import Family, Scene
 from reference.support.arguments import name_some
 
 MAX_LISTED_NAMES = 4  # largest number of names of a list that the terminal shows
+# Columns whose cells list a number of every body or several words, and are folded between them
+LISTING_COLUMNS = "change, %", "u_D, %", "median error", "95 %", "uneven", "outcomes"
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
@@ -159,6 +161,6 @@ def make_table(*headings: str) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")
-        whole = heading == "difference" or not words
+        whole = heading == "difference" or not (words or heading in LISTING_COLUMNS)
         table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

@@ -43,7 +43,7 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
     refusal = partial(SceneError, "command line", "--scheduler", address)
     try:
         from distributed import Client
-        from distributed.comm import connect
+        from distributed.core import connect, send_recv
     except ImportError:
         raise refusal("needs Dask: pip install distributed") from None
     for name in ("asyncio", *logging.root.manager.loggerDict):
@@ -51,8 +51,14 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # this program reports the error itself, in one line
 
     async def knock() -> None:
-        """Open and close a connection to the scheduler; raise if none answers."""
-        await (await connect(address, timeout=CONNECT_TIMEOUT)).close()
+        """Open a connection, ask who answers and close it; raise if no scheduler does."""
+        comm = await connect(address, timeout=CONNECT_TIMEOUT)
+        try:
+            answer = await send_recv(comm, op="identity", reply=True)
+        finally:
+            comm.abort()
+        if not (isinstance(answer, dict) and answer.get("type") == "Scheduler"):
+            raise ValueError("what answers is none")
 
     try:
         # A client whose scheduler does not answer would leave threads behind

@@ -49,7 +49,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
     console = make_wide_console()
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
-    about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over {DURATION:g} s of motion"
+    about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over at most {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")
     assumptions = Assumptions(MANY, MORE_PHASES, MORE_SIZES, tuple((key,) for key in DIRECTED))
     study = Study(tuple(scenes), 1, SUFFICIENT_ERROR)
@@ -82,22 +82,22 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
     table = make_table("ring, m", "heights x", "supports", "uneven", "change, %", "u_D, %", "outcomes")
     bodies, radius = range(1, len(scene.bodies) + 1), scene.support_radius or 0.0
     for cell in cells:
-        each = cell.variation
+        varied = cell.variation
         changes = [largest_change(found, cell, body) for body in bodies]
         table.add_row(
-            f"{each.ring * radius:g}",
-            f"{each.height:g}",
-            str(each.supports or scene.isolator.support_count),
-            _word_uneven_variation(each, radius),
-            "  ".join(f"{100.0 * change.size:+.3f}" for change in changes),
-            "  ".join(f"{100.0 * change.error:.3f}" for change in changes),
+            f"{varied.ring * radius:g}",
+            f"{varied.height:g}",
+            str(varied.supports or scene.isolator.support_count),
+            _word_uneven_variation(varied, radius),
+            "  ".join(f"{100.0 * each.size:+.3f}" if math.isfinite(each.size) else "none" for each in changes),
+            "  ".join(f"{100.0 * each.error:.3f}" if math.isfinite(each.error) else "none" for each in changes),
             NO_EFFECT if cell.no_effect else ", ".join(sorted(set(cell.status))),
         )
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
     limits = [describe_range(each) for each in found.ranges if each.scene == scene.name]
     directions = [describe_direction(scene, each) for each in found.directions if each.scene == scene.name]
-    for line in [*directions, *limits, *assumption_lines(found, scene)]:
+    for line in dict.fromkeys([*directions, *limits, *assumption_lines(found, scene)]):
         console.print(line)
 
 

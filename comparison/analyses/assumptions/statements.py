@@ -8,7 +8,13 @@ from typing import Literal
 import numpy as np
 
 from comparison.analyses.assumptions.trials import CHANGE_LIMITS, DirectionTrial
-from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, list_cells_by_size
+from comparison.analyses.assumptions.validity import (
+    AssumptionCell,
+    Validity,
+    ValidityRange,
+    hides_limit,
+    list_cells_by_size,
+)
 from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UNDER_LOAD, Axis, Variation
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
@@ -37,6 +43,8 @@ class Change:
     def verdict(self) -> str:
         """Return "met", "not met (by ...)" or "not compared": whether the change, error included, is at most SHARE."""
         if self.no_effect or not math.isfinite(self.size + self.error):
+            return "not compared"
+        if hides_limit(abs(self.size), self.error, SHARE):
             return "not compared"
         excess = abs(self.size) + self.error - SHARE
         return "met" if excess <= 0.0 else f"not met (by {percent(excess)})"
@@ -72,19 +80,22 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Phrases by varied quantity: mu within the limit at no size; at zero only; up to {holds}; not at {fails}; at all sizes
+# Phrases by varied quantity: mu beyond the limit at the first size; at zero only; up to {holds}; not at {fails}; at all
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
-    "ring": ("at no ring tried, up to {fails:g} m", "", "with rings from {holds:g} m", "no longer at {fails:g} m",
-             "every smaller one tried too"),
-    "height": ("at no heights tried", "at zero heights", "with heights up to {holds:g} times the stated ones",
-               "no longer at {fails:g} times", "the largest tried"),
-    "oval": ("at none of the ovals tried, not even the stated ring", "with the ring as stated",
+    "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
+             "no longer at {fails:g} m", "every smaller one tried too"),
+    "height": ("with heights of {fails:g} times the stated ones", "at zero heights",
+               "with heights up to {holds:g} times the stated ones", "no longer at {fails:g} times",
+               "the largest tried"),
+    "oval": ("with the ring narrowed by {fails:.2g} of its radius along {direction:.0f} degrees",
+             "with the ring as stated",
              "with the ring narrowed by up to {holds:.2g} of its radius along {direction:.0f} degrees",
              "no longer by {fails:.2g}", "the most tried"),
-    "offset": ("at none of the offsets tried, not even the stated ones", "with centers of mass as stated",
+    "offset": ("with centers of mass moved by {fails:.2g} m towards {direction:.0f} degrees",
+               "with centers of mass as stated",
                "with centers of mass moved by up to {holds:.2g} m towards {direction:.0f} degrees",
                "no longer by {fails:.2g} m", "the largest tried"),
-    "yaw": ("at none of the angles tried, not even the stated ones", "with bodies and links as stated",
+    "yaw": ("with bodies and links turned by {fails:.2g} rad {sense}", "with bodies and links as stated",
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
@@ -97,14 +108,19 @@ def describe_range(validity: ValidityRange) -> str:
     name = f"mu_{validity.body}"
     if validity.no_effect:
         return f"{name} over {VARIED[validity.key]}: {NO_EFFECT}, which is no evidence ({validity.no_effect})"
+    if validity.no_value:
+        if validity.holds is None:
+            return f"{name} over {VARIED[validity.key]}: not compared, a phase pair has no value that tells"
+        fails = fails.replace("longer by", "longer at").replace("no longer", "not known")
     if validity.holds is None:
-        where = none
+        verb, where = "leaves", f"already {zero if validity.fails == 0.0 else none}"
     else:
+        verb = "stays within"
         where = f"{zero if validity.holds == 0.0 else holds}, {every if validity.fails is None else fails}"
     place = math.degrees(validity.direction or 0.0)
     sense = "counterclockwise" if (validity.direction or 0.0) > 0.0 else "clockwise"
     values = {**vars(validity), "direction": place, "sense": sense}
-    return f"{name} stays within {100.0 * validity.share:g} % {where.format(**values)}"
+    return f"{name} {verb} {100.0 * validity.share:g} % {where.format(**values)}"
 
 
 VARIED: dict[Axis, str] = {  # what varies along each axis, in words
@@ -118,8 +134,10 @@ def range_cell(validity: ValidityRange) -> str:
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
-        return "no value tried"
-    holds, every = f"{validity.holds:.3g}", " (all tried)" if validity.fails is None else f", not {validity.fails:.3g}"
+        return "not compared" if validity.no_value else f"not {validity.fails:.3g}"
+    beyond = "not known at" if validity.no_value else "not"
+    every = " (all tried)" if validity.fails is None else f", {beyond} {validity.fails:.3g}"
+    holds = f"{validity.holds:.3g}"
     return f"{'≥' if validity.key == 'ring' else '≤'} {holds}{every}"
 
 
@@ -140,10 +158,15 @@ def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
     changes = (
-        f"mu_{body} {word_difference(size, error)}"
+        f"mu_{body} {word_difference(size, error) if math.isfinite(size) else 'no value'}"
         for body, (size, error) in enumerate(zip(trial.change, trial.uncertainty), start=1)
     )
-    return f"{what}: {', '.join(changes)}{' (the worst)' if trial.worst else ''}"
+    return f"{what}: {', '.join(changes)}{f' ({_word_worst(trial)})' if trial.worst else ''}"
+
+
+def _word_worst(trial: DirectionTrial) -> str:
+    """Return that a direction is the worst; one without a value is only taken for it."""
+    return "the worst" if np.isfinite(trial.change).all() else "taken for the worst"
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
@@ -158,7 +181,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
         bodies = range(1, len(scene.bodies) + 1)
         changes = "; ".join(describe_change(largest_change(found, first, body, stated)) for body in bodies)
         telling = sum(not trial.no_effect for trial in trials)
-        worst = f", the worst of {telling} directions" if telling else ""
+        worst = "".join(f", {_word_worst(trial)} of {telling} directions" for trial in trials if trial.worst)
         lines.append(f"{describe_variation(scene, first.variation)}{worst}: {changes}")
     return lines
 
@@ -178,11 +201,13 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
 
 
 def assumption_lines(found: Validity, scene: Scene) -> list[str]:
-    """Return the lines below the plots of a scene: no effect by symmetry, worst directions, bars under load."""
+    """Return the lines below the plots: no effect by symmetry, worst directions, bars under load, lost trials."""
     blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
     lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
-    loaded = [cell for cell in found.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
-    return lines + describe_uneven(found, scene) + describe_shortening(loaded)
+    cells = [cell for cell in found.cells if cell.scene == scene.name]
+    loaded = [cell for cell in cells if cell.variation in UNDER_LOAD]
+    lost = dict.fromkeys(f"{cell.status[0]}: {cell.error_message}" for cell in cells if cell.error_message)
+    return [*lines, *describe_uneven(found, scene), *describe_shortening(loaded), *lost]
 
 
 def list_turning_changes(found: Validity, scene: str) -> list[Change]:

@@ -102,8 +102,16 @@ def answer_trials(task: Arguments) -> TaskTrials:
 def amplification_of(
     scene: Scene, model: Model, variation: Variation | None, tolerance: float, phases: Array, **settings: object
 ) -> Trial:
-    """Return mu of a model for a scene with a variation, or as stated for None; settings replace the model's own."""
-    varied = scene if variation is None else variation.of(scene)
+    """
+    Return mu of a model for a scene with a variation, or as stated for None; settings replace the model's own.
+
+    A variation that makes no valid scene, such as one whose support would carry nothing, has the status "refused".
+    """
+    try:
+        varied = scene if variation is None else variation.of(scene)
+    except SceneError as error:
+        nothing = np.full((len(phases), len(scene.bodies)), np.nan)
+        return Trial(variation, nothing, nothing, ("refused",) * len(phases), str(error), 0.0)
     whole = {"full": True} if body_cannot_tilt(varied) else {}  # no reduction: it would presume assumption (vi)
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
@@ -145,11 +153,8 @@ def follow_direction(
     size: float | None = FIRST_SIZE[key]
     while size is not None and len(tried) < sizes:
         variation = with_size(worst, key, size)
-        try:
-            trial = amplification_of(scene, spatial, variation, tolerance, phases)
-        except SceneError:
-            if not tried:
-                raise
+        trial = amplification_of(scene, spatial, variation, tolerance, phases)
+        if trial.error_message and tried:
             return  # At a larger size a support would carry nothing.
         change, uncertainty = compute_relative_change(trial, plain)
         tried.append((size, (np.abs(change) + uncertainty).max(axis=0)))

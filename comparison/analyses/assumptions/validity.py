@@ -1,6 +1,7 @@
 """The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry."""
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, get_args
@@ -84,6 +85,7 @@ class ValidityRange:
         None
     )
     no_effect: Annotated[Text, "why symmetry leaves every trial without effect: nothing is shown; else empty"] = ""
+    no_value: Annotated[bool, "whether mu has no value at `fails`, or an error that hides the limit"] = False
 
 
 def find_validity_ranges(
@@ -108,8 +110,8 @@ def find_validity_ranges(
         telling = [(value * unit, cell) for value, cell in line if key in DIRECTED or not cell.no_effect]
         direction = direction_of(tried[0].variation, key) if tried and not reason else None
         for body, share in itertools.product(bodies, CHANGE_LIMITS):
-            holds, fails = (None, None) if reason else _bracket_share(telling, body, share)
-            found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason))
+            holds, fails, no_value = (None, None, False) if reason else _bracket_share(telling, body, share)
+            found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason, no_value))
     return found
 
 
@@ -128,10 +130,17 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
     return float(np.sign(variation.yaw)) if key == "yaw" else variation.direction
 
 
-def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
-    """Return the last size up to which mu changes by at most `share`, and the first beyond; None if there is none."""
+def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any, bool]:
+    """Return the last size up to which mu changes by at most `share`, the first that fails, and if nothing tells."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
-    return next(reversed(held), None), next((value for value, _ in line[len(held) :]), None)
+    fails, cell = line[len(held)] if len(held) < len(line) else (None, None)
+    untold = cell is not None and hides_limit(cell.largest(body), cell.error_estimate(body), share)
+    return next(reversed(held), None), fails, untold
+
+
+def hides_limit(size: float, error: float, limit: float) -> bool:
+    """Return whether a size is not known, or within an error larger than the limit of being at most the limit."""
+    return not math.isfinite(size + error) or (error > limit and size - error <= limit)
 
 
 @result
@@ -211,7 +220,7 @@ class Validity:
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]
     phases: Annotated[tuple[Phases, ...], "phase pairs (alpha1, alpha2), rad"]
-    duration: Annotated[float, "duration of the motion, s"]
+    duration: Annotated[float, "duration of the motion, s, of the longest scene"]
     cells: Annotated[tuple[AssumptionCell, ...], "one per scene and variation"]
     directions: Annotated[tuple[DirectionTrial, ...], "one per scene, varied quantity and direction tried"]
     ranges: Annotated[tuple[ValidityRange, ...], "what the cells allow to say"]
@@ -263,7 +272,8 @@ class Assumptions(MappedAnalysis[Validity]):
         within = tuple(
             validity for scene in study.scenes for validity in find_validity_ranges(scene, cells, directions)
         )
-        return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, DURATION, tuple(cells), tuple(directions), within)
+        duration = min(DURATION, max(scene.duration for scene in study.scenes))
+        return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, duration, tuple(cells), tuple(directions), within)
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from comparison.result_types import result
-from reference.problem import Scene
+from reference.problem import Scene, SceneError
 from reference.problem.reductions import (
     has_half_turn_symmetry,
     has_one_axis_per_harmonic,
@@ -125,7 +125,11 @@ def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
         return TURNED_LINK
     if scene.isolator.support_stiffness is not None or scene.dry_friction.depends_on_load:
         return ""  # Unequal loads of the supports tilt the platform or change the friction.
-    return "" if plane_of_symmetry(variation.of(scene)) is None else ONE_PLANE
+    try:
+        varied = variation.of(scene)
+    except SceneError:  # no valid scene, of which the trial says more
+        return ""
+    return "" if plane_of_symmetry(varied) is None else ONE_PLANE
 
 
 def are_turned_links_the_same(scene: Scene) -> bool:

@@ -109,7 +109,8 @@ def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoin
         return MatrixEntry(CellVerdict.FAILED, f"{status}, but no finite number", status)
     share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
     if (error < 0.0).any() or (status == Outcome.OK and share > tolerance * (1.0 + RELATIVE_ROUNDING)):
-        reason = f"{status} with an error estimate of {share:.1e}, asked: {tolerance:g}"
+        claim = f"an error estimate of {share:.1e}, asked: {tolerance:g}" if np.isfinite(share) else "mu = 0"
+        reason = f"{status} with {claim}"
         entry = MatrixEntry(CellVerdict.FAILED, reason, status)
     else:
         entry = _judge_by_finer_runs(status, mu, error, share, known, tolerance) or unconfirmed

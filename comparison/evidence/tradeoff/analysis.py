@@ -30,6 +30,11 @@ STAGE = "trade-off"  # name of the stage of these tasks on the terminal
 SAMPLE_SEED = 20  # seed of the random phase pairs: every run has the same
 WARM_UP_DURATION = 0.2  # s, duration of a motion that loads and compiles a function before it is timed
 TASK_SECONDS = 3.0  # s, rough processor time of one task
+# Processor time after which a task is given up, as an explicit method on stiff links is: this multiple of its rough
+# work, and the spare s for compilation
+TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
+# Steps of the clock of a process, s, which is as coarse as this once a time limit was set; that of a thread is not
+CLOCK_STEP = 0.01
 OWN_SOLUTION_SECONDS = 0.01  # s, rough cost per phase pair of a setting's own reference solution
 # Methods whose agreement with a reference solution is stated, by the first word of their names
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
@@ -73,25 +78,35 @@ def measure_setting(measurement: Measurement) -> SettingResult:
     path, settings = measurement.function
     if path not in _warmed_functions:
         _warmed_functions.add(path)
-        _call_function(
-            measurement.scene.with_values({"duration": WARM_UP_DURATION}), measurement.phases[:1], path, settings
-        )
+        short = measurement.scene.with_values({"duration": min(measurement.scene.duration, WARM_UP_DURATION)})
+        _call_function(short, measurement.phases[:1], path, settings)
     return _call_function(measurement.scene, measurement.phases, path, settings)
 
 
 def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> SettingResult:
     """Return mu, its error and the processor time of one call; NaN with the message if it raises an error."""
-    nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
+    nothing, step, begin = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, _read_clocks()
     try:
         answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
-        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, word_exception(error))
-    seconds = time.process_time() - clock
+        return SettingResult(nothing, nothing, _measure_since(begin), np.nan, word_exception(error))
+    seconds = _measure_since(begin)
     if isinstance(answer, tuple):
         answer, step = answer
     if isinstance(answer, Amplification):
         return SettingResult(answer.mu, answer.error, seconds, step)
     return SettingResult(np.asarray(answer, dtype=float), nothing, seconds, step)
+
+
+def _read_clocks() -> tuple[float, float]:
+    """Return the processor time, s, of this thread and of the process with all its threads."""
+    return time.thread_time(), time.process_time()
+
+
+def _measure_since(begin: tuple[float, float]) -> float:
+    """Return the processor time since then, s: that of this thread, or of all where others have computed, too."""
+    own, whole = (now - then for now, then in zip(_read_clocks(), begin))
+    return max(own, whole - CLOCK_STEP)
 
 
 def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:
@@ -148,11 +163,14 @@ class TradeOff:
         engine = engine_description(function[1]).get("function", "")
         limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}
         limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
-        more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
+        more: dict[str, Any] = {"about": scene, "group": engine}
         return [
-            Task(measure_setting, Measurement(scene, function, chunk), STAGE, each * len(chunk), **more)
+            Task(
+                measure_setting, Measurement(scene, function, chunk), STAGE, rough := each * len(chunk),
+                timeout=limit * size if limit else TIME_LIMIT_RATIO * rough + SPARE_SECONDS, **more,
+            )
             for chunk in chunks
-        ]
+        ]  # fmt: skip
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
         """Return error over cost of every setting for one scene."""
@@ -172,19 +190,22 @@ class TradeOff:
 
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
-    """Return the errors and the time of one setting at M phase pairs, against a reference mu (M, N)."""
+    """
+    Return the errors and the time of one setting at M phase pairs, against a reference mu (M, N).
+
+    Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
+    """
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
-    points = len(measured.mu)
     median, most, estimate = (
         [trade.find_error_quantile(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
     )
     return trade.MeasuredSetting(
         **{field.name: getattr(setting, field.name) for field in fields(trade.StatedSetting)},
-        points=points,
+        points=int(np.isfinite(reference_solution).all(axis=1).sum()),
         answered=int(np.isfinite(error).all(axis=1).sum()),
-        seconds=measured.seconds / points,
+        seconds=measured.seconds / len(measured.mu),
         median=median,
         most=most,
         error_estimate=estimate,
@@ -203,9 +224,12 @@ def _make_solved_question(
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)
     solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
+    points, answered = len(reference_solution.mu), int(np.isfinite(reference_solution.mu).all(axis=1).sum())
     own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
+    own = f"it answers at {answered} of them, {own}" if 0 < answered < points else own
+    own = f"{own}, its tolerance is not met: no smaller error can be told" if (error or 0.0) > tolerance else own
     checks = [own, *_word_agreements(question, entries)]
-    return trade.SolvedQuestion(question.key, question.title, len(reference_solution.mu), solution, error, checks)
+    return trade.SolvedQuestion(question.key, question.title, points, solution, error, checks)
 
 
 def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
@@ -213,7 +237,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
     Return how far the most accurate setting of other methods, else of the same one, agrees with the reference.
     """
     by_engine = question.reference_solution[0].startswith("multibody")
-    candidates = [each for each in entries if each.question == question.key and not each.model_error and each.answered]
+    candidates = [each for each in entries if each.question == question.key and not each.model_error and each.complete]
     families = [(what, [each for each in candidates if each.method.startswith(family)])
                 for family, what in ({} if by_engine else OTHER_METHODS).items()]  # fmt: skip
     if not any(others for _, others in families):
@@ -225,6 +249,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
 
     best = [(what, min(others, key=largest)) for what, others in families if others]
     return [
-        f"{each.method} ({each.parameter} {each.value:.0e}), {what}, agrees with it to {largest(each):.0e} at 95 %"
+        f"{each.method} ({each.parameter} {each.value:.0e}), {what}, "
+        f"{'agrees with it to' if largest(each) < 1.0 else 'differs from it by'} {largest(each):.0e} at 95 %"
         for what, each in best
     ]

@@ -63,8 +63,9 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     options = parser.parse_args(argv)
     read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
-    scenes = [_load_harmonic_scene(name) for name in options.scenes or [DEFAULT_SCENE]]
-    refuse_same_names((scene.name, scene.name) for scene in scenes)
+    names = options.scenes or [DEFAULT_SCENE]
+    scenes = [_load_harmonic_scene(name) for name in names]
+    refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
     out = resolve_destination(options.out)
     _load_trades(out)  # a file that is no trade-off is refused before anything is measured
     written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
@@ -182,5 +183,5 @@ def print_trade(console: Console, trade: SceneTrade) -> None:
             if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
                 value = f"{entry.value:.0e} {entry.unit}".strip()
-                table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)
-        console.print(table)
+                table.add_row(entry.method, value, f"{entry.seconds:.2g}", *sizes)
+        console.print(table if table.row_count else "  no setting answers at each of these phase pairs")

@@ -36,6 +36,10 @@ def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
             listed = [entry for entry in trade.entries_of(question.key) if entry.complete and not entry.model_error]
             able = [entry for entry in listed if all(size is not None and size <= target for size in entry.most)]
             estimated = [entry for entry in able if entry.controlled]
+            if question.error is not None and target < question.error:
+                why = f"the reference solution has an error of {question.error:.0e}"
+                parts.append(f"for {target:.0e} not compared, {why}")
+                continue
             if not able:
                 parts.append(f"for {target:.0e} none")
                 continue

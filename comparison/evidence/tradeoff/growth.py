@@ -16,7 +16,7 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import STUDY_TOLERANCE
-from reference.problem import Scene
+from reference.problem import Scene, SceneError
 
 WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # number of calls shared by the workers, and phase pairs of the equations in each
 
@@ -36,16 +36,22 @@ MAX_WORK = 1e9  # largest number of engine steps: it refuses nothing, because th
 
 
 def split_upper_body(scene: Scene, bodies: int) -> Scene:
-    """Return the scene with its upper body cut into `bodies` - 1 stacked ones, on links of the same period."""
+    """
+    Return the scene with its upper body cut into `bodies` - 1 stacked ones, on links of the same period.
+
+    Raises SceneError for a scene that cannot grow, such as one of a platform alone.
+    """
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
     height = second.get("height", TALL_STOREY_HEIGHT)
     mass = second["mass"] / (bodies - 1)
     above = [{**second, "mass": mass, "height": height + TALL_STOREY_HEIGHT * number} for number in range(bodies - 1)]
-    isolator = {**table["isolator"], "ring": max(table["isolator"].get("ring", 1.0), TALL_STOREY_HEIGHT * bodies)}
+    isolator = {**table["isolator"], "ring": max(scene.support_radius or 1.0, TALL_STOREY_HEIGHT * bodies)}
+    if isinstance(scene.isolator.supports, list):
+        isolator["supports"] = scene.isolator.support_count  # on a ring, which grows with the height
     changed = {"isolator": isolator, "bodies": [first, *above], "duration": TALL_DURATION, "acceptance": {}}
-    return Scene.model_validate(table | changed).with_values(
-        {"excitation.scale": TALL_LOADING_FACTOR * (scene.excitation.scale or 1.0)}
+    return scene.with_values(
+        {**changed, "measured": None, "excitation.scale": TALL_LOADING_FACTOR * (scene.excitation.scale or 1.0)}
     )
 
 
@@ -80,7 +86,7 @@ class CostSeries:
     values: Annotated[Sequence[float], "of the quantity"]
     seconds: Sequence[float | None]
     """processor time of a phase pair, over phase pairs and workers of a call; null above the limit, or without an
-    answer"""
+    answer, or where the scene cannot grow so far"""
     slope: float | None
     """exponent of the larger half of the values before the first null; null for fewer than three"""
     uncertainty: Annotated[float | None, "standard error of the slope"]
@@ -133,20 +139,24 @@ class CostGrowth:
 
     def tasks(self) -> list[Task]:
         """Return one task for every quantity, model and value."""
-        return [task for _, _, tasks in self._series() for task in tasks]
+        return [task for _, _, tasks in self._series() for task in tasks if task is not None]
 
     def collect(self, results: TaskResults) -> list[CostSeries]:
         """Return the cost series in the order of quantities and models."""
         collected = []
         for quantity, model, tasks in self._series():
-            answers = [results.value(task, without_value) for task in tasks]
-            costs = [each.seconds / (1 if quantity.name == PHASE_PAIRS else len(each.mu)) for each in answers]
-            seconds = [cost if np.isfinite(each.mu).all() else float("nan") for cost, each in zip(costs, answers)]
+            answers = [None if task is None else results.value(task, without_value) for task in tasks]
+            seconds = [
+                each.seconds / (1 if quantity.name == PHASE_PAIRS else len(each.mu))
+                if each is not None and np.isfinite(each.mu).all()
+                else float("nan")
+                for each in answers
+            ]
             collected.append(make_cost_series(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
-    def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
-        """Return the tasks by growing quantity and model."""
+    def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task | None]]]:
+        """Return the tasks by growing quantity and model; None for a value that makes no valid scene."""
         return [
             (quantity, model, [self._task(quantity, model, value) for value in quantity.values])
             for quantity in QUANTITIES
@@ -154,12 +164,16 @@ class CostGrowth:
             if model.applies(self.scene)
         ]
 
-    def _task(self, quantity: GrowingQuantity, model: Model, value: float) -> Task:
-        """Return the task that measures the cost of a model at one value of a growing quantity."""
+    def _task(self, quantity: GrowingQuantity, model: Model, value: float) -> Task | None:
+        """Return the task that measures the cost of a model at one value of a quantity; None without a valid scene."""
+        try:
+            grown = quantity.scene(self.scene, value)
+        except SceneError:
+            return None
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(STUDY_TOLERANCE), **work}
         phases = sample_phases(int(value) if quantity.name == PHASE_PAIRS else PHASE_PAIRS_OF_SIDE[model.side])
-        measurement = Measurement(quantity.scene(self.scene, value), (model.amplification, settings), phases)
+        measurement = Measurement(grown, (model.amplification, settings), phases)
         return Task(measure_setting, measurement, "growth", about=self.scene, timeout=MEASUREMENT_TIME_LIMIT)
 
 

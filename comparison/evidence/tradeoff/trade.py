@@ -44,8 +44,8 @@ class StatedSetting:
 class MeasuredSetting(StatedSetting):
     """Setting of a method (its varied parameter at one value) with its measured errors and processor time."""
 
-    points: Annotated[int, "phase pairs asked for"]
-    answered: Annotated[int, "phase pairs with a value"]
+    points: Annotated[int, "phase pairs at which the reference solution has a value"]
+    answered: Annotated[int, "of these, phase pairs with a value"]
     seconds: Annotated[float, "processor time per point, s"]
     median: Annotated[Sequence[float | None], "median relative error of each mu; null without a value"]
     most: Annotated[Sequence[float | None], "relative error of each mu that 95 % of the points meet; null without"]
@@ -56,8 +56,8 @@ class MeasuredSetting(StatedSetting):
 
     @property
     def complete(self) -> bool:
-        """Return whether the setting gives a value at every phase pair."""
-        return self.answered == self.points
+        """Return whether the setting gives a value at every phase pair of the reference solution."""
+        return 0 < self.answered == self.points
 
 
 @result

@@ -10,6 +10,7 @@ import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
 from places import scene_text
+from rich.console import Console
 
 from comparison.analyses.assumptions import command, statements, trials, validity
 from comparison.analyses.assumptions.feature import assumption_panels
@@ -312,6 +313,8 @@ def test_a_change_says_reading_base_sign_error_and_place() -> None:
         (0.0, 0.0, ONE_PLANE, "not compared"),
         (math.nan, 0.0, "", "not compared"),
         (0.001, math.nan, "", "not compared"),
+        (12.0, 38.0, "", "not compared"),  # Planted: +1200 ± 3800 % is "not met"
+        (-0.5, 0.02, "", "not met (by 51 %)"),  # a large error that leaves no doubt
     ],
 )
 def test_a_verdict_has_three_words(size: float, error: float, reason: str, verdict: str) -> None:
@@ -340,13 +343,80 @@ def test_ranges_are_worded_with_direction_and_limit() -> None:
         ("offset", 0.0, 0.025, 0.0, "with centers of mass as stated, no longer by 0.025 m", "≤ 0, not 0.025"),
         ("yaw", 0.1, None, -1.0, "with bodies and links turned by up to 0.1 rad clockwise, the largest tried",
          "≤ 0.1 (all tried)"),
-        ("oval", None, 0.5, 0.0, "at none of the ovals tried, not even the stated ring", "no value tried"),
         ("ring", 2.0, 1.0, None, "with rings from 2 m, no longer at 1 m", "≥ 2, not 1"),
     ):  # fmt: skip
         each = validity.ValidityRange(**given, key=key, holds=holds, fails=fails, direction=direction)  # type: ignore[arg-type]
         assert describe_range(each) == f"mu_1 stays within 1 % {text}"
         assert range_cell(each) == short
+    for key, fails, direction, text, short in (
+        ("oval", 0.5, math.pi, "with the ring narrowed by 0.5 of its radius along 180 degrees", "not 0.5"),
+        ("oval", 0.0, 0.0, "with the ring as stated", "not 0"),
+        ("height", 0.0, None, "at zero heights", "not 0"),
+        ("height", 0.25, None, "with heights of 0.25 times the stated ones", "not 0.25"),
+        ("ring", 8.0, None, "with a ring of 8 m, the largest tried", "not 8"),
+        ("offset", 0.1, 0.0, "with centers of mass moved by 0.1 m towards 0 degrees", "not 0.1"),
+        ("yaw", 0.1, 1.0, "with bodies and links turned by 0.1 rad counterclockwise", "not 0.1"),
+    ):  # Planted: "at none tried" where the first size fails and a later one holds
+        each = validity.ValidityRange(**given, key=key, holds=None, fails=fails, direction=direction)  # type: ignore[arg-type]
+        assert (describe_range(each), range_cell(each)) == (f"mu_1 leaves 1 % already {text}", short)
     assert describe_variation(FIRST, Variation(yaw=-0.2)).endswith("their links turned by -0.2 rad")
+
+
+def test_where_mu_has_no_value_nothing_is_said_to_fail() -> None:
+    """Planted: a scene without any value "stays within 1 % at no ring tried"; NaN in the table."""
+    nan = math.nan
+    rings = [cell(Variation(ring=ring), change) for ring, change in ((2.0, 0.0), (1.0, nan), (0.5, 0.9))]
+    others = [cell(Variation(height=0.0), nan), cell(Variation(yaw=0.1), 0.0), cell(Variation(yaw=0.2), nan)]
+    found = found_of([*rings, *others])
+    said = {(each.key, each.body): each for each in found.ranges if each.share == 0.01}
+    assert describe_range(said["ring", 1]) == "mu_1 stays within 1 % with rings from 2 m, not known at 1 m"
+    assert range_cell(said["ring", 1]) == "≥ 2, not known at 1"
+    assert (
+        describe_range(said["height", 1]) == "mu_1 over the heights: not compared, a phase pair has no value that tells"
+    )
+    assert range_cell(said["height", 1]) == "not compared"
+    doubtful = validity.find_validity_ranges(
+        FIRST, [cell(Variation(), 0.2, uncertainty=0.3), cell(Variation(ring=0.5), 1.0)]
+    )
+    assert describe_range(doubtful[0]).endswith("not compared, a phase pair has no value that tells")
+    assert (said["ring", 2].fails, said["ring", 2].no_value) == (None, False), "mu_2 has values"
+    turned = replace(said["yaw", 1], holds=0.1, fails=0.2, direction=1.0)
+    assert describe_range(turned).endswith("by up to 0.1 rad counterclockwise, not known at 0.2 rad")
+    lost = replace(BLIND, no_effect="", change=(nan, 0.2), uncertainty=(nan, nan))
+    assert describe_direction(FIRST, lost).endswith(": mu_1 no value, mu_2 +20 %")
+    lost = replace(lost, worst=True)
+    assert describe_direction(FIRST, lost).endswith(": mu_1 no value, mu_2 +20 % (taken for the worst)")
+    uneven = [cell(Variation(), 0.0), cell(lost.variation, nan)]
+    [line] = statements.describe_uneven(found_of(uneven, [lost, replace(lost, worst=False, change=(0.1, 0.2))]), FIRST)
+    assert ", taken for the worst of 2 directions: mu_1: not compared, " in line
+
+
+def test_the_table_has_no_nan_and_every_digit_of_many_bodies(capsys: pytest.CaptureFixture[str]) -> None:
+    """Planted: seven numbers in a cell cut the ring's radius, 0.5 m, to "0."."""
+    rows = ((math.nan, *(0.125,) * 6),)
+    wide = AssumptionCell("fig3-I", Variation(ring=0.5, height=0.25), rows, rows, ("ok", "contact lost"))
+    bodies = [*FIRST.model_dump(exclude_none=True)["bodies"], *FIRST.model_dump(exclude_none=True)["bodies"][1:] * 5]
+    tall = FIRST.with_values({"bodies": bodies, "name": "fig3-I"})
+    command._print_assumptions(Console(width=120), tall, found_of([wide], scene=tall))
+    printed = capsys.readouterr().out
+    assert "nan" not in printed
+    assert re.search(r"^ *0\.5 +0\.25 +4 +none  \+12\.500", printed, re.M)
+    assert printed.count("+12.500") == 6
+
+
+def test_a_variation_that_makes_no_scene_loses_its_own_trial_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: one offset beyond the supports takes all ovals, offsets and angles with it."""
+    edge = FIRST.with_values({"bodies.1.offset": [1.39, 0.0], "name": "fig3-I"})  # 0.7 m off the axis by all bodies
+    found = trials.amplification_of(edge, MODEL_HIERARCHY[-1], Variation(offset=0.1), 1e-3, np.array(validity.PHASES))
+    assert (found.status, np.isnan(found.mu).all(), found.mu.shape) == (("refused",) * 2, True, (2, 2))
+    assert "would carry nothing at rest" in found.error_message
+    tall, engines = PLANAR.with_values({"bodies.1.height": 9e5}), (MODEL_HIERARCHY[-2], MODEL_HIERARCHY[-1])
+    [high] = trials.answer_trials((tall, engines, Variation(height=2.0), 1e-3, validity.PHASES, 3)).trials
+    assert high.status == ("refused",) * 2, "also where it is asked whether symmetry hides its effect"
+    plain = trials.Trial(None, np.ones((2, 2)), np.zeros((2, 2)), ("ok",) * 2, "", 0.0)
+    lost = validity._make_cell(edge, found, plain)
+    [line] = [line for line in assumption_lines(found_of([lost], scene=edge), edge) if line.startswith("refused: ")]
+    assert line.endswith(found.error_message)
 
 
 def test_panels_show_signed_changes_with_errors_and_bands() -> None:

@@ -17,6 +17,7 @@ from places import ROOT
 
 import reference
 from comparison.analyses.ensemble import table as ensemble
+from comparison.cli import start
 from comparison.cli.arguments import EndedEarlyError, write_and_show
 from comparison.cli.start import list_commands
 from reference.problem import load_family
@@ -78,6 +79,21 @@ def test_each_wrong_number_in_the_environment_is_one_line(tmp_path: Path, value:
     assert (ended.returncode, len(lines)) == (2, 2)
     for (name, text), least, line in zip(wrong.items(), (1, 0), lines, strict=True):
         assert line.startswith(f"environment: {name} = {text[:80]!r}: must be a whole number from {least}")
+
+
+@pytest.mark.parametrize("name", ["NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"])
+def test_a_processor_that_the_compiler_does_not_know_is_one_line(name: str, monkeypatch: Any, capfd: Any) -> None:
+    """Planted: LLVM's own complaint, once for each compiled function, among the results."""
+    monkeypatch.setenv(name, "+zzz")
+    with pytest.raises(SystemExit, match="2"):
+        start._refuse_environment()
+    line, end, rest = capfd.readouterr().err.partition("\n")
+    assert line.startswith(f"environment: {name} = '+zzz': '+zzz' is not a recognized ")
+    assert line.endswith("for this target: correct this environment variable, or remove it")
+    assert (end, rest) == ("\n", "")
+    monkeypatch.setenv(name, "generic" if name == "NUMBA_CPU_NAME" else "")
+    start._refuse_environment()
+    assert capfd.readouterr().err == ""
 
 
 def test_what_cannot_be_written_is_shown_all_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

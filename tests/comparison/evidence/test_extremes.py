@@ -260,6 +260,13 @@ def test_a_motion_that_leaves_the_model_is_refused() -> None:
     assert verdicts["limit"] == {"step limit", "solver failed"}
 
 
+def test_a_value_of_zero_is_no_infinite_error() -> None:
+    """Planted: "ok with an error estimate of inf" in a sentence."""
+    reply = analysis.ModelAnswer(np.zeros((1, 2)), np.zeros((1, 2)), ("ok",))
+    entry = analysis.judge_answer(reply, [reply], 1e-3, False, ())
+    assert (entry.verdict, entry.reason, entry.error) == (analysis.CellVerdict.FAILED, "ok with mu = 0", None)
+
+
 def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
     reply, known = (
         analysis.ModelAnswer(np.array([[10.0 + off, 1.0 + 0.1 * off]]), np.array([[error, 0.01 * error]]), ("ok",))

@@ -4,16 +4,19 @@ import inspect
 import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 from known_analyses import computed
 from known_results import known_trade
+from places import scene_text
 from rich.console import Console
 from scipy.stats import linregress
 
-from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs, trade
+from comparison.evidence.tradeoff import analysis, command, feature, growth, outside, single_runs, trade
 from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, join_results, make_entry, sample_phases
 from comparison.evidence.tradeoff.growth import (
     QUANTITIES,
@@ -74,6 +77,40 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     assert (both.seconds, both.step, both.error_message) == (6.0, pytest.approx(0.2), "no")
 
 
+def test_phase_pairs_without_a_reference_solution_take_no_setting_off_the_front() -> None:
+    """Planted: one motion that ends at the rim makes every setting incomplete, and the front empty."""
+    solution = np.array([[2.0, 4.0], [np.nan, np.nan], [2.0, 4.0]])
+    full, gap, nothing = (
+        make_entry(SETTING, SettingResult(mu, 0.1 * mu, 6.0, np.nan), reference_solution)
+        for mu, reference_solution in (
+            (1.1 * solution, solution),
+            (np.where([[False], [False], [True]], np.nan, solution), solution),
+            (solution, np.full((3, 2), np.nan)),
+        )
+    )
+    assert [(each.points, each.answered, each.complete) for each in (full, gap, nothing)] == [
+        (2, 2, True), (2, 1, False), (0, 0, False)
+    ]  # fmt: skip
+    assert full.seconds == 2.0, "over all phase pairs, which it was asked for"
+    assert [each.pareto_front for each in mark_pareto_fronts([full, gap, nothing], 2)] == [
+        (True, True), (False, False), (False, False)
+    ]  # fmt: skip
+    found = analysis._make_solved_question(QUESTIONS[0], SettingResult(solution, 0.01 * solution, 6.0, np.nan), [gap])
+    assert found.checks[0].startswith("it answers at 2 of them, its own error estimate is 1e-02 at most")
+
+
+def test_a_motion_shorter_than_the_warming_one_is_not_lengthened(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: warmed up over 0.2 s, 2e8 of its periods, which no scene may have; the first answer was lost."""
+    fast = SCENE.with_values({"duration": 3e-6, "excitation.periods": [1e-9, 2e-9]})
+    durations = []
+    monkeypatch.setattr(analysis, "_warmed_functions", set())
+    monkeypatch.setattr(analysis, "_call_function", lambda scene, *rest: durations.append(scene.duration))
+    for scene in (fast, SCENE):
+        analysis._warmed_functions.clear()
+        analysis.measure_setting(Measurement(scene, ("a:b", {}), sample_phases(1)))
+    assert durations == [3e-6, 3e-6, 0.2, SCENE.duration]
+
+
 def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> None:
     mu, share = np.array([[1.0, 2.0], [4.0, 5.0], [7.0, 8.0]]), np.array([[0.01, 0.03], [0.02, 0.005], [0.01, 0.01]])
     plain = make_entry(SETTING, SettingResult(mu, mu, 1.0, np.nan), mu)
@@ -93,7 +130,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
     assert found.checks == [
-        "its own error estimate is 3e-02 at most",
+        "its own error estimate is 3e-02 at most, its tolerance is not met: no smaller error can be told",
         "SciPy Radau (step 1e-06), another method on the same equations, agrees with it to 3e-05 at 95 %",
         "translational engine, one run (step 5e-01), other code from the bodies up, agrees with it to 2e-03 at 95 %",
     ]
@@ -156,6 +193,44 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
         faster = "reference:amplification", {"cutoff": each.value, "tolerance": 1e-10}
         assert each.against == (faster if "faster than v_reg" in each.method else None)
     assert len(model_errors) == 2 * 6
+
+
+def test_every_measurement_ends() -> None:
+    """Planted: an explicit method on stiff links computes for hours, and takes every other setting with it."""
+    tasks = analysis.TradeOff([SCENE, SCENE.with_values({"duration": 2000.0})]).tasks()
+    assert {round(task.timeout - 20.0 * task.seconds, 6) for task in tasks} == {60.0}
+    assert max(task.timeout for task in tasks) == 20.0 * 500.0 + 60.0, "500 s of a phase pair at the finest step"
+
+
+def test_a_time_limit_makes_no_cost_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: on Linux the clock of a process with a limit goes in steps of 4 ms, and most settings cost nothing."""
+    for own, whole, expected in ((25e-5, 0.0, 25e-5), (25e-5, 4e-3, 25e-5), (0.5, 8.0, 7.99)):
+        clocks = iter([(1.0, 2.0), (1.0 + own, 2.0 + whole)])
+        monkeypatch.setattr(analysis, "_read_clocks", lambda clocks=clocks: next(clocks))
+        found = analysis._call_function(SCENE, sample_phases(1), f"{__name__}:_known", {"gap": 0.0})
+        assert found.seconds == pytest.approx(expected)
+    monkeypatch.undo()
+    begin = analysis._read_clocks()
+    sum(range(10**5))
+    assert 0.0 < analysis._measure_since(begin) < 10.0
+
+
+def test_no_method_is_recommended_beyond_what_its_reference_solution_can_tell() -> None:
+    """Planted: an error of 0 against a solution that is itself known to 200 only."""
+    ones = np.ones((2, 1))
+    solution = SettingResult(ones, 3e-4 * ones, 1.0, np.nan)
+    entry = make_entry(SETTING, SettingResult(ones, 0.1 * ones, 1.0, np.nan), ones)
+    found = analysis._make_solved_question(QUESTIONS[0], solution, [entry])
+    off = replace(entry, method="translational engine", most=(7e4,))
+    assert analysis._word_agreements(QUESTIONS[0], [off])[0].endswith(", differs from it by 7e+04 at 95 %")
+    assert found.checks[0].endswith("3e-04 at most, its tolerance is not met: no smaller error can be told")
+    measured = replace(known_trade("fig3-I"), bodies=1, questions=[found], entries=[entry])
+    [answer] = feature.word_fastest_methods(measured)
+    assert answer["text"] == (
+        "for 1e-02 ask one, step 1 (500 ms, no error estimate); for 1e-03 ask one, step 1 (500 ms, no error estimate); "
+        "for 1e-04 not compared, the reference solution has an error of 3e-04; "
+        "for 1e-06 not compared, the reference solution has an error of 3e-04."
+    )
 
 
 LASTED: list[float] = []  # durations of the scenes that `_known` was asked for
@@ -247,11 +322,11 @@ def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureF
         ["fig3-I, exact equations: 3 phase pairs"],
         ["reference solution: the reference; it agrees <with itself>"],
         heads,
-        ["other", "5e-01 s", "0.0010", "1e-09", "2e-09", "3e-08", "4e-08"],
-        ["reference, one run", "1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["other", "5e-01 s", "0.001", "1e-09", "2e-09", "3e-08", "4e-08"],
+        ["reference, one run", "1e-03", "0.002", "1e-09", "2e-09", "3e-08", "4e-08"],
         ["fig3-I, nothing: 7 phase pairs"],
         ["reference solution: the reference; it fails; so does that"],
-        heads,
+        ["no setting answers at each of these phase pairs"],
     ]
 
 
@@ -272,6 +347,21 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
     assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 36.0])
     equations = [("reference:amplification", count) for count in (16, 4, 18)]
     assert pairs_of_call == {*equations, ("multibody:amplification", 1)}
+
+
+def test_a_scene_that_cannot_grow_keeps_what_can_be_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: a ValidationError of one grown scene takes all measurements with it."""
+    ones = SettingResult(np.ones((1, 1)), np.ones((1, 1)), 2.0, np.nan)
+    monkeypatch.setattr(growth, "measure_setting", lambda measurement: ones)
+    monkeypatch.setattr(growth, "QUANTITIES", [replace(each, values=each.values[:2]) for each in QUANTITIES])
+    alone = SCENE.with_values({"bodies": SCENE.model_dump(exclude_none=True)["bodies"][:1]})
+    fast = alone.with_values({"duration": 1e-3, "excitation.periods": [2e-5, 3e-5]})  # at most 20 s
+    found = computed(CostGrowth(fast))
+    known = [[None, None]] * 3 + [[2.0, None]] * 3 + [[2.0, 2.0]]
+    assert [each.seconds for each in found] == known, "no chain of a platform alone, no motion of 30 s"
+    placed = SCENE.with_values({"isolator.ring": None, "isolator.supports": [[2.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]})
+    tall = split_upper_body(placed, 4)
+    assert (tall.isolator.supports, tall.isolator.ring, len(tall.bodies)) == (3, 4.0, 4)
 
 
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
@@ -300,3 +390,13 @@ def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(calls) == 3 * growth.WORKER_CALLS + 2 * (1 + 2 + 3), (
         "the same work for all, and two calls to warm each up"
     )
+
+
+def test_two_files_of_one_name_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    """Planted: "warm: same name as warm", which tells no file."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").mkdir()
+    for file in ("warm.toml", "a/warm.toml"):
+        (tmp_path / file).write_text(scene_text("fig3-I"))
+    assert command.main(["warm.toml", "a/warm.toml"]) == 2
+    assert capsys.readouterr().err.startswith("a/warm.toml: scene = 'warm': same name as warm.toml, which")

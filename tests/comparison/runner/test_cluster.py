@@ -88,18 +88,28 @@ ANSWERS = {
     "silent": b"",
     "http": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
     "garbage": bytes(range(256)) * 8,
+    "echo": None,  # passes Dask's handshake, which is the same in both directions
 }
 
 
+def echo(connection: socket.socket) -> None:
+    with suppress(OSError):
+        while heard := connection.recv(65536):
+            connection.sendall(heard)
+
+
 @contextmanager
-def serve(answer: bytes) -> Iterator[str]:
-    """Send the answer to every connection and keep it open, for the block; yields the address."""
+def serve(answer: bytes | None) -> Iterator[str]:
+    """Send the answer, or None for what was heard, to every connection and keep it open; yields the address."""
 
     def accept() -> None:
         with suppress(OSError):
             while True:
                 kept.append(server.accept()[0])
-                kept[-1].sendall(answer)
+                if answer is None:
+                    threading.Thread(target=echo, args=(kept[-1],), daemon=True).start()
+                else:
+                    kept[-1].sendall(answer)
 
     kept: list[socket.socket] = []
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -123,6 +133,7 @@ def test_no_scheduler_is_a_wrong_option(
     assert (run.code, run.err.count("\n")) == (2, 1)
     assert run.err.startswith(f"command line: --scheduler = {address!r}: no scheduler answers there: ")
     assert ("silent for 1.5 s" in run.err) is (kind == "silent")
+    assert ("what answers is none" in run.err) is (kind == "echo")
 
 
 def test_a_scheduler_and_a_number_of_processes_exclude_each_other(command: Callable[..., Run]) -> None:
