@@ -215,6 +215,8 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
             assert len(apart) >= 4
             assert apart.min(axis=1).max() < 1e-12
     above, along_y, _ = figure.axes
+    for side, places in zip(figure.axes[1:], scene.support_places.T):
+        assert [line.get_xdata()[0] for line in side.lines[: 2 * len(places) : 2]] == pytest.approx(places), "poles"
     widest = 1.08 * max(np.abs(box[:, :2]).max() for box in corners)
     assert above.get_xlim() == above.get_ylim() == pytest.approx((-widest, widest))
     rings = [patch for patch in above.patches if isinstance(patch, Circle)]

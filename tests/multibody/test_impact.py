@@ -20,7 +20,7 @@ from multibody.integration.openings import BEARING_SETTLING_TIME, Event, Opening
 from multibody.integration.peak import PeakReader
 from multibody.integration.termination import _compute_tilt
 from multibody.models.assembly import assemble
-from multibody.models.depressions import Depressions, rotation_matrices
+from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
 from multibody.models.impact import ImpactLaw
 from multibody.models.state import EngineState
 from multibody.motion import _measure_attitude
@@ -53,6 +53,29 @@ def test_a_rocking_block_slows_down_as_housner_says(grips: bool) -> None:
     # the block now turns about its right edge, or nothing acts along the plate
     along = after[4] * ARM if grips else before[0]
     np.testing.assert_allclose(after[[0, 2]], [along, after[4] * HALF_WIDTH], atol=1e-9)
+
+
+def test_an_oblong_block_that_is_turned_is_hit_as_one_of_exchanged_moments() -> None:
+    inertias, exchanged = np.array([[0.9, 0.4, 0.7]]), np.array([[0.4, 0.9, 0.7]])
+    quarter = np.array([[[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]])
+    before = np.array([0.1, 0.2, -0.5, 0.3, -0.4, 0.1])
+    found = [
+        replace(block(friction=0.3), inertias=moments, axes=axes).solve_impact(np.zeros(6), before, LEFT, RIGHT)[0]
+        for moments, axes in ((inertias, quarter), (exchanged, np.eye(3)[None]), (inertias, np.eye(3)[None]))
+    ]
+    np.testing.assert_allclose(found[0], found[1], atol=1e-12)
+    assert np.abs(found[2] - found[1]).max() > 0.01
+
+
+@pytest.mark.parametrize("underside", [Depressions, FlatUnderside])
+def test_a_platform_that_moves_along_a_normal_opens_its_contact_by_as_much(underside: type[Depressions]) -> None:
+    place = underside(CORNERS, np.array([0.1, -0.2, 0.3]), RADIUS, np.arange(6, 10))
+    coordinates = np.array([0.1, -0.05, 0.02, 0.1, -0.2, 0.3, 0.01, 0.02, -0.01, 0.0])
+    normals, _ = place.contact_normals_and_jacobian(coordinates)
+    for number, normal in enumerate(normals):
+        moved = coordinates + [*(1e-6 * normal), *np.zeros(7)]
+        opened = place.clearance(np.array([coordinates, moved]))[:, number]
+        assert opened[1] - opened[0] == pytest.approx(1e-6, rel=1e-4)
 
 
 def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:

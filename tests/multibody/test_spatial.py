@@ -76,3 +76,15 @@ def test_a_loading_that_is_gone_sets_nothing_rocking() -> None:
     expected = reference.amplification(scene, [(0.3, 1.1)], regularization=1e-3)
     assert result.status[0] == "ok"
     assert result.mu[0] == pytest.approx(expected.mu[0], rel=2e-2)
+
+
+def test_links_of_a_given_start_carry_the_weight_of_all_bodies_above() -> None:
+    """At once every body is accelerated as the plate is, upwards by 0.5 cos(0.3) m/s^2."""
+    above = [{"mass": 2.0, "height": 1.2, "size": [2.0, 1.5, 0.3], "stiffness": [300.0, 200.0]},
+             {"mass": 1.5, "height": 2.3, "size": [1.0, 1.5, 0.3], "stiffness": [200.0, 300.0]}]  # fmt: skip
+    loading = {"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [0.5, 0.0]], "duration": 5e-4}
+    platform = {"mass": 1.0, "height": 0.2, "size": [2.0, 2.0, 0.2]}
+    scene = load_scene("fig3-I").with_values({"bodies": [platform, *above], **loading})
+    start = State(np.zeros((3, 2)), np.zeros((3, 2)))
+    motion = multibody.trajectory(scene, (0.3, 1.0), "spatial", initial=start, tolerance=1e-2)
+    np.testing.assert_allclose(motion.absolute_acceleration[0, :, 2], 0.5 * math.cos(0.3), rtol=1e-4)

@@ -1,5 +1,6 @@
 """Points without an answer are NaN with a status that says why and when; what needs too much work is refused."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -197,3 +198,10 @@ def test_a_refusal_depends_on_the_model_alone(monkeypatch: pytest.MonkeyPatch) -
 @pytest.mark.parametrize("scene", [load_scene("fig3-I"), frame(60.0, 20, 0.02)], ids=["fig3-I", "20 stiff floors"])
 def test_what_is_tried_is_not_refused(scene: Scene) -> None:
     assert [multibody.refusal(scene, model) for model in ("translational", "spatial")] == ["", ""]
+
+
+def test_every_key_that_the_spatial_model_lacks_is_named() -> None:
+    lacks = dict.fromkeys(("isolator.ring", "bodies.0.size", "bodies.1.height", "bodies.1.size"))
+    keys = ", ".join(lacks)
+    with pytest.raises(ValueError, match=re.escape(f"model: 'spatial': fig3-I needs {keys}")):
+        multibody.amplification(load_scene("fig3-I").with_values({**lacks, "name": "fig3-I"}), (0.0, 0.0), "spatial")

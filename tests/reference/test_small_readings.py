@@ -13,6 +13,7 @@ from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
 from reference.problem import State, load_scene
+from reference.solver.contact import stop_arc
 from reference.solver.phases import follow, stopping
 from reference.solver.record import record_stick
 
@@ -107,6 +108,21 @@ def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPat
     work: Any = SimpleNamespace(x=np.zeros((3, 2)), total0=total, best=np.ones(3), angle=0.0)
     assert stopping.update_peaks_by_arc.py_func(SimpleNamespace(small=False), work, None, False)
     assert taken == {0: 9.0, 1: 1.0 + 4.0 + 4.0, 2: 9.0 + 0.25 + 4.0}
+
+
+def test_at_a_stop_the_platform_rises_along_its_sphere_on_top_of_the_ground(monkeypatch: pytest.MonkeyPatch) -> None:
+    radius, place, along, ground = 0.6, np.array([0.3, -0.1]), np.array([1.3, 0.8]), np.array([0.4, -0.7, 2.1])
+    monkeypatch.setattr(stop_arc, "acceleration_along", lambda *rest: (*along, 9.0, 1.0))
+    load = SimpleNamespace(**dict(zip(("px", "py", "ux", "uy", "uz"), (*place, *ground), strict=True)))
+    time = 1e-3
+    height = [radius - math.sqrt(radius**2 - at @ at) for at in (place, place + 0.5 * along * time**2)]
+    rise = ground[2] + 2.0 * (height[1] - height[0]) / time**2
+    for small, vertical in ((False, rise), (True, ground[2])):
+        system: Any = SimpleNamespace(small=small, radius=radius)
+        squared = stop_arc.squared_absolute_acceleration.py_func
+        assert squared(system, load, 0.4, 0.0) == pytest.approx(vertical**2, rel=1e-5)
+        across = float(np.sum((along + ground[:2]) ** 2))
+        assert squared(system, load, 0.4, 1.0) == pytest.approx(across + vertical**2, rel=1e-5)
 
 
 def test_what_steps_miss_of_a_vibration_adds_up_to_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
