@@ -155,6 +155,12 @@ def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, 
     assert choose_magnification(np.array([0.0, -largest]), 0.3) == factor
 
 
+def test_the_help_says_what_a_speed_is(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    assert "seconds of motion per second of film" in " ".join(capsys.readouterr().out.split())
+
+
 def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -> None:
     """Their width is that of a ring of 1 m; centers of mass at one height are drawn apart likewise."""
     for scene in (load_scene(words[0]), load_scene("fig3-I").with_values({"bodies.1.height": 0.2})):

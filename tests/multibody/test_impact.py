@@ -73,7 +73,7 @@ def test_a_platform_that_moves_along_a_normal_opens_its_contact_by_as_much(under
     coordinates = np.array([0.1, -0.05, 0.02, 0.1, -0.2, 0.3, 0.01, 0.02, -0.01, 0.0])
     normals, _ = place.contact_normals_and_jacobian(coordinates)
     for number, normal in enumerate(normals):
-        moved = coordinates + [*(1e-6 * normal), *np.zeros(7)]
+        moved = coordinates + np.append(1e-6 * normal, np.zeros(7))
         opened = place.clearance(np.array([coordinates, moved]))[:, number]
         assert opened[1] - opened[0] == pytest.approx(1e-6, rel=1e-4)
 

@@ -1,6 +1,9 @@
 """Points without an answer are NaN with a status that says why and when; what needs too much work is refused."""
 
 import re
+import runpy
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +18,7 @@ from multibody.integration import refine
 from multibody.integration.constant_step import EngineSolver
 from multibody.integration.level import plan_levels
 from multibody.integration.one_run import PhasePair
+from multibody.models import engine
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, Outcome, Scene, load_scene
 
@@ -205,3 +209,12 @@ def test_every_key_that_the_spatial_model_lacks_is_named() -> None:
     keys = ", ".join(lacks)
     with pytest.raises(ValueError, match=re.escape(f"model: 'spatial': fig3-I needs {keys}")):
         multibody.amplification(load_scene("fig3-I").with_values({**lacks, "name": "fig3-I"}), (0.0, 0.0), "spatial")
+
+
+def test_an_engine_that_cannot_be_loaded_names_the_package_of_the_readme(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "exudyn", None)
+    with pytest.raises(ImportError, match=r"^the engine Exudyn cannot be loaded .*exudyn") as failed:
+        runpy.run_path(str(engine.__file__))
+    package = str(failed.value).partition("it needs the package ")[2].partition(")")[0]
+    installing = (Path(multibody.__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    assert f"and `{package}`)" in installing
