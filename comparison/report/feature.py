@@ -126,4 +126,5 @@ class Feature:
     @property
     def selectable_entry(self) -> Selectable:
         """Return the entry under which a selection knows the feature."""
-        return Selectable(self.key, self.on_request, self.of_the_paper, self.needs)
+        by_command = bool(self.stored) and self.analysis is None
+        return Selectable(self.key, self.on_request, self.of_the_paper, self.needs, by_command)

@@ -15,13 +15,15 @@ class Selectable(NamedTuple):
     An analysis that can be selected by its name.
 
     on_request: whether it is run only where it is named, as it costs more than the surfaces. of_the_paper: whether it
-    concerns the paper's own scenes. needs: name of the analysis below which it is shown, "" for none.
+    concerns the paper's own scenes. needs: name of the analysis below which it is shown, "" for none. by_command:
+    whether a command of its name makes it, and a study only shows what that command left.
     """
 
     name: str
     on_request: bool = False
     of_the_paper: bool = False
     needs: str = ""
+    by_command: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,11 +80,19 @@ def refuse_unknown(names: Iterable[str], analyses: Sequence[Selectable]) -> None
             raise ValueError(f"{name!r} is no analysis; {suggestion}")
 
 
+def refuse_commands(names: Iterable[str], analyses: Sequence[Selectable]) -> None:
+    """Raise ValueError where a study is asked for an analysis that only a command makes."""
+    for name in names:
+        if any(each.by_command for each in analyses if each.name == name):
+            raise ValueError(f"phase-resonance {name} makes it, next to the report; the next run of the study shows it")
+
+
 def _refuse_unknown_in_scene(scene: Scene, analyses: Sequence[Selectable]) -> None:
     """Raise SceneError where a scene names an unknown analysis."""
     for key, listed in scene.analyses:
         try:
             refuse_unknown(listed or (), analyses)
+            refuse_commands((listed or ()) if key == "also" else (), analyses)
         except ValueError as error:
             raise SceneError(scene.name, f"analyses.{key}", listed, str(error)) from None
 
