@@ -417,7 +417,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
 
 
 def _value_and_provenance(found: Any) -> _ComputedQuantity:
-    """Return value, error, reading of (5.1) and law of friction from `found`, which the user's function returned."""
+    """Return a quantity, its error, its reading of (5.1) and its law of friction, as a user's function returns them."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:

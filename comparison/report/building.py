@@ -134,7 +134,7 @@ def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Mode
 
 
 def _record_values(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[RecordValue]:
-    """Return mu under the record, by model and body."""
+    """Return amplification factors mu under the recorded motion, by model and body."""
     listed = []
     for model in models:
         mu, error, status = (

@@ -125,6 +125,6 @@ class Feature:
 
     @property
     def selectable_entry(self) -> Selectable:
-        """Return the entry under which a selection knows the feature."""
+        """Return the name of the feature and the rules by which --only, --skip and --also select it."""
         by_command = bool(self.stored) and self.analysis is None
         return Selectable(self.key, self.on_request, self.of_the_paper, self.needs, by_command)

@@ -31,7 +31,7 @@ def _grids_context(report: Report) -> Mapping[str, Any]:
 
 
 def _costs_context(report: Report) -> Mapping[str, Any]:
-    """Return data for the section's template: whether any scene has a limited travel, and the largest cost."""
+    """Return data for the section's template: whether any scene limits the travel, and the most seconds."""
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
         "limited": any(not math.isnan(model.travel_share) for model in outcomes),

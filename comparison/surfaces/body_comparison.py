@@ -37,7 +37,7 @@ class BodyComparison:
 
     @cached_property
     def effect_pairs(self) -> list[Pair]:
-        """Return a pair for each effect: within the sequence, then outside it, then between the readings."""
+        """Return a pair of models for each effect: successive models, other models, then readings of (5.1)."""
         return effect_pairs_of(self.scene, self.study.hierarchy, self.study.left_out(self.scene))
 
     @cached_property

@@ -153,7 +153,7 @@ class FrictionSprings:
         change: ContactChange | None = None,
     ) -> EngineState:
         """
-        Return the state to continue from after steps from `before`, given accelerations (n,) and rates (K,) of limits.
+        Return the state from which the next step starts; before: earlier state; accelerations (n,); rates (K,).
 
         The velocities of the spheres follow from rest or slip of their contacts, because those that the engine computes
         for massless spheres alternate after every kink. change: begin or end of a slide at this instant.

@@ -92,7 +92,7 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
         return kind
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
-        """Write code that applies the instruction to both operands as rows."""
+        """Write machine code that applies an LLVM instruction to two operands, element by element of their rows."""
         return instruction(builder, *_broadcast_to_rows(builder, numbers, signature.args))
 
     type_callable(operation)(typer)

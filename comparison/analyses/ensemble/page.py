@@ -48,7 +48,7 @@ from reference.problem import GRAVITY
 from reference.records.samples import AXES
 
 Context = Mapping[str, Any]  # variables of a template by name
-ContextReader = Callable[[EnsembleResult, LostParts], Context]  # function that makes the variables of a section
+ContextReader = Callable[[EnsembleResult, LostParts], Context]  # returns the variables of a page section's template
 
 
 def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:

@@ -29,7 +29,7 @@ NOT_OF_ALL_MOTIONS = "–"  # text for a statistic over all motions where some m
 # Demands that are plotted over the height
 PROFILE_QUANTITIES = "acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment"
 PLATFORM_BODY = 1  # number of the body that slides on the isolator
-MAX_BOUND_LETTERS = 8  # Names of bounds of up to so many letters appear below every cell of an envelope.
+MAX_BOUND_LETTERS = 8  # longest name of a bound (lower, upper) that a cell of the envelope can hold
 WORST_COLUMN = 4  # index of the column of the worst value, after mean and fractiles
 
 

@@ -48,7 +48,7 @@ class FamilyResult(Part):
 
 
 def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[FamilyResult] | None:
-    """Return the results of every family of the study; None without any."""
+    """Return the results of every family (scene file in which a key has several values); None without any."""
     statistics = {scene.name: getattr(scene, "demand_statistics", []) for scene in scenes}
     motions, found = findings.found.get("motions") or [], []
     for family in findings.families:

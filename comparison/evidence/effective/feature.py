@@ -1,4 +1,4 @@
-"""Report section of the effective values."""
+"""Report section of radius, friction and mass that a motion of the engine shows, beside those stated."""
 
 from comparison.evidence.effective.analysis import (
     PHASES,

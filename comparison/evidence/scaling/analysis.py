@@ -95,7 +95,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
 
 
 def _name_peak(scene: Scene, supremum: bool) -> str:
-    """Return which peak of the acceleration mu is taken from, in words for the name of a trend."""
+    """Return in words which peak of the acceleration (5.1) takes: supremum, resolved or any."""
     return "peak" if not has_dry_friction(scene) else "supremum" if supremum else "resolved peak"
 
 

@@ -70,7 +70,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _LowerAsPart(LoweringPass):  # type: ignore[misc]
-    """Pass before numba's lowering, after which the code goes into a `_PartLibrary` and counts no references."""
+    """Compiler pass that directs machine code into a `_PartLibrary` and switches off reference counting."""
 
     _name = "as_part"
 

@@ -50,8 +50,8 @@ MAX_FIRST_STEP = 0.57
 CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if the present one had to be shortened
 # Stretched time (near_stop.py) begins where a slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME
 # periods, and the chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
-STOP_WITHIN_STEPS = 1.5  # steps
-STOP_WITHIN_TIME = 0.05  # periods
+STOP_WITHIN_STEPS = 1.5  # steps to the stop of a slide
+STOP_WITHIN_TIME = 0.05  # periods to the stop of a slide
 MAX_CHAIN_ANGLE = 0.5  # rad, phase angle of the chain's fastest vibration until the stop
 # Longest step as a share of the time to the stop: a longer one ends too close to where the direction turns fast
 MAX_WAY_TO_STOP = 0.55
