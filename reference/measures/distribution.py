@@ -97,7 +97,7 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
         """Return the mean of mu with its error."""
         value = float(values[known].mean())
         sampling = max(abs(float(np.nanmean(part)) - value) for part in coarse)
-        error = SAMPLING_FACTOR * sampling + float(errors[known].mean())
+        error = SAMPLING_FACTOR * sampling + float(errors.mean())
         return Estimate(value, error if known.all() else float("nan"))
 
     def estimate_fractile(probability: float) -> Estimate:

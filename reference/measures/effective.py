@@ -76,7 +76,7 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     )
     if scene.lubricated:
         raise ValueError("effective_isolator: a lubricated scene has no dry friction; take one that has")
-    if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
+    if not (amplitude > 0.0).all():
         raise ValueError(f"displacement = {quote(displacement)}: must be lengths in m above 0")
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
     friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # force over weight, also elastic

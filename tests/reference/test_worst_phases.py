@@ -12,6 +12,16 @@ import reference
 from reference import phase_maximum
 from reference.measures import local_search
 from reference.measures.local_maxima import find_local_maxima
+from reference.measures.local_search import (
+    ComputedPhases,
+    LocalSearch,
+    advance_searches,
+    classify_maximum,
+    make_square_nodes,
+    merge_searches,
+    predict_best,
+)
+from reference.measures.local_search import Surface as LocalSurface
 from reference.problem import Amplification, Scene, builtin_scenes, phase_grid
 from reference.problem.symmetry import find_half_turns
 
@@ -62,7 +72,7 @@ def test_a_maximum_in_a_rougher_place_is_climbed_first(monkeypatch: pytest.Monke
     """Of two maxima the lower one stands higher above its neighbors, so that there may be more beside it."""
     surface = np.full((8, 8), 0.5)
     surface[:3, 1:4] = 1.1
-    surface[1, 2], surface[5, 3] = 1.2, 1.15
+    surface[1, 2], surface[5, 3], surface[0, 1] = 1.2, 1.15, np.nan  # which is no fall
     starts = find_local_maxima(surface, scene_with(monkeypatch, level))
     assert starts[:2].tolist() == (phase_grid(8)[[5 * 8 + 3, 1 * 8 + 2]]).tolist()
 
@@ -126,6 +136,29 @@ def test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted(monkeypatch:
     assert all(0.0 <= phase < 2.0 * np.pi for phase in reference.worst_phases(shifted, tolerance=1e-7, **law).phases)
     assert asked[0] == law | {"tolerance": 1e-4}, "the grid"
     assert asked[-1] == law | {"tolerance": 1e-7}
+
+
+def test_searches_merge_move_and_end_by_their_rules(monkeypatch: pytest.MonkeyPatch) -> None:
+    wide, high = LocalSearch(TOP + 0.02, 1.0, 0.0, 0.03, count=2), LocalSearch(TOP, 2.0, 0.0, 0.001, count=3)
+    [kept] = merge_searches([wide, high], np.zeros((1, 2)))
+    assert (kept, kept.count) == (high, 5), "in the square of either"
+    kept.history = [(0.1, 1.0), (0.02, 1.7), (0.002, 1.9), *[(0.002, 2.0)] * 5]
+    assert kept.recent_gain == pytest.approx(0.3), "since it was ten times as wide"
+    kept.half_width, kept.value_range = 0.1, 9.0
+    assert [kept.may_reach(2.0 + far) for far in (2.9, 3.1)] == [True, False], "ten times what six rounds gained"
+    points = ComputedPhases(np.stack([TOP, TOP + 1.0]), np.array([1.0, 3.0]), np.ones(2), np.array([0.1, 0.2]))
+    kept.move_to_best(points)
+    assert (kept.phases.tolist(), kept.value, kept.error) == ((TOP + 1.0).tolist(), 3.0, 0.2)
+    spike = scene_with(monkeypatch, lambda phases: np.where((phases == TOP).all(axis=1), 2.0, 1.0))
+    surface, top = LocalSurface(spike, phase_maximum.amplification, {}, 0), LocalSearch(TOP, 2.0, 0.0, 0.1)
+    assert classify_maximum(surface, top)[0] == "kink", "no side of it is high"
+    square = surface.compute(TOP + 0.1 * make_square_nodes(3)[0])
+    square.numerator[0] = np.nan  # taken for the lowest, not for the highest
+    assert np.allclose(predict_best(surface, top, square)[0], TOP, atol=0.02)
+    flat = scene_with(monkeypatch, lambda phases: np.full(len(phases), 1.0 if len(phases) > 1 else 0.5))
+    missed = LocalSearch(TOP, 1.0, 0.1, 0.1)
+    advance_searches(LocalSurface(flat, phase_maximum.amplification, {}, 0), [missed])
+    assert missed.half_width > 0.0, "the values are alike, and the prediction failed"
 
 
 def test_a_wrong_argument_and_a_record_are_refused_in_one_line() -> None:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from reference.measures.distribution import FRACTILES, phase_distribution
+from reference.measures.demand_reader import Estimate
+from reference.measures.distribution import FRACTILES, fractile, phase_distribution
 
 Array = NDArray[np.float64]
 
@@ -20,8 +21,8 @@ def test_the_distribution_of_a_cosine_is_the_closed_form() -> None:
         mu = on_grid(points, lambda first, second: 2.0 + np.cos(first + 0.3) + 0.0 * second)
         distribution = phase_distribution(mu, np.zeros_like(mu))
         assert abs(distribution.mean.value - 2.0) <= distribution.mean.error + 1e-12
-        for probability, fractile in zip(FRACTILES, distribution.fractiles):
-            assert abs(fractile.value - (2.0 + np.cos(np.pi * (1.0 - probability)))) <= fractile.error + 1e-12
+        for probability, found in zip(FRACTILES, distribution.fractiles):
+            assert abs(found.value - (2.0 + np.cos(np.pi * (1.0 - probability)))) <= found.error + 1e-12
 
 
 def folded(first: Array, second: Array) -> Array:
@@ -37,9 +38,14 @@ def test_errors_of_mu_widen_every_number() -> None:
     assert all(wide.error == pytest.approx(narrow.error + 0.1) for narrow, wide in pairs)
     steps = np.arange(576.0).reshape(24, 24)
     uncertain = phase_distribution(steps, np.where(steps < 300.0, 0.0, 290.0))  # the larger half may be far below
-    for probability, fractile in zip(FRACTILES, uncertain.fractiles):
-        below = fractile.value - np.quantile(np.where(steps < 300.0, steps, steps - 290.0), probability, method="hazen")
-        assert fractile.error >= below
+    for probability, found in zip(FRACTILES, uncertain.fractiles):
+        below = found.value - np.quantile(np.where(steps < 300.0, steps, steps - 290.0), probability, method="hazen")
+        assert found.error >= below
+    assert uncertain.mean.error - phase_distribution(steps, 0.0 * steps).mean.error == pytest.approx(290.0 * 276 / 576)
+    spike = np.zeros((4, 4))
+    spike[1, 3] = 16.0  # three of the four coarser grids have a mean of 0, the fourth one of 4
+    assert phase_distribution(spike, 0.0 * spike).mean == Estimate(1.0, 2.0 * 3.0)
+    assert {fractile([0.1] * 7, probability) for probability in FRACTILES} == {0.1}
 
 
 def test_unknown_values_widen_the_fractiles_that_they_can_reach() -> None:
@@ -51,7 +57,7 @@ def test_unknown_values_widen_the_fractiles_that_they_can_reach() -> None:
     assert (distribution.points, distribution.unknown) == (576, pytest.approx(40 / 576))
     assert np.isnan(distribution.mean.error)
     assert np.isnan(distribution.fractiles[-1].error)  # 95 % may be anything
-    for known, fractile in zip(complete.fractiles[1:-1], distribution.fractiles[1:-1]):
-        assert abs(fractile.value - known.value) <= fractile.error
+    for known, found in zip(complete.fractiles[1:-1], distribution.fractiles[1:-1]):
+        assert abs(found.value - known.value) <= found.error
     with pytest.raises(ValueError, match="finite value"):
         phase_distribution(np.full((4, 4), np.nan), np.full((4, 4), np.nan))

@@ -26,6 +26,15 @@ def test_effective_isolator_has_the_energy_of_the_loop():
         assert isolator.damping[index] == pytest.approx(energy / (2 * np.pi * stiffness * largest**2), rel=1e-3)
 
 
+def test_friction_that_yields_is_elastic_up_to_there():
+    yielding = SCENE.with_values({"isolator.friction.yield_displacement": 0.03})  # 0.09 W at 0.03 m, 0.06 W at 0.02 m
+    isolator = reference.effective_isolator(yielding, [0.01, 0.05])
+    assert isolator.stiffness == pytest.approx(WEIGHT * (0.5 + np.array([3.0, 1.2])))
+    loss = 4.0 * 0.06 * WEIGHT * (0.05 - 0.02)
+    assert isolator.damping == pytest.approx([0.0, loss / (2.0 * np.pi * WEIGHT * 1.7 * 0.05**2)])
+    assert isolator.restoring == pytest.approx(np.array([0.01, 0.05]) / (2.0 * 0.06))
+
+
 def test_platform_left_below_restoring_one_stays():
     for share, stays in ((0.9, True), (1.1, False)):
         still = SCENE.with_values({"isolator": {"radius": 2.0, "friction": 0.06}}).with_amplitude(1e-9)
@@ -39,6 +48,6 @@ def test_platform_left_below_restoring_one_stays():
 
 
 def test_effective_isolator_refuses_no_displacement_and_lubrication():
-    for wrong in (0.0, -0.1, float("nan"), [0.1, float("inf")]):
+    for wrong in (0.0, -0.1, float("nan"), [0.1, float("inf")], [0.1, 0.0]):
         assert "must be lengths in m above 0" in str(refusal(reference.effective_isolator, SCENE, wrong))
     assert "no dry friction" in str(refusal(reference.effective_isolator, reference.load_scene("fig4-viscous"), 0.1))
