@@ -12,10 +12,11 @@ from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silen
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import PeakReader
 from multibody.integration.refine import MAX_WORK, WORK_RANGE, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
-from reference.problem import Accuracy, Scene, State, Trajectory, ground_acceleration
+from reference.problem import Accuracy, Outcome, Scene, State, Trajectory, ground_acceleration, ground_peak
 from reference.problem.phases import check_phase
 from reference.problem.ranges import TOLERANCE_RANGE, check_state
 from reference.problem.readings import describe_law
@@ -88,12 +89,14 @@ def trajectory(
     checked = check_phase(phase)
     tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
-    initial = _check_initial(scene, initial)
+    initial, law = _check_initial(scene, initial), describe_law(scene, regularization)
     with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
         pair = PhasePair(scene, built, checked, initial)
+        if not np.isfinite(ground_peak(scene, [checked])[0]):
+            no_run = EngineRun(PeakReader(len(built.bodies), built.corner), 0.0)
+            return replace(_make_trajectory(pair, no_run, Outcome.NON_FINITE_LOAD, 0.0), law=law)
         point = refine(pair, tolerance, keep=True, max_work=max_work)
-    law = describe_law(scene, regularization)
     motion = replace(_make_trajectory(pair, point.finest, point.outcome, point.instant), law=law)
     if not point.coarser:
         return motion

@@ -3,6 +3,7 @@
 import copy
 import pickle
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,7 +119,7 @@ def test_the_stops_are_the_rests_after_the_first_slip() -> None:
     assert demands(motion).residual.value == pytest.approx(np.hypot(*motion.position[-1, 0, :2]), rel=1e-12)
 
 
-def shaken_then_still(**isolator: float) -> Scene:
+def shaken_then_still(**isolator: Any) -> Scene:
     """One body, 2 s of a decaying sweep along both axes, then 60 s of a ground at rest."""
     time = np.append(np.arange(0.0, 2.0, 0.02), [2.0, 62.0])
     decay = np.where(time < 2.0, np.exp(-time), 0.0)
@@ -152,11 +153,12 @@ def test_a_residual_after_creep_is_that_of_coulomb_friction() -> None:
     ("isolator", "duration", "reason"),
     [
         ({"friction": 0.05}, 1.0, "moving at the end: take a longer duration"),
+        ({"friction": {"slow": 0.05, "yield_displacement": 1e-4}}, 1.0, "moving at the end: take a longer duration"),
         ({"friction": 0.0}, 62.0, "never at rest: no dry friction"),
         ({"lubrication": 0.5}, 62.0, "never at rest: no dry friction"),
     ],
 )
-def test_a_residual_that_is_none_says_why(isolator: dict[str, float], duration: float, reason: str) -> None:
+def test_a_residual_that_is_none_says_why(isolator: dict[str, Any], duration: float, reason: str) -> None:
     scene = shaken_then_still(**isolator).with_values({"duration": duration})
     motion = reference.trajectory(scene, PHASE)
     answer = demands(motion)
@@ -198,14 +200,15 @@ def held(place: float, force: float, rests: int, accuracy: Accuracy | None = Non
 
 
 def test_creep_that_coarser_samples_miss_is_in_the_error_of_a_residual() -> None:
-    """One sample of the only rest is 0.03 m away: every fifth sample misses it in four of five ways."""
-    motion = held(1.0, 12.0, 1)
+    """Samples of two rests are 0.01 and 0.02 m away: every fifth sample misses both in four of five ways."""
+    motion, alike = held(1.0, 12.0, 4), Accuracy(np.zeros(2), (), (), 0.0)
     position = motion.position.copy()
-    position[75, 0, 0] += 0.03
-    motion = replace(motion, position=position)
-    alike = replace(motion, accuracy=Accuracy(np.zeros(2), (motion,), (1.0,), 0.0))
-    residual = demands(alike).residual
+    position[[20, 95], 0, 0] += 0.01, 0.02
+    residual = demands(replace(motion, position=position, accuracy=alike)).residual
     assert (residual.value, residual.error) == pytest.approx((1.0, 0.03 + 0.03))
+    position[:98] += 0.5  # a rest of three samples: two of five ways to take every fifth one do not see it
+    late = replace(motion, position=position, stick=[(motion.time[98], motion.time[-1])], accuracy=alike)
+    assert (demands(late).residual.value, demands(late).residual.error) == (1.0, 0.0)
 
 
 def test_the_error_of_every_demand_is_what_the_samples_and_the_other_runs_say() -> None:

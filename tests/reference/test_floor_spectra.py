@@ -62,10 +62,12 @@ def test_the_error_of_a_spectrum_counts_the_other_runs() -> None:
     larger = replace(motion, absolute_acceleration=1.1 * motion.absolute_acceleration)
     alone, beside = (
         reference.floor_spectra(replace(motion, accuracy=Accuracy(np.zeros(1), others, shares, 0.01)), [0.3, 0.9])
-        for others, shares in (((), ()), ((larger,), (0.5,)))
+        for others, shares in (((), ()), ((larger, motion, larger), (0.3, 0.5, 0.2)))
     )
     np.testing.assert_allclose((beside.error - alone.error)[:, 0], 0.05 * alone.acceleration[:, 0], rtol=1e-9)
     exact = replace(motion, accuracy=Accuracy(np.zeros(1), (), (), 0.0))
+    rising = np.zeros((101, 1, 3)) + motion.time[:, None, None]  # which every third sample has too, with both ends
+    assert reference.floor_spectra(replace(exact, absolute_acceleration=rising), [0.3]).error.max() < 1e-9
     rounded = alone.error - reference.floor_spectra(exact, [0.3, 0.9]).error
     np.testing.assert_allclose(rounded, 0.01 * alone.acceleration, rtol=1e-9)
 

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from chains import chain, made_up
 from oracle_law import Law
 from scipy.integrate import solve_ivp
 
 import multibody
 import reference
 from reference.measures import Estimate, demands
+from reference.measures.peak_demands import demands_of_motions
 from reference.problem import phase_grid
 
 V_REG = 1e-3
@@ -94,3 +96,9 @@ def test_a_pair_without_an_answer_is_nan_and_costs_no_other() -> None:
     for estimates in surface.values():
         assert np.isnan(estimates.value[lost]).all()
     assert np.isfinite(surface.instant[lost]).all()
+    scene = chain(amplitudes=[[1.3e154, 1.3e154], [0.0, 0.0]], duration=0.2)  # its square is finite out of phase
+    alone = demands_of_motions(
+        scene, [(0.0, 0.0), (0.0, np.pi)], lambda phase: made_up(scene, np.arange(3.0) + phase[1])
+    )
+    assert (alone.status.tolist(), alone["stops"].value[1]) == (["non-finite load", "ok"], 0.0)
+    assert (multibody.trajectory(scene, (0.0, 0.0)).status, len(alone["stops"].value)) == ("non-finite load", 2)

@@ -74,6 +74,8 @@ def test_ground_peak_is_the_maximum_of_dense_samples(duration, decay):
 
 def test_the_loading_changes_within_the_shorter_period_whichever_it_is():
     assert [loading_period(chain(periods=periods)) for periods in ((0.7, 1.1), (1.1, 0.7))] == [0.7, 0.7]
+    at_rest = {"record": {"time": [0.0, 0.5], "acceleration": [0.0, 0.0]}}
+    assert loading_period(chain(duration=3.0).with_values({"excitation": at_rest})) == 3.0
 
 
 @pytest.mark.parametrize("count", [1, 3])

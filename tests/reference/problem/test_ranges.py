@@ -158,6 +158,7 @@ STILL, FAST, FAR = np.zeros((2, 2)), np.array([[0.0, 2e9], [0.0, 0.0]]), np.arra
         (reference.State(np.ma.masked_array(STILL, mask=True), STILL), "initial: has masked entries"),
         (reference.State("here", STILL), "initial = 'here': must be numbers"),  # type: ignore[arg-type]
         (reference.State(STILL[:1], STILL), "initial: must have finite position and velocity of shape (2, 2)"),
+        (reference.State(STILL, STILL[:1]), "initial: must have finite position and velocity of shape (2, 2)"),
         (reference.State(STILL + 0.2, STILL), "initial: the platform must start inside the rim (4.1), rho = 0.24849 m"),
         (reference.State(FAR, STILL), "initial: -2e+12: must be finite, from -1e+12 to 1e+12 m"),
         (reference.State(STILL, FAST), "initial: 2e+09: must be finite, from -1e+09 to 1e+09 m/s"),

@@ -13,6 +13,7 @@ from reference.problem import Scene, load_scene
 from reference.problem.reductions import (
     Reduction,
     body_cannot_tilt,
+    bound_fastest_rate,
     find_unused_harmonics,
     has_half_turn_symmetry,
     has_no_friction_law,
@@ -21,6 +22,7 @@ from reference.problem.reductions import (
     is_linear,
     is_mirror_symmetric,
     is_planar,
+    turn_loading_to_x,
 )
 from reference.problem.symmetry import complete_surface
 
@@ -110,7 +112,12 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     ),
     (is_planar, upon({"period": [1.5, 1.5 + 1e-9]}), False, "loading across links that are not equally stiff"),
     (is_planar, {**ALIKE, "bodies.1.damping": 0.1}, True, "(4.7): one direction of loading"),
-    (is_planar, upon({"period": [1.5, 1.5], "damping": [0.1, 0.2]}), False, "loading across links that are not equally damped"),
+    (
+        is_planar,
+        upon({"period": [1.5, 1.5], "damping": [0.1, 0.2]}),
+        False,
+        "loading across links that are not equally damped",
+    ),
     (has_planar_chain, {**ALONG_X, "bodies": [{"mass": 1.0}]}, False, "one body"),
     (is_linear, SMOOTH, True, "no friction, no vertical loading"),
     (is_linear, {}, False, "dry friction"),
@@ -123,7 +130,12 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     (has_half_turn_symmetry, {}, True, "no vertical loading"),
     (has_one_axis_per_harmonic, UPRIGHT, False, "vertical loading"),
     (has_one_axis_per_harmonic, TWICE_SHAKEN, True, "each harmonic has its own axis"),
-    (has_one_axis_per_harmonic, {"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]}, False, "a harmonic acts along both"),
+    (
+        has_one_axis_per_harmonic,
+        {"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]},
+        False,
+        "a harmonic acts along both",
+    ),
     (has_one_axis_per_harmonic, ALONG_X, False, "a harmonic acts along both axes, or both along one"),
     (has_no_friction_law, SMOOTH, True, "no friction"),
     (has_no_friction_law, law(fast=0.0, rate=10.0), False, "friction"),
@@ -137,6 +149,21 @@ def test_a_scene_says_what_may_be_left_out_and_why(
     decision = decide(FIG3.with_values(values))
     assert bool(decision) == allowed
     assert decision.reason.startswith(reason)
+
+
+def test_a_bound_on_all_rates_and_the_direction_of_a_harmonic_alone() -> None:
+    """The fastest is the loading, its decay, or the link of a light body above along y."""
+    for periods, decay, stiff in (
+        ((0.9, 1e-3), (0.1, 0.2), 9.0),
+        ((0.9, 1.1), (80.0, 0.1), 9.0),
+        ((2.0, 3.0), (0, 0), 1e6),
+    ):
+        scene = chain(0.25, 0.0, [3.0, 2.0, 0.1], [[8.0, 9.0], [7.0, stiff]], periods=periods, decay=decay)
+        load, natural = reference.problem.exponents(scene), reference.natural_modes.modes(scene).frequency.max()
+        fastest = max(natural, load.imag.max(), -load.real.min())
+        assert fastest <= bound_fastest_rate(scene) < 1.5 * fastest
+    oblique = FIG3.with_values({"excitation.amplitudes": [[0.0, 0.3], [0.0, -0.4]]})
+    assert np.allclose(turn_loading_to_x(oblique).amplitudes, [[0.0, 0.5], [0.0, 0.0], [0.0, 0.0]])
 
 
 def test_a_record_has_no_harmonics_to_leave_out() -> None:

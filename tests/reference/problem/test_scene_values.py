@@ -76,7 +76,12 @@ def test_any_value_in_any_place_is_a_scene_or_a_scene_error(place, value):
 
 
 def test_the_digest_sees_what_changes_results_and_nothing_else():
-    for same in ({"title": "renamed", "name": "other"}, {"acceptance.median": 1e-3}, {"analyses": {"skip": ["a"]}}):
+    for same in (
+        {"title": "renamed", "name": "other"},
+        {"acceptance.median": 1e-3},
+        {"analyses": {"skip": ["a"]}},
+        {"bodies.1.floor": "roof"},
+    ):
         assert FIG3.with_values(same).digest() == FIG3.digest()
     changes = {"duration": 20.1, "isolator.friction": 0.2, "bodies.0.mass": 1.1, "bodies.1.period.1": 1.3}
     changes |= {"isolator.period": 1.1, "isolator.ring": 1.1, "excitation.amplitudes.0.1": 0.1}

@@ -57,6 +57,9 @@ def test_bars_that_would_buckle_are_refused_with_both_loads() -> None:
     said = str(refusal(chain([1.0, 1.001 * limit], BARS).softened, kind=SceneError))
     assert said.startswith("fig3-I[duration=3, bodies changed]: bodies.1.bars: weight on each bar in N = 7.90")
     assert "must be below pi^2 E J / l^2 = 7.89568 N" in said
+    slender = {"bodies.2.bars.bending_stiffness": 0.05, "bodies.1.bars.load_effect": None}
+    said = refusal(chain([1.0, 1.0, 1.0], {**BARS, "load_effect": "softening"}).with_values, slender)
+    assert said.key.startswith("bodies.2.bars: weight on each bar"), "the upper link alone"
     heavy = chain([1.0, limit + 1.0], BARS)
     assert multibody.refusal(heavy, softened=True).startswith("refused before any step: ")
     assert multibody.refusal(heavy) == ""
@@ -67,6 +70,7 @@ def test_only_bars_are_softened_and_turned_into_a_plane() -> None:
     loaded = chain([1.0, 1.0, 1.0], BARS | {"bending_stiffness": 2.0})
     mixed = loaded.with_values({"bodies.1.bars": None, "bodies.1.stiffness": [20.0, 30.0]})
     assert mixed.softened().stiffness[0].tolist() == [20.0, 30.0]
+    assert (mixed.has_unloaded_bars, mixed.softened().has_unloaded_bars) == (True, False)
     assert mixed.softened().stiffness[1, 0] < mixed.stiffness[1, 0] == loaded.stiffness[1, 0]
     along_y = loaded.with_values({"excitation.amplitudes": [[0.0, 0.0], [2.0, 1.0]]})
     assert is_planar(along_y)
@@ -91,6 +95,8 @@ def test_bars_that_cannot_hold_the_bodies_upright_are_refused() -> None:
         FIG3.with_values({"bodies": bodies})
         bodies[2]["mass"] = 144.7
         assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.2.bars"
+        bodies[1] = {"mass": 2.0, "height": 3.0, "bars": loaded["bodies.1.bars"]}
+        assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.1.bars"
         # a body above, on a link that is soft along one axis alone
         below, above = {"mass": 2.0, "height": 3.0, "bars": loaded["bodies.1.bars"]}, {"mass": 60.0, "height": 6.0}
         bodies = [{"mass": 1.0, "height": 0.2}, below, {**above, "stiffness": [1e12, 1e12]}]

@@ -123,6 +123,12 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
         "gives way by 0.197 of the radius under the weight: must be at most 0.1",
     ),
     # bodies and links
+    ({"bodies.0.mass": 6e14, "bodies.1.mass": 7e14}, "bodies: total mass in kg = 1300000000000000.0", "to 1e+15 kg"),
+    (
+        {"bodies.1.mass": 4.0, "bodies.1.period": None, "bodies.1.stiffness": [1e3, 1e-20]},
+        "bodies.1: period along y in s = 125663706143",
+        "from 1e-07 to 1e+09 s",
+    ),
     ({"bodies.0.mass": 1e308, "bodies.1.mass": 1e308}, "bodies.0.mass", "finite and positive"),
     ({"bodies.1.yaw": 45.0}, "bodies.1.yaw", "rad"),
     ({"bodies.0.stiffness": [1.0, 1.0]}, "bodies.0.stiffness", "platform"),
