@@ -110,7 +110,7 @@ def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
         if one.step is not None and other.step is not None:
             if abs(one.step - other.step) > STEP_MISMATCH * one.step:
                 raise RecordError(
-                    f"DT = {one.step:g} s along {first} and {other.step:g} s along {second}: must be the same"
+                    f"DT = {one.step:.9g} s along {first} and {other.step:.9g} s along {second}: must be the same"
                 )
         elif one is not other:
             count = min(len(one.time), len(other.time))

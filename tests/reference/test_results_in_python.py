@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -93,6 +94,8 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     small = reference.amplification(SCENE, PAIRS.reshape(3, 3, 2) / 4.0, tolerance=1e-3).plot()
     small.figure.canvas.draw()
     assert not {"0", "π/2"} & {label.get_text() for label in small.get_xticklabels()}, "so short an axis"
+    (mesh,) = replace(surface, mu=surface.mu[:6], phases=PAIRS[:6]).plot(axes=plt.figure().add_subplot()).collections
+    np.testing.assert_array_equal(np.asarray(mesh.get_array()).reshape(3, 2), surface.mu[:6, 0].reshape(2, 3).T)
     flat = surface.plot(axes=plt.figure().add_subplot())
     (mesh,) = flat.collections
     plt.close("all")
@@ -129,7 +132,7 @@ def cells(html):
 
 def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     mu = np.array([[1.0, 2.25], [1.5, 2.5], [3.0, 5.0], [np.nan, np.nan]])
-    error = np.array([[0.01, 0.2], [0.03, 0.1], [0.02, 0.4], [np.nan, np.nan]])
+    error = np.array([[0.01, 0.2], [0.03, 0.1], [np.nan, 0.4], [np.nan, np.nan]])
     shown = Amplification(mu, error, np.array(["ok", "ok", "ok", "rim reached"]), np.zeros(4), 0.0)
     for name, shape in (("phases", (4, 2)), ("regularization_effect", (4, 2)), ("displacement", 4), ("cap_share", 4)):
         np.testing.assert_array_equal(getattr(shown, name), np.full(shape, np.nan), err_msg=name)
@@ -141,6 +144,10 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     assert cells(table) == [["1", "1", "1.5", "3", "0.03"], ["2", "2.25", "2.5", "5", "0.4"]]
     one = Amplification(mu[0], error[0], np.array("ok"), np.array(np.nan), 0.0)
     assert repr(one) == "<Amplification of 1 phase pair: mu_1 = 1 ± 0.01, mu_2 = 2.25 ± 0.2, 1 ok>"
+    nine = repr(Amplification(np.ones((1, 9)), np.ones((1, 9)), np.array(["ok"]), np.zeros(1), 0.0))
+    assert nine.endswith(
+        ": mu_1 = 1 ± 1, mu_2 = 1 ± 1, mu_3 = 1 ± 1, mu_4 = 1 ± 1, mu_5 = 1 ± 1, mu_6 = 1 ± 1, ..., 1 ok>"
+    )
     far = 1e3 * np.linalg.norm(motion.position[:, :, :2], axis=2).max(axis=0)
     head = f"{len(motion.time)} instants to 3 s, {len(motion.stick)} rests, platform at most {far[0]:.4g} mm off, ok"
     law = "set-valued Coulomb friction; literal supremum"

@@ -55,6 +55,7 @@ def test_bounds_of_the_caller_take_the_place_of_those_in_the_file(tmp_path: Path
         (TABLE, "0.8", "0.8: must be two factors"),
         (TABLE, "[0.8, 1.0, 1.5]", "must be two factors"),
         (TABLE, "[0.0, 1.5]", "must be two factors"),
+        (TABLE, "[0.8, '1.5']", "must be two factors"),
         ("{values = [0.03, 0.05]}", "[0.8, 1.5]", "multiplies one friction: isolator.friction is {'values'"),
         ("{slow = {values = [0.03, 0.04]}, fast = 0.05, rate = 50.0}", "[0.8, 1.5]", "multiplies one friction"),
         (

@@ -1,6 +1,7 @@
 """Values of a scene that run make a scene of each, or of every combination; what is no range is one line."""
 
 import re
+import tomllib
 from itertools import product
 from pathlib import Path
 
@@ -37,6 +38,7 @@ def test_a_range_makes_a_scene_of_every_value(tmp_path: Path) -> None:
 FAST = "{slow = 0.05, fast = {values = [0.1, 0.08]}, rate = 50.0}"
 KEYS = {
     "at the top": ("duration = 20.0", "duration = {range = [5, 20], steps = 4}", "duration", (5, 10, 15, 20)),
+    "halves": ("duration = 20.0", "duration = {range = [5, 6], steps = 3}", "duration", (5, 5.5, 6)),
     "whole numbers": ("supports = 4", "supports = {range = [3, 5], steps = 3}", "isolator.supports", (3, 4, 5)),
     "of a body": ("mass = 1.0\nperiod", "mass = {values = [1.1, 1.7]}\nperiod", "bodies.1.mass", (1.1, 1.7)),
     "in a list": ("[[1.0, 0.0]", "[[{range = [1.5, 2.5], steps = 2}, 0.0]", "excitation.amplitudes.0.0", (1.5, 2.5)),
@@ -74,6 +76,9 @@ WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.2, 0.2], steps = 3}", ".range = [0.2, 0.2]: must be two finite numbers"),
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
     ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
+    ('{range = [0.1, "0.2"], steps = 3}', ".range = [0.1, '0.2']: must be two finite numbers"),
+    ('{values = [0.1, "a"]}', ".values = [0.1, 'a']: must be a list of 1 to 1000 finite numbers"),
+    ('{values = [{x = "a.csv", y = 3}]}', ".values = [{'x': 'a.csv', 'y': 3}]: must be a list of 1 to 1000 finite num"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
     ("{values = [{}]}", ".values = [{}]: must be a list of 1 to 1000 finite numbers, or of texts, or of tables of f"),
     ("{values = [0.1, 0.1]}", ".values = 0.1: is there twice"),
@@ -133,6 +138,13 @@ def test_the_value_that_runs_is_a_coordinate_of_results(tmp_path: Path) -> None:
     np.testing.assert_array_equal(data["mu"].sel(friction=0.02), results[1].mu)
     with pytest.raises(ValueError, match="results: 1: must be as many as the scenes of the family, 2"):
         family.to_xarray(results[:1])
+    alone = load_family(combined(tmp_path, 'combine = "product"', "{values = [0.2]}", "{values = [3.0]}"))
+    assert alone.to_xarray(results[:1])["mu"].dims == ("scene", "body")
+    limits = {"median": {"values": [0.2, 0.1]}, "total": {"median": {"values": [0.4, 0.3]}}}
+    data = {**tomllib.loads(scene_text("fig3-I").decode()), "combine": "zip", "acceptance": limits}
+    columns = {"acceptance.median": [0.2, 0.1], "acceptance.total.median": [0.4, 0.3]}
+    labeled = make_family(data, "mine.toml").to_xarray(results)
+    assert {name: labeled[name].values.tolist() for name in columns} == columns, "whole keys where the last parts agree"
 
 
 def combined(tmp_path: Path, top: str, friction: str, scale: str) -> Path:

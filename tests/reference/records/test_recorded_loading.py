@@ -31,7 +31,12 @@ ANY = (0.0, 0.0)  # a record has no phases
 
 @pytest.fixture
 def folder(tmp_path):
-    files = {"a.csv": CSV, "b.csv": CSV.replace("-3", "-6"), "x.AT2": AT2, "slow.AT2": AT2.replace(".0200", ".0300")}
+    files = {
+        "a.csv": CSV,
+        "b.csv": CSV.replace("-3", "-6"),
+        "x.AT2": AT2,
+        "slow.AT2": AT2.replace(".0200", ".02000005"),
+    }
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     return tmp_path
@@ -43,13 +48,17 @@ def written(folder, excitation: str):
 
 def test_a_record_is_read_beside_its_scene_and_scaled(folder, monkeypatch):
     scene = load_scene(written(folder, 'record = "a.csv"'))
-    assert scene.record == pytest.approx(np.array(KNOTS))
+    assert (scene.record, scene.duration) == (pytest.approx(np.array(KNOTS)), 0.8)
     monkeypatch.chdir(folder)
     assert load_scene("mine.toml").record == pytest.approx(np.array(KNOTS))
     assert load_scene(scene_file(folder, 'record = "a.csv"')).duration == pytest.approx(0.4), "that of the record"
     upright = load_scene(written(folder, 'record = {z = "x.AT2"}\nscale = 2.0'))
     assert upright.record[:, 3] == pytest.approx([0.0, 2.0 * 0.981, 0.0])
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801, "a shipped one"
+    uneven = {"time": [0.0, 0.1, 0.4], "acceleration": [1.0, 2.0, 3.0]}
+    assert scene.with_values({"excitation.record": uneven}).record[-1].tolist() == pytest.approx([0.7, 0.0, 0.0, 0.0])
+    said = refusal(scene.with_values, {"excitation.record": {**uneven, "time": [0.0, 0.1, 0.1]}})
+    assert "0 s from sample to sample" in said.rule
     (folder / "synthetic-pair.csv").write_text(CSV)
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == len(KNOTS), "one's own"
     (folder / "synthetic-pair").write_text(CSV)
@@ -111,7 +120,8 @@ def test_the_amplitude_is_the_largest_sample_and_the_hash_that_of_the_samples(fo
         ('record = "a.csv"\norigin = []', "excitation.origin", "unknown key"),
         ('record = "a.csv"\ndetrend = "median"', "excitation.detrend", "must be 'mean' or 'linear'"),
         ('record = {x = "x.AT2", y = "gone.AT2"}', "excitation.record.y", "No such file or directory"),
-        ('record = {x = "x.AT2", y = "slow.AT2"}', "excitation.record", "must be the same"),
+        ('record = {x = "x.AT2", y = "slow.AT2"}', "excitation.record", "DT = 0.02 s along x and 0.02000005 s"),
+        ('record = {x = "x.AT2", w = "x.AT2"}', "excitation.record", "must be a file"),
         ('record = "a.csv"\nsamples = [[0.0, 0.0, 0.0, 0.0]]', "excitation.samples", "unknown key"),
         ('record = "a.csv"\nscale = 1e308', "excitation.scale", "must leave every acceleration finite"),
         ('record = "a.csv"\nscale = 0.0', "excitation.scale", "greater than 0"),

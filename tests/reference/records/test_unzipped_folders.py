@@ -212,6 +212,7 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
     listed = list_motions(str(place), place)
     (place / FILE_NAME).write_text(motion_list_text(listed.motions))
     assert list_motions(str(place), place) == listed, "what is written says the same"
+    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,\n" in motion_list_text(listed.motions)
 
 
 def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
@@ -294,8 +295,11 @@ def test_a_written_list_says_what_was_paired(tmp_path):
     assert text.splitlines()[:2] == ["name,x,y,z,factor", "A,A_H1.AT2,A_H2.AT2,A_UP.AT2,1"]
     after = list_motions(str(place), place)
     assert after.motions == before.motions
-    assert "as motions.csv lists them" in after.sentence
-    (place / FILE_NAME).write_text("name,x\nonly,B000.AT2\nother,B090.AT2\n")
+    assert "as motions.csv lists them, 1 with a vertical one" in after.sentence
+    (place / FILE_NAME).write_text(text.replace("B090.AT2,", "B090.AT2,A_UP.AT2"))
+    upright = list_motions(str(place), place)
+    assert "2 motions, as motions.csv lists them, 2 with a vertical one: x = A_H1.AT2" in upright.sentence
+    (place / FILE_NAME).write_text("name,x\nonly,B000.AT2,,\nother,B090.AT2\n")
     listed = list_motions(str(place), place).sentence
     assert listed == "2 motions, as motions.csv lists them."
 
