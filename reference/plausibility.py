@@ -56,7 +56,7 @@ def implausible_suite(motions: Sequence[RecordDescription]) -> list[str]:
     for own in dict.fromkeys(each for each in axes if len(each) < len(common)):
         names = name_some([motion.title for motion, each in zip(motions, axes) if each == own], MAX_NAMES_PER_LINE)
         verb, kind = ("has", "") if axes.count(own) == 1 else ("have", " each")
-        others = f"{axes.count(common)} others have" if axes.count(common) > 1 else "the other has"
+        others = f"{axes.count(common)} others have" if axes.count(common) > 1 else "other has"
         has = f"{' and '.join(own)}{' alone' * (len(own) == 1)}{kind}" if own else "no acceleration"
         lines.append(f"{names} {verb} {has}, the {others} {' and '.join(common)}: is a file left out?")
     peaks = [motion.largest_peak for motion in motions]

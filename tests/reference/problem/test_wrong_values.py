@@ -187,9 +187,9 @@ def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[st
 
 
 BODIES = [{"mass": 1e3}, {"mass": 1e3, "stiffness": [4e5, 4e5]}]
-STIFF = {"mass": 1e3, "stiffness": [1.6e6, 4e5]}
+STIFF, ALONG_X = ({"mass": 1e3, "stiffness": stiffness} for stiffness in ([1.6e6, 4e5], [4e5, 1.6e6]))
 MODE = (
-    "the damping of mode 2 along y above a fixed base is {} % of critical, above 20 %: it moves {} % of the mass; is "
+    "the damping of mode 2 along {} above a fixed base is {} % of critical, above 20 %: it moves {} % of the mass; is "
     "this meant?"
 )
 FALLING = {
@@ -197,9 +197,11 @@ FALLING = {
         {**BODIES[0], "height": 3.0},
         {**BODIES[1], "height": 6.0},
         {**BODIES[1], "height": 5.0, "floor": "roof"},
+        {**BODIES[1], "height": 5.0},
     ]
 }
 FALLS = '"roof" at 5 m is not above body 2 at 6 m, the body below it: bodies stand in the file from the platform up'
+LEVEL = {**FALLING["bodies"][2], "height": 6.0}
 LONG = {"isolator.radius": None, "isolator.period": 150.0}
 HEAVY = {"bodies.0.mass": 1e9, "bodies.1.mass": 1e9, "bodies.1.stiffness": [4e11, 4e11]}
 LIGHT = {"bodies.0.mass": 20.0, "bodies.1.mass": 20.0, "bodies.1.stiffness": [8e3, 8e3]}
@@ -210,7 +212,7 @@ MASS = "the mass of {} is {} kg, {} times the mean of the others, {}: kg in one 
 ROOF = {"mass": 9.0, "stiffness": [4e4, 4e4], "floor": "roof"}
 DIFFERENT = {"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 50.0}}
 SWAPPED = "friction falls with the speed, from 0.06 at rest to 0.03: slow and fast swapped?"
-WIDE = places([-14e3, -8e3], [14e3, -8e3], [14e3, 8e3], [-14e3, 8e3])
+WIDE = places([-8e3, -14e3], [8e3, -14e3], [8e3, 14e3], [-8e3, 14e3])
 SIZED = {"isolator.ring": 2.0, "isolator.sphere_radius": 0.1, "bodies.0.size": [5.0, 4.0, 0.5]}
 APART = "the supports stand {} m apart, more than twice the platform of 5 m: are places and size both in m?"
 BELOW = (
@@ -226,7 +228,7 @@ LOAD = "the weight on each support is {}: is mass in kg?"
         ({}, []),
         ({"superstructure.damping": 0.25}, [DAMPED.format(25)]),
         ({"bodies.1.damping": 1.5}, [DAMPED.format(150)]),
-        ({"bodies.1.stiffness": [1.0, 4e5]}, [PERIOD.format("198.7 s, above 5 s")]),
+        ({"bodies.1.stiffness": [1.0, 4e8]}, [PERIOD.format("198.7 s, above 5 s")]),
         ({"bodies.1.stiffness": [4e5, 4e8]}, [PERIOD.format("0.009935 s, below 0.05 s")]),
         (LONG, ["the radius of the isolator is 5591 m, above 50 m: is period in s?"]),
         ({"isolator.radius": 2200.0}, ["the radius of the isolator is 2200 m, above 50 m: mm?"]),
@@ -239,7 +241,7 @@ LOAD = "the weight on each support is {}: is mass in kg?"
         (DIFFERENT, []),
         ({"isolator.friction": {"slow": 0.06, "fast": 0.03, "rate": 50.0}}, [SWAPPED]),
         (WIDE, ["the supports stand 2.8e+04 m apart, above 300 m: mm?"]),
-        (SIZED | {"isolator.ring": 3.5}, []),
+        (SIZED | {"isolator.ring": 6.0}, []),
         (SIZED | {"isolator.ring": 8.0}, [APART.format("11.31")]),
         (SIZED | {"bodies.0.height": 2.7, "bodies.1.height": 6.0}, []),
         (SIZED | {"bodies.0.height": 0.6, "bodies.1.height": 4.0}, [BELOW]),
@@ -247,9 +249,11 @@ LOAD = "the weight on each support is {}: is mass in kg?"
         (HEAVY, [LOAD.format("4905 MN, above 100 MN")]),
         (LIGHT, [LOAD.format("98.1 N, below 1 kN")]),
         (LIGHT | {"isolator.supports": None}, []),
-        ({"bodies": [*BODIES, STIFF], "superstructure.damping": 0.08}, [MODE.format("20.94", "5.3")]),
+        ({"bodies": [*BODIES, STIFF], "superstructure.damping": 0.08}, [MODE.format("y", "20.94", "5.3")]),
+        ({"bodies": [*BODIES, ALONG_X], "superstructure.damping": 0.08}, [MODE.format("x", "20.94", "5.3")]),
         ({"bodies": [*BODIES, STIFF], "superstructure.damping": 0.076}, []),
         (FALLING, [FALLS]),
+        ({"bodies": [*FALLING["bodies"][:2], LEVEL]}, [FALLS.replace("5 m", "6 m")]),
         (STRONG, ["the peak of the ground is 4.079 g, above 3 g: unit or scale?"]),
     ],
 )
@@ -290,6 +294,12 @@ def test_limits_that_are_never_met_are_hardly_meant() -> None:
     assert implausible_values(scene.with_values({key: {"support_force_max": 1.001 * load, "acceleration": 1.0}})) == []
     (line,) = implausible_values(scene.with_values({key: {"support_force_max": 0.9 * load}}))
     assert line.endswith(f"N, below the dead load of {word_force(load)}: kN? Write {900 * load:g}")
+    (line,) = implausible_values(scene.with_values({key: {"support_force_max": 9e-4 * load}}))
+    assert line.endswith(f"N, below the dead load of {word_force(load)}"), "in kN, too"
+    uneven = scene.with_values(places([4.0, 3.0], [-4.0, 3.0], [-4.0, -3.0], [4.0, -3.0], [4.0, 0.0]))
+    (line,) = implausible_values(uneven.with_values({key: {"support_force_max": 1e3}}))
+    most = describe_building(uneven).support_loads.max()
+    assert f"below the dead load of {word_force(most)}: kN? Write" in line
     assert implausible_values(scene.with_values({key: {"acceleration": 0.4}})) == [
         "the limit on the acceleration is 0.4 m/s^2, below 1 m/s^2: g? Write 3.924"
     ]
@@ -306,7 +316,7 @@ def test_dead_loads_far_from_equal_are_hardly_meant() -> None:
     assert f"from {word_force(loads.min())} on support 2 at [-4, 3] m to {word_force(loads.max())} on support 1" in line
     assert line.endswith("m off their middle: is a support missing, or an offset of a body too large?")
     (line,) = implausible_values(scene.with_values(places(*corners[1:4], [1.0, 1.0])))
-    assert line.endswith("is a support missing?")
+    assert line.endswith("as the center of mass is [0.75, 0.5] m off their middle: is a support missing?")
 
 
 def test_motions_unlike_the_others_of_their_suite_are_hardly_meant() -> None:
@@ -324,6 +334,10 @@ def test_motions_unlike_the_others_of_their_suite_are_hardly_meant() -> None:
     assert implausible_suite([*suite, motion("d", 4.0), motion("e", 4.0)]) == [
         "d, e have x alone each, the 3 others have x and y: is a file left out?"
     ]
+    assert implausible_suite([motion("a", 4.0), motion("b", 4.0, 3.0)]) == [
+        "a has x alone, the other has x and y: is a file left out?"
+    ]
+    assert implausible_suite([motion("a", 4.0), motion("b", 4.0), motion("c", 4.0, 3.0)]) == [], "most have one"
     (line,) = implausible_suite([*suite, motion("d", 1.0, 0.9, scale=0.75)])
     assert line.startswith("the peak of d is 0.0765 g, below a fifth of the median of the suite, 0.408 g: unit?")
     same = describe_samples("a", (), np.column_stack([0.01 * np.arange(200.0), wave, wave, wave]))
