@@ -44,6 +44,7 @@ MODEL: Any = SimpleNamespace(
     relaxation=1.0,
     friction=None,
     depressions=SimpleNamespace(),
+    kinematics=None,
     springs=None,
     warping_displacement=lambda coordinates: coordinates,
 )
