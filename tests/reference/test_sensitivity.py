@@ -117,6 +117,25 @@ def test_noise_within_the_errors_is_no_kink() -> None:
     assert np.isnan(curved.kink.value), "an interval that errors keep wide shows no kink"
 
 
+def test_every_part_of_an_error_counts() -> None:
+    """Of an odd function what extrapolation changes; of a slope over 5 % its own, and that of the derivative."""
+    odd = along_friction(lambda friction: (friction - AT) ** 5, error=0.0)
+    assert 0.0 < abs(odd.value) <= odd.error
+    steep = Estimates(np.array([[-0.07, -0.01, 0.01, 0.07]]).T, np.full((4, 1), 0.01))  # 1.4 over 5 %
+    for slope, contradicted in ((0.2, False), (0.1, True)):
+        found = derivatives._find_contradiction(Estimates(np.array([1.0]), np.array([slope])), steep, 1.0)
+        assert found == (0, pytest.approx(0.4), contradicted), slope
+    both = Estimates(np.hstack([-np.array([[0.05, 0.01, -0.01, -0.05]]).T, steep.value]), np.zeros((4, 2)))
+    assert derivatives._find_contradiction(Estimates(np.ones(2), np.zeros(2)), both, 1.0)[0] == 1
+    valley = Estimates(np.array([[0.07, 0.01, 0.01, 0.0712]]).T, np.zeros((4, 1)))  # level over 5 %, for its slopes
+    line = Estimates(np.array([[0.05, 0.01, -0.01, -0.05]]).T, np.zeros((4, 1)))  # by a value below zero
+    for slope, change, at in ((0.0, valley, 1.0), (1.0, line, -1.0)):
+        found = derivatives._find_contradiction(Estimates(np.array([slope]), np.zeros(1)), change, at)
+        assert found == (None, 0.0, False)
+    ends = (derivatives._QuantityAtValue(at, value, 0.0) for at, value in ((0.0, 0.0), (2.0, 7.0)))
+    assert derivatives._Bracket(*ends, below=1.0, beyond=3.0).jump == 7.0 - 2.0 * 2.0, "the mean of both slopes"
+
+
 def test_a_sentence_about_a_kink_says_place_sides_and_what_is_there() -> None:
     said = describe_kink("duration", 2.0, Estimate(1.98, 0.001), (-3.0, 4.0), 0.0)
     assert said == "kink at duration = 1.98 ± 0.001 (-1 %): slope -3 below and 4 beyond it"

@@ -239,7 +239,7 @@ def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, Head
         raise RecordError(f"line {line}: column {twice[0] or 'of the acceleration'} is there twice")
     known = [one for one in map(_direction_of, columns) if one is not None]
     axes = {one.axis: column for one, column in zip(known, columns)}
-    if len(known) == len(columns) == len(axes) and set(axes) <= set(AXES):
+    if len(axes) == len(columns) and set(axes) <= set(AXES):
         return {axis: axes[axis] for axis in AXES if axis in axes}
     if len(columns) == 1:
         return {"": columns[0]}  # the only column names no direction, or an azimuth

@@ -81,6 +81,7 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     ),
     (is_mirror_symmetric, {}, True, "an even number of supports on a ring"),
     (is_mirror_symmetric, {"isolator.supports": 3}, False, "an odd number of supports"),
+    (is_mirror_symmetric, {"isolator.ring": None, "isolator.supports": None}, False, "an odd number of supports"),
     (is_mirror_symmetric, {"bodies.1.offset": [0.0, 0.1]}, False, "a center of mass off the axis"),
     (is_mirror_symmetric, {"bodies.1.yaw": 0.1}, False, "a body or link at an angle"),
     (

@@ -95,8 +95,9 @@ def test_bars_that_cannot_hold_the_bodies_upright_are_refused() -> None:
         FIG3.with_values({"bodies": bodies})
         bodies[2]["mass"] = 144.7
         assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.2.bars"
-        bodies[1] = {"mass": 2.0, "height": 3.0, "bars": loaded["bodies.1.bars"]}
-        assert refusal(FIG3.with_values, {"bodies": bodies}).key == "bodies.1.bars"
+        bodies[1] = {"mass": 2.0, "height": 3.0, "bars": {**loaded["bodies.1.bars"], "count": 5}}
+        said = refusal(FIG3.with_values, {"bodies": bodies})
+        assert (said.key, said.value["count"]) == ("bodies.1.bars", 5), "the lowest of them"
         # a body above, on a link that is soft along one axis alone
         below, above = {"mass": 2.0, "height": 3.0, "bars": loaded["bodies.1.bars"]}, {"mass": 60.0, "height": 6.0}
         bodies = [{"mass": 1.0, "height": 0.2}, below, {**above, "stiffness": [1e12, 1e12]}]

@@ -73,6 +73,7 @@ CSV = {  # texts of the four values, their unit in m/s^2, and what is noticed
     "unit behind an underscore": ("time_s,acc_g\n" + rows(), GRAVITY, ""),
     "units in a line of their own": ("Time,Acc\n[s],[gal]\n" + rows(), 0.01, ""),
     "lines of separators behind": ("time [s],ax [g]\n" + rows() + ",\n,,\n", GRAVITY, ""),
+    "semicolons and tabs behind": ("time [s];ax [g]\n" + rows(";") + ";\n;\t;\n", GRAVITY, ""),
     "words of other languages": ("Zeit [s];Beschleunigung [m/s²]\n" + rows(";", ","), 1.0, ""),
     "separators at the end": ("time [s],ax [g],,\n" + rows(more=",,"), GRAVITY, ""),
     "lines above": ("Invented 2000\nNowhere\ntime [s],ax [g]\n" + rows(), GRAVITY, "2 lines above the header"),
@@ -81,7 +82,11 @@ CSV = {  # texts of the four values, their unit in m/s^2, and what is noticed
         GRAVITY,
         "columns that are not needed: 'Velocity [m/s]', 'Displacement [m]'",
     ),
-    "a column of remarks": ("No,time [s],ax [g]\n" + "".join(f"n{t},{t},{v}\n" for t, v in ROWS), GRAVITY, "'No'"),
+    "a column of remarks": (
+        "arrival time,time [s],ax [g]\n" + "".join(f"n{t},{t},{v}\n" for t, v in ROWS),
+        GRAVITY,
+        "'arrival time'",
+    ),
 }
 
 
@@ -185,16 +190,17 @@ REFUSED = [  # name, text, options, and words of the line
         "line 5: '************': a Fortran field that has overflowed",
     ),
     ("a.AT2", IN_G + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
+    ("a.AT2", (IN_G + FIELDS).replace(".0100 SEC", ".0 SEC"), {}, "line 4: DT = .0 s: must be greater than 0"),
     ("a.AT2", IN_G + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
     ("a.AT2", IN_G + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
     ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
     ("a.AT2", IN_G + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
     (
         "a.AT2",
-        (PEER + "Acceleration in cm/sec2\n5 0.0100 NPTS, DT\n" + FIELDS),
+        (PEER + "Accelerogram\nAcceleration in cm/sec2\n5 0.0100 NPTS, DT\n" + FIELDS),
         {},
-        "line 3: 'Acceleration in cm/sec2': the header names no unit that is known: must say 'IN UNITS OF G'; in "
-        'another unit write record = {file = "a.AT2", step = 0.01, unit = "...", skip = 4}',
+        "line 4: 'Acceleration in cm/sec2': the header names no unit that is known: must say 'IN UNITS OF G'; in "
+        'another unit write record = {file = "a.AT2", step = 0.01, unit = "...", skip = 5}',
     ),
     (
         "a.csv",
@@ -211,6 +217,7 @@ REFUSED = [  # name, text, options, and words of the line
         'line 1: column \'NS\': no unit: write NS [g], or record = {file = "a.csv", unit = "g"}; units are m/s^2, g',
     ),
     ("a.csv", "time [s],Velocity [m/s]\n0,1\n1,2\n", {}, "line 1: must be a header such as time [s], ax [m/s^2]"),
+    ("a.csv", "time [s],[g]\n0,1\n1,2\n", {}, "line 1: column '[g]'"),
     ("a.csv", "time [s],ax [g],X [g]\n0,1,2\n1,2,3\n", {}, "two have one direction"),
     *(
         (
@@ -286,6 +293,11 @@ def test_what_cannot_be_read_is_refused_with_line_text_and_what_to_write(name, t
     line = str(refusal(read, text, name, **options, kind=RecordError))
     assert said in line
     assert "\n" not in line
+
+
+def test_a_hint_stands_only_where_it_may_help():
+    for below, end in (("0,0,1\n", "3 values: the header names 2 columns"), ("1,1\n0,1\n", "after 1 s: must rise")):
+        assert str(refusal(read, "time [s],ax [g]\n" + below, "a.csv", kind=RecordError)).endswith(end)
 
 
 def test_columns_side_by_side_are_taken_one_by_one_or_in_their_order():
