@@ -170,6 +170,32 @@ def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -
     assert (height, size.tolist(), factor) == (0.0, [2.0, 2.0, 0.2], 1.0)
 
 
+def test_a_film_has_room_for_the_widest_box_the_farthest_support_and_the_nearest_boxes() -> None:
+    sizes = ([1.0, 0.8, 0.2], [3.0, 1.0, 0.4], [1.0, 1.0, 0.4])
+    bodies = [{"mass": 1.0, "height": height, "size": size} for height, size in zip((0.2, 1.0, 1.5), sizes)]
+    bodies = [{**bodies[0], "offset": [0.1, -0.2]}, *({**body, "period": [1.0, 1.0]} for body in bodies[1:])]
+    places = {"isolator.ring": None, "isolator.supports": [[4.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]}
+    scene = load_scene("fig3-I").with_values({"bodies": bodies, **places})
+    heights, drawn_sizes, factor = arrange_boxes(scene)
+    assert (heights, factor, drawn_sizes[:, 2]) == (pytest.approx([0.0, 0.8, 1.3]), 1.0, pytest.approx([0.2] * 3))
+    upside = scene.with_values({"bodies.2.height": 0.9})
+    assert np.diff(arrange_boxes(upside)[0]) == pytest.approx([1.5, 1.5]), "no body below the one that carries it"
+    position, turns = np.zeros((2, 2, 3, 3))
+    position[1, 0], turns[1, 2] = [0.01, 0.0, -0.1], [1e-3, 1e-2, 0.0]
+    motion: Any = SimpleNamespace(time=np.array([0.0, 0.1]), position=position, extra={"turns": turns})
+    drawn = film_module.make_drawing(scene, motion, 1.0, 2)
+    assert drawn.scales == "displacements x 1, contact paths x 500, tilt x 5, yaw x 10000"
+    assert drawn.half_width == pytest.approx(1.08 * 4.0)
+    above, aside = film_module.Figure().subplots(1, 2)
+    film_module._TopView(above, drawn)
+    film_module._SideView(aside, drawn, 1)
+    assert not [patch for patch in above.patches if isinstance(patch, Circle)], "supports on no ring"
+    poles = np.array([line.get_xydata() for line in aside.lines[0:6:2]])
+    assert poles[:, 0, 0].tolist() == [0.0, 1.0, -1.0]
+    assert poles[:, 1, 1] == pytest.approx([-0.1 - 0.1] * 3), "of the lowest platform"
+    assert np.mean(aside.lines[6].get_xdata()) == pytest.approx(-0.2)
+
+
 def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two bodies that are 0.3 m apart, less than 0.35 of their width, displaced and turned in proportion."""
     places = {"bodies.0.offset": [0.1, -0.2], "bodies.1.offset": [-0.3, 0.15], "bodies.1.yaw": 0.6}

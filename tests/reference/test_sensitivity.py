@@ -29,6 +29,9 @@ def test_the_error_of_the_quantity_is_over_the_step() -> None:
     """1.6 % of the value is the largest step, over which (4 near - far) / 3 has three times the error."""
     found = sensitivity(ONE_BODY, ["bodies.0.mass"], lambda scene: Estimate(scene.total_mass, 1e-3))["bodies.0.mass"]
     assert (found.value, found.error) == pytest.approx((1.0, 3.0 * 1e-3 / (1.6e-2 * 2.0)))
+    turned = ONE_BODY.with_values({"bodies.0.yaw": -0.5})
+    found = sensitivity(turned, ["bodies.0.yaw"], lambda scene: Estimate(scene.yaws[0], 1e-3))["bodies.0.yaw"]
+    assert (found.value, found.error) == pytest.approx((1.0, 3.0 * 1e-3 / (1.6e-2 * 0.5))), "of a value below zero"
 
 
 def test_a_kink_within_the_step_shows_in_the_error() -> None:

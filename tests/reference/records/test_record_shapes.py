@@ -191,6 +191,7 @@ REFUSED = [  # name, text, options, and words of the line
     ),
     ("a.AT2", IN_G + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
     ("a.AT2", (IN_G + FIELDS).replace(".0100 SEC", ".0 SEC"), {}, "line 4: DT = .0 s: must be greater than 0"),
+    ("a.AT2", (IN_G + FIELDS).replace("= 5,", "= x,"), {}, "line 4: NPTS = 'x': must be a whole number"),
     ("a.AT2", IN_G + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
     ("a.AT2", IN_G + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
     ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
