@@ -86,6 +86,11 @@ def test_loads_beyond_double_precision_or_without_a_motion_are_told_at_once(equa
     assert repr(reference.trajectory(scene, PHASE, equations)).startswith(
         "<Trajectory of scene: no samples, 0 rests, platform at most 0 mm off, non-finite load; "
     )
+    record = {"record": {"time": [0.0, 1.0], "acceleration": [1e160, 0.0]}}
+    assert refused(scene.with_values({"excitation": record}), Outcome.NON_FINITE_LOAD, equations=equations) == 0.0
+    weak = chain(amplitudes=[[1e-130, 1e-130], [0.0, 0.0]], periods=(1.0, 1.0), duration=0.5)
+    found = reference.amplification(weak, [(0.0, 0.0), (0.0, np.pi)], equations)
+    assert found.status.tolist() == [Outcome.OK, Outcome.NO_GROUND_MOTION], "out of phase"
     still = chain(amplitudes=[[0.0, 0.0], [0.0, 0.0]])
     assert refused(still, Outcome.NO_GROUND_MOTION, equations=equations) == 0.0
 
@@ -132,6 +137,23 @@ def test_a_run_of_too_many_steps_ends_at_its_limit(monkeypatch):
     for name, limit in (("BASE_STEPS", 20), ("MAX_STEPS", 0)):
         monkeypatch.setattr(surface, name, limit)
     assert 0.0 < refused(scene, Outcome.STEP_LIMIT) < scene.duration
+
+
+def test_a_run_has_the_unit_the_time_and_the_steps_of_its_scene():
+    scene = chain(0.25, 0.1, [3.0, 0.2], [[5e5, 9.0]], [[1.0, 0.5], [0.3, -0.4]], (0.9, 0.5), (0.3, 40.0), 3.0)
+    system, demand = surface.prepare_run(scene, "exact", None, 1e-6, None, "consistent")
+    assert (demand.unit, demand.period) == pytest.approx((np.hypot(1.5, 0.7), 20.0 * np.pi / system.fastest))
+    assert demand.step_limit == 20_000 + int(1000.0 * 3.0 / 0.5 + 30.0 * 3.0 * system.fastest / (2.0 * np.pi))
+    slow = scene.with_values({"bodies.1.stiffness": [20.0, 9.0]})
+    assert surface.prepare_run(slow, "exact", None, 1e-6, None, "consistent")[1].period == pytest.approx(
+        2.0 * np.pi / 40.0
+    )
+    record = {"record": {"time": [0.0, 0.1, 0.3], "acceleration": [[3.0, 4.0], [0.0, 1.0], [0.0, 0.0]]}}
+    system, demand = surface.prepare_run(
+        slow.with_values({"excitation": record}), "exact", None, 1e-6, None, "consistent"
+    )
+    steps = 1000.0 * 3.0 / (2.0 * np.pi * 4.0 / 30.0) + 30.0 * 3.0 * system.fastest / (2.0 * np.pi) + 10.0 * 3.0
+    assert (demand.unit, demand.step_limit) == (5.0, 20_000 + int(steps))
 
 
 def test_the_printed_rest_condition_is_looser():

@@ -69,6 +69,13 @@ def test_full_and_the_exact_equations_are_integrated(monkeypatch):
         reference.amplification(frictionless(), PHASES[:1], equations="small")
 
 
+def test_a_sum_meets_the_tolerance_where_all_bodies_do(monkeypatch):
+    for error, status in (([1e-7, 0.0], "ok"), ([1e-5, 0.0], "tolerance not met")):
+        peaks = np.ones((1, 2)), np.array([error]), np.ones(1), np.array([False])
+        monkeypatch.setattr(surface, "frictionless_peaks", lambda scene, phases, peaks=peaks: peaks)
+        assert reference.amplification(frictionless(), PHASES[:1], equations="small").status[0] == status
+
+
 def test_the_error_of_mu_is_over_the_ground_as_mu_is():
     scene = load_scene("fig4-viscous")
     once, hundred = (

@@ -140,7 +140,7 @@ def test_an_argument_outside_its_rules_is_one_line(side: Any) -> None:
 
 
 def test_an_argument_of_the_equations_outside_its_rules_is_one_line() -> None:
-    for times in ([1.0, 0.5], [0.0, 21.0], [-1.0, 0.0], [[0.0, 1.0]], [np.nan]):
+    for times in ([1.0, 0.5], [1.0, 1.0], [0.0, 21.0], [-1.0, 0.0], [[0.0, 1.0]], [np.nan]):
         assert str(refusal(reference.trajectory, FIG3, PHASES[0], times=times)).startswith("times: ")
     assert str(refusal(reference.amplification, FIG3, PHASES, rest_condition=3)).startswith("rest_condition = 3: ")
     for cutoff, v_reg in ((0.0, None), (1e-3, 1e-3)):
