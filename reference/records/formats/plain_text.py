@@ -129,8 +129,7 @@ def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool
     side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MAX_RECORD_COLUMNS
     if not timed and (counted or not side_by_side):
         return ()
-    first = 2 if timed else 1
-    return tuple(range(first, min(len(rows[0]), first + 2) + 1))
+    return tuple(range(2 if timed else 1, len(rows[0]) + 1))
 
 
 def propose_line(text: str, name: str) -> str:

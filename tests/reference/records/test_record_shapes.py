@@ -145,6 +145,11 @@ PLAIN = [  # text, what is proposed, values at 0.01 s in g
     ("Acceleration (g)\n100 Hz\n" + ONE, '{file = "a.txt", step = 0.01, unit = "g", skip = 2}', FOUR),
     ("x\ny\n4 values at a time step of 0.01 s in units of g\n" + ONE, 'step = 0.01, unit = "g", skip = 3}', FOUR),
     ("3 0.5\n1 0.25\n4 -0.5\n", '{file = "a.txt", step = 0.01, unit = "g", column = 1}', [3.0, 1.0, 4.0]),
+    (
+        "1 2 3\n4 0 6\n7\n",
+        '{file = "a.txt", step = 0.01, unit = "g"}, with the step',
+        [1.0, 2.0, 3.0, 4.0, 0.0, 6.0, 7.0],
+    ),
     (ONE.replace(".", ","), '{file = "a.txt", step = 0.01, unit = "g"}', FOUR),
 ]
 
@@ -271,18 +276,24 @@ REFUSED = [  # name, text, options, and words of the line
         {"step": 0.01, "unit": "g"},
         "the first of them rises evenly as a time does: state the column",
     ),
+    *(  # steps that differ by a hundredth, or by the last of five digits
+        ("a.txt", text, {"step": 0.01, "unit": "g"}, "rises evenly as a time does")
+        for text in ("0 1\n0.0333 2\n0.0667 3\n0.1 1\n", "0 1\n0.0005 2\n0.001 3\n0.001509 1\n")
+    ),
+    ("a.txt", "dt = 0.02 s, in g\n" + rows(" "), {}, 'step = 0.02, unit = "g", skip = 1, column = 2'),
     (
         "a.txt",
         "1 2 3\n4 0 6\n",
         {"step": 0.01, "unit": "g"},
         "line 1: 3 values a line: state column, from 1; column = 0",
     ),
-    ("a.txt", ONE, {"step": 0.01, "unit": "g", "column": 2}, "line 1: 1 values: column = 2: must have as many"),
+    ("a.txt", ONE, {"step": 0.01, "unit": "g", "column": 100}, "line 1: 1 values: column = 100: must have as many"),
     ("a.txt", ONE, {"step": 0.01, "unit": "furlong"}, "unit = 'furlong': must be one of m/s^2, g, gal, cm/s^2, mm/s^2"),
     ("a.txt", ONE, {"step": -1.0, "unit": "g"}, "step = -1.0: must be a number of seconds"),
     ("a.txt", ONE, {"step": 0.01, "unit": "g", "skip": 9}, "skip = 9: the file has 4 lines: write record = {file"),
     ("a.txt", ONE, {"step": 0.01, "unit": "g", "skip": -1}, "skip = -1: must be a whole number from 0 to"),
     ("a.txt", ONE, {"step": 0.01}, "plain text needs step and unit: write record = {file"),
+    ("a.csv", "time [s],ax [g]\n" + rows(), {"column": 2}, "plain text needs step and unit: write record = {file"),
     ("a.txt", "nothing\nof the kind\n", {}, "it has no lines of numbers: it is no record"),
     ("a.AT2", IN_G + FIELDS, {"unit": "g"}, "PEER .AT2 states its own unit: remove unit"),
     ("a.csv", b"\x89PNG\r\n\x1a\n\0\0\0", {}, "must be text in UTF-8"),
@@ -307,6 +318,8 @@ def test_columns_side_by_side_are_taken_one_by_one_or_in_their_order():
         samples, _ = read(text, step=0.01, unit="m/s^2", column=column)
         assert samples[:, 1].tolist() == values
     assert 'unit = "g", column = 1}' in str(refusal(read, text, kind=RecordError))
+    samples, reading = read("0.00,0.1\n0.01,0.2\n0.02,0.1\n", step=0.01, unit="m/s^2", column=2)
+    assert (samples[:, 1].tolist(), reading.notes) == ([0.1, 0.2, 0.1], ()), "no decimal commas beside points"
 
 
 def test_a_time_that_contradicts_the_stated_step_is_noticed():
@@ -374,6 +387,8 @@ def test_files_of_jma_have_three_directions_and_no_time():
             "3 values: Duration Time(s)",
         ),
         ("a.NS", KNET.format("N-S").replace("-2000", "-2*00"), "line 18: '-2*00': must be a number"),
+        ("a.NS", KNET.format("N-S").replace("Scale Factor", "Scale"), "plain text needs step and unit"),
+        ("a.csv", JMA.replace("UNIT", "IN"), "must be a header such as time [s]"),
         ("a.ASC", ESM.format("E").replace("NDATA: 3", "NDATA: 4"), "3 values: the header says NDATA: 4"),
         ("a.ASC", ESM.format("E").replace("cm/s^2", "cm/s"), "UNITS: 'cm/s': must be that of an acceleration"),
         ("a.csv", JMA.replace("5.0", "x"), "line 8: 'x': must be a number"),
