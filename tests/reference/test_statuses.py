@@ -1,5 +1,7 @@
 """Each way a run can fail, provoked by a scene, with the instant it happens at."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from chains import chain
@@ -141,17 +143,15 @@ def test_a_run_of_too_many_steps_ends_at_its_limit(monkeypatch):
 
 def test_a_run_has_the_unit_the_time_and_the_steps_of_its_scene():
     scene = chain(0.25, 0.1, [3.0, 0.2], [[5e5, 9.0]], [[1.0, 0.5], [0.3, -0.4]], (0.9, 0.5), (0.3, 40.0), 3.0)
-    system, demand = surface.prepare_run(scene, "exact", None, 1e-6, None, "consistent")
+    settings = {"equations": "exact", "regularization": None, "tolerance": 1e-6, "cutoff": None}
+    prepare = partial(surface.prepare_run, **settings, rest_condition="consistent")
+    system, demand = prepare(scene)
     assert (demand.unit, demand.period) == pytest.approx((np.hypot(1.5, 0.7), 20.0 * np.pi / system.fastest))
     assert demand.step_limit == 20_000 + int(1000.0 * 3.0 / 0.5 + 30.0 * 3.0 * system.fastest / (2.0 * np.pi))
     slow = scene.with_values({"bodies.1.stiffness": [20.0, 9.0]})
-    assert surface.prepare_run(slow, "exact", None, 1e-6, None, "consistent")[1].period == pytest.approx(
-        2.0 * np.pi / 40.0
-    )
+    assert prepare(slow)[1].period == pytest.approx(2.0 * np.pi / 40.0)
     record = {"record": {"time": [0.0, 0.1, 0.3], "acceleration": [[3.0, 4.0], [0.0, 1.0], [0.0, 0.0]]}}
-    system, demand = surface.prepare_run(
-        slow.with_values({"excitation": record}), "exact", None, 1e-6, None, "consistent"
-    )
+    system, demand = prepare(slow.with_values({"excitation": record}))
     steps = 1000.0 * 3.0 / (2.0 * np.pi * 4.0 / 30.0) + 30.0 * 3.0 * system.fastest / (2.0 * np.pi) + 10.0 * 3.0
     assert (demand.unit, demand.step_limit) == (5.0, 20_000 + int(steps))
 

@@ -12,16 +12,7 @@ import reference
 from reference import phase_maximum
 from reference.measures import local_search
 from reference.measures.local_maxima import find_local_maxima
-from reference.measures.local_search import (
-    ComputedPhases,
-    LocalSearch,
-    advance_searches,
-    classify_maximum,
-    make_square_nodes,
-    merge_searches,
-    predict_best,
-)
-from reference.measures.local_search import Surface as LocalSurface
+from reference.measures.local_search import ComputedPhases, LocalSearch
 from reference.problem import Amplification, Scene, builtin_scenes, phase_grid
 from reference.problem.symmetry import find_half_turns
 
@@ -140,7 +131,7 @@ def test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted(monkeypatch:
 
 def test_searches_merge_move_and_end_by_their_rules(monkeypatch: pytest.MonkeyPatch) -> None:
     wide, high = LocalSearch(TOP + 0.02, 1.0, 0.0, 0.03, count=2), LocalSearch(TOP, 2.0, 0.0, 0.001, count=3)
-    [kept] = merge_searches([wide, high], np.zeros((1, 2)))
+    [kept] = local_search.merge_searches([wide, high], np.zeros((1, 2)))
     assert (kept, kept.count) == (high, 5), "in the square of either"
     kept.history = [(0.1, 1.0), (0.02, 1.7), (0.002, 1.9), *[(0.002, 2.0)] * 5]
     assert kept.recent_gain == pytest.approx(0.3), "since it was ten times as wide"
@@ -150,14 +141,14 @@ def test_searches_merge_move_and_end_by_their_rules(monkeypatch: pytest.MonkeyPa
     kept.move_to_best(points)
     assert (kept.phases.tolist(), kept.value, kept.error) == ((TOP + 1.0).tolist(), 3.0, 0.2)
     spike = scene_with(monkeypatch, lambda phases: np.where((phases == TOP).all(axis=1), 2.0, 1.0))
-    surface, top = LocalSurface(spike, phase_maximum.amplification, {}, 0), LocalSearch(TOP, 2.0, 0.0, 0.1)
-    assert classify_maximum(surface, top)[0] == "kink", "no side of it is high"
-    square = surface.compute(TOP + 0.1 * make_square_nodes(3)[0])
+    surface, top = local_search.Surface(spike, phase_maximum.amplification, {}, 0), LocalSearch(TOP, 2.0, 0.0, 0.1)
+    assert local_search.classify_maximum(surface, top)[0] == "kink", "no side of it is high"
+    square = surface.compute(TOP + 0.1 * local_search.make_square_nodes(3)[0])
     square.numerator[:] = [1.5, *[1.0] * 7, np.nan]  # which is taken for the lowest
-    assert (predict_best(surface, top, square)[0] > TOP).all()
+    assert (local_search.predict_best(surface, top, square)[0] > TOP).all()
     flat = scene_with(monkeypatch, lambda phases: np.full(len(phases), 1.0 if len(phases) > 1 else 0.5))
     missed = LocalSearch(TOP, 1.0, 0.1, 0.1)
-    advance_searches(LocalSurface(flat, phase_maximum.amplification, {}, 0), [missed])
+    local_search.advance_searches(local_search.Surface(flat, phase_maximum.amplification, {}, 0), [missed])
     assert missed.half_width > 0.0, "the values are alike, and the prediction failed"
 
 

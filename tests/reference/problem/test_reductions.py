@@ -47,7 +47,11 @@ def places(*supports: list[float]) -> dict[str, Any]:
 
 def upon(upper: dict[str, Any]) -> dict[str, Any]:
     """A third body on two that stand alike along x and y."""
-    bodies = [{"mass": 1.0}, {"mass": 0.8, "period": [1.5, 1.5], "damping": 0.1}, {"mass": 0.5, **upper}]
+    bodies = [
+        {"mass": 1.0},
+        {"mass": 0.8, "period": [1.5, 1.5], "damping": 0.1},
+        {"mass": 0.5, "period": [1.5, 1.5], **upper},
+    ]
     return {**OBLIQUE, "bodies": bodies}
 
 
@@ -113,12 +117,7 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     ),
     (is_planar, upon({"period": [1.5, 1.5 + 1e-9]}), False, "loading across links that are not equally stiff"),
     (is_planar, {**ALIKE, "bodies.1.damping": 0.1}, True, "(4.7): one direction of loading"),
-    (
-        is_planar,
-        upon({"period": [1.5, 1.5], "damping": [0.1, 0.2]}),
-        False,
-        "loading across links that are not equally damped",
-    ),
+    (is_planar, upon({"damping": [0.1, 0.2]}), False, "loading across links that are not equally damped"),
     (has_planar_chain, {**ALONG_X, "bodies": [{"mass": 1.0}]}, False, "one body"),
     (is_linear, SMOOTH, True, "no friction, no vertical loading"),
     (is_linear, {}, False, "dry friction"),
@@ -131,12 +130,7 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     (has_half_turn_symmetry, {}, True, "no vertical loading"),
     (has_one_axis_per_harmonic, UPRIGHT, False, "vertical loading"),
     (has_one_axis_per_harmonic, TWICE_SHAKEN, True, "each harmonic has its own axis"),
-    (
-        has_one_axis_per_harmonic,
-        {"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]},
-        False,
-        "a harmonic acts along both",
-    ),
+    (has_one_axis_per_harmonic, {"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]}, False, "a harmonic acts"),
     (has_one_axis_per_harmonic, ALONG_X, False, "a harmonic acts along both axes, or both along one"),
     (has_no_friction_law, SMOOTH, True, "no friction"),
     (has_no_friction_law, law(fast=0.0, rate=10.0), False, "friction"),
@@ -154,11 +148,7 @@ def test_a_scene_says_what_may_be_left_out_and_why(
 
 def test_a_bound_on_all_rates_and_the_direction_of_a_harmonic_alone() -> None:
     """The fastest is the loading, its decay, or the link of a light body above along y."""
-    for periods, decay, stiff in (
-        ((0.9, 1e-3), (0.1, 0.2), 9.0),
-        ((0.9, 1.1), (80.0, 0.1), 9.0),
-        ((2.0, 3.0), (0, 0), 1e6),
-    ):
+    for periods, decay, stiff in (((1, 1e-3), (0, 0), 9.0), ((1, 1), (80, 0), 9.0), ((2, 3), (0, 0), 1e6)):
         scene = chain(0.25, 0.0, [3.0, 2.0, 0.1], [[8.0, 9.0], [7.0, stiff]], periods=periods, decay=decay)
         load, natural = reference.problem.exponents(scene), reference.natural_modes.modes(scene).frequency.max()
         fastest = max(natural, load.imag.max(), -load.real.min())

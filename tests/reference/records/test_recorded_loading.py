@@ -31,12 +31,7 @@ ANY = (0.0, 0.0)  # a record has no phases
 
 @pytest.fixture
 def folder(tmp_path):
-    files = {
-        "a.csv": CSV,
-        "b.csv": CSV.replace("-3", "-6"),
-        "x.AT2": AT2,
-        "slow.AT2": AT2.replace(".0200", ".02000005"),
-    }
+    files = {"a.csv": CSV, "b.csv": CSV.replace("-3", "-6"), "x.AT2": AT2, "slow.AT2": AT2.replace("200 ", "2000005 ")}
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     return tmp_path
