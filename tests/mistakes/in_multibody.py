@@ -360,5 +360,11 @@ MISTAKES = (
             "Bearings that give way count as an error.", (UNEVEN + "test_a_push_that_no_contact_follows_is_an_error_of_the_engine",)),
     Mistake(INTEGRATION + "chunk.py", "accelerations[row, bodies[body, 1]] + plate[row, 1]", "accelerations[row, bodies[body, 2]] + plate[row, 1]",
             "Accelerations along y are those along z.", (TESTS + "test_early_end.py::test_what_is_read_from_every_row_is_that_of_numpy",)),
+    Mistake("multibody/motion.py", "if not np.isfinite(ground_peak(scene, [checked])[0]):", "if False:",
+            "A load that overflows ends in an error of Python.", ("tests/reference/test_peak_demands.py::test_a_pair_without_an_answer_is_nan_and_costs_no_other",)),
+    Mistake("multibody/film.py", "gap = factor * float(np.diff(heights).min())", "gap = factor * float(np.diff(heights).max())",
+            "Boxes are as thick as the widest gap permits.", ("tests/multibody/test_animate.py::test_a_film_has_room_for_the_widest_box_the_farthest_support_and_the_nearest_boxes",)),
+    Mistake("multibody/animate.py", "for pixels in settings.size)", "for pixels in settings.size[:1])",
+            "A film may be ten pixels high.", ("tests/multibody/test_animate.py::test_wrong_options_end_with_one_line_before_anything_is_run",)),
 )
 # fmt: on

@@ -128,7 +128,7 @@ NAMED = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen
         (["fig3-I", "--speed", "501"], "give 0.33 to 5e+02"),
         (["fig3-I", "--stretch", "1e300"], "--stretch"),
         (["fig3-I", "--rate", "30"], "--rate: 30: must be 1, 2, 4, 5, 10, 20, 25 or 50 per second"),
-        (["fig3-I", "--size", "10", "500"], "--size: 10 500: must be 320 to 4000 pixels each"),
+        (["fig3-I", "--size", "500", "10"], "--size: 500 10: must be 320 to 4000 pixels each"),
         (["fig3-I", "--out", "/dev/null/run.gif"], "--out"),
         (["fig3-I", "--out", "run.mp4"], "must end in .gif"),
         (["fig3-I", "--out", "/"], "is a folder"),

@@ -43,6 +43,8 @@ SPELLED = {  # of one station: x, y and z, or x and y
     "azimuths 15 degrees askew": ("260", "345", "-UP"),
     "azimuth 360": ("270", "360", "-UP"),
     "quadrants": ("_N18E", "_S72E", "_UP"),
+    "quadrants beyond north": ("_N72E", "_N18W", "_UP"),
+    "a word and a quadrant": ("_EW", "_N18E"),
     "channels": (".HNE", ".HNN", ".HNZ"),
     "numbered channels": ("_HN1", "_HN2", "_HNZ"),
     "lower case": ("_ew", "_ns", "_ud"),
@@ -146,7 +148,7 @@ def test_single_components_are_plane_motions_where_asked_for(tmp_path):
     assert family.labels == {"excitation.record.motion": ("A_H1", "A_H2", "GM001", "GM002")}
     peaks = [scene.record[0, 1:].tolist() for scene in family.scenes]
     assert peaks == [[GRAVITY * number, 0.0, 0.0] for number in (3.0, 4.0, 1.0, 2.0)]
-    for name in ("B_N.AT2", "B_Z.AT2"):
+    for name in ("B_N.AT2", "B_Z.AT2", "ALONE_UP.AT2"):
         (place / name).write_text(AT2.format(6))
     assert "Ignored: 2 vertical components." in list_motions(str(place), place, 1).sentence
     for wrong in ("3", '"one"', "true"):
