@@ -190,7 +190,7 @@ REFUSED = [  # name, text, options, and words of the line
     ("a.AT2", (IN_G + FIELDS).replace(".0100 SEC", ".0 SEC"), {}, "line 4: DT = .0 s: must be greater than 0"),
     ("a.AT2", (IN_G + FIELDS).replace("= 5,", "= x,"), {}, "line 4: NPTS = 'x': must be a whole number"),
     ("a.AT2", IN_G + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
-    ("a.AT2", IN_G + FIELDS + " .1E-01\n", {}, "line 7: 6 values: the header says NPTS = 5"),
+    ("a.AT2", IN_G + FIELDS + " .1E-01\n .2E-01\n", {}, "line 7: 7 values: the header says NPTS = 5"),
     ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
     ("a.AT2", IN_G + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
     (
@@ -242,6 +242,7 @@ REFUSED = [  # name, text, options, and words of the line
         "line 3: 'VELOCITY TIME SERIES IN UNITS OF CM/S': is no acceleration: take the .AT2 file of the same name",
     ),
     ("a.txt", "Response spectra of an accelerogram\n" + ONE, {}, "its header names spectra: it is no record"),
+    ("a.raw", "time [s],ax [g]\n" + rows(), {}, "a file of a network that is not read as it is"),
     ("a.V1c", "counts\n" + ONE, {}, "a file of a network that is not read as it is: docs/guide/networks.md converts"),
     ("a.txt", "0.1\nx\n", {"step": 0.01, "unit": "g"}, "line 2: 'x': must be a number"),
     (
@@ -338,7 +339,7 @@ COSMOS = (
     "Corrected acceleration (Format v01.20 with 1 text lines)\n 100 Real-header values follow on  17 lines, "
     "Format= (6F13.6)\n"
     + "".join("".join(f"{0.01 if row == 5 and at == 3 else 7.0:13.6f}" for at in range(6)) + "\n" for row in range(17))
-    + "   3 acceleration pts, approx  1 secs, units=cm/sec2(04),Format=(8F10.4)\n 1000.0000-2000.0000 3000.0000\n"
+    + "   3 acceleration pts, approx  1 secs, units=cm/sec2(04),Format=(8F11.4)\n  1000.0000 -2000.0000  3000.0000\n"
     "   3 velocity pts, approx 1 secs, units=cm/sec(05),Format=(8F10.4)\n   9.0000   9.0000   9.0000\n"
 )
 CSMIP = (
@@ -382,6 +383,7 @@ def test_files_of_jma_have_three_directions_and_no_time():
         ("a.NS", KNET.format("N-S").replace("-2000", "-2*00"), "line 18: '-2*00': must be a number"),
         ("a.NS", KNET.format("N-S").replace("Scale Factor", "Scale"), "plain text needs step and unit"),
         ("a.csv", JMA.replace("UNIT", "IN"), "must be a header such as time [s]"),
+        ("a.ASC", ESM.format("E").replace("-2000.0", "x"), "line 8: 'x': must be a number"),
         ("a.ASC", ESM.format("E").replace("NDATA: 3", "NDATA: 4"), "3 values: the header says NDATA: 4"),
         ("a.ASC", ESM.format("E").replace("cm/s^2", "cm/s"), "UNITS: 'cm/s': must be that of an acceleration"),
         ("a.csv", JMA.replace("5.0", "x"), "line 8: 'x': must be a number"),

@@ -202,7 +202,7 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
     (place / "other.acc").write_text("4\n5\n6\n")
     text = (
         "name,x,y,z,factor,step,unit,skip,column\nfirst,two.txt,,,2,0.02,m/s^2,1,2 1\n"
-        "second,one.acc,other.acc,,1,0.01,gal,,\n"
+        "second,one.acc,other.acc,,1,0.01,gal,,1\n"
         "third,one.acc,,,1,0.01,gal,,1\nfourth,GM001.AT2,,,1,,,,\n"
     )
     (place / FILE_NAME).write_text(text)
@@ -214,7 +214,7 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
     listed = list_motions(str(place), place)
     (place / FILE_NAME).write_text(motion_list_text(listed.motions))
     assert list_motions(str(place), place) == listed, "what is written says the same"
-    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,\n" in motion_list_text(listed.motions)
+    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,1\n" in motion_list_text(listed.motions)
 
 
 def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
