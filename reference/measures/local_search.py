@@ -20,6 +20,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from reference.problem.definition import ground_peak
+from reference.problem.outcome import Outcome
 from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
@@ -78,6 +79,7 @@ class Surface:
     body: int  # index of the body, from 0
     quantity: str = "amplification"  # "amplification" or "displacement"
     evaluations: int = 0  # number of phase pairs computed so far
+    outcome: str = ""  # last outcome that was not ok
 
     def denominator(self, phases: Array) -> Array:
         """Return the denominator of (5.1) at phase pairs (M, 2), rad, (M,), m/s^2; 1 for a displacement."""
@@ -87,6 +89,7 @@ class Surface:
         """Return the surface at phase pairs (M, 2), rad, computed with `changes` of the settings."""
         result = self.amplification(self.scene, phases, **{**self.settings, **changes})
         self.evaluations += len(phases)
+        self.outcome = next((str(status) for status in result.status[::-1] if status != Outcome.OK.value), self.outcome)
         denominator = self.denominator(phases)
         if self.quantity == "amplification":
             return ComputedPhases(

@@ -150,6 +150,10 @@ def test_searches_merge_move_and_end_by_their_rules(monkeypatch: pytest.MonkeyPa
     missed = LocalSearch(TOP, 1.0, 0.1, 0.1)
     local_search.advance_searches(local_search.Surface(flat, phase_maximum.amplification, {}, 0), [missed])
     assert missed.half_width > 0.0, "the values are alike, and the prediction failed"
+    ones, statuses = np.ones((3, 1)), np.array(["rim reached", "contact lost", "ok"])
+    surface.amplification = lambda *given, **options: Amplification(ones, ones, statuses, np.zeros(3), 0.0)
+    surface.compute(np.zeros((3, 2)))
+    assert surface.outcome == "contact lost", "the last that was not ok"
 
 
 def test_a_wrong_argument_and_a_record_are_refused_in_one_line() -> None:
