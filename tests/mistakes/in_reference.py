@@ -199,7 +199,7 @@ MISTAKES = (
     Mistake("reference/building.py", "elongation = np.diff(shape, axis=0, prepend=0.0)",
             "elongation = np.diff(shape, axis=0, prepend=shape[:1])",
             "Modal damping lacks the damper of the lowest story.",
-            (BUILDING + "test_modal_damping_of_a_shear_building_is_proportional_to_frequency",)),
+            (BUILDING + "test_the_lines_of_a_building_have_its_numbers_with_their_units",)),
     Mistake("reference/building.py", "elongation**2 / (2.0 * frequency)", "elongation**2 / frequency",
             "Modal damping is twice as large.",
             (BUILDING + "test_modal_damping_is_that_of_complex_modes_where_dampers_are_weak",)),
