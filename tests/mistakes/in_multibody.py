@@ -366,5 +366,7 @@ MISTAKES = (
             "Boxes are as thick as the widest gap permits.", ("tests/multibody/test_animate.py::test_a_film_has_room_for_the_widest_box_the_farthest_support_and_the_nearest_boxes",)),
     Mistake("multibody/animate.py", "for pixels in settings.size)", "for pixels in settings.size[:1])",
             "A film may be ten pixels high.", ("tests/multibody/test_animate.py::test_wrong_options_end_with_one_line_before_anything_is_run",)),
+    Mistake("multibody/models/links.py", "if all(link.bars is None for link in links)", "if any(link.bars is None for link in links)",
+            "One stiff link hides how fast elastic bars are.", ("tests/multibody/test_reported_numbers.py::test_of_unequal_supports_links_and_angles_the_right_one_counts",)),
 )
 # fmt: on

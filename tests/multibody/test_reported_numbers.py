@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -29,9 +29,13 @@ from multibody.integration.time_scales import largest_step, list_brief_motions
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
+from multibody.models.links import fastest_bar_frequency
 from multibody.models.plane import _largest_distance_possible
 from multibody.models.spatial import _critical_tilt
+from multibody.models.units import units_of
+from multibody.motion import _measure_attitude
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, load_scene
+from reference.problem.bar_links import BarLink
 
 PHASE = (0.3, 1.1)
 BRIEF = load_scene("fig3-I").with_values({"duration": 0.5})
@@ -374,6 +378,20 @@ def three_bodies_on_bars() -> ImpactLaw:
 
 
 UPRIGHT = np.tile(np.eye(3), (3, 1, 1))
+
+
+def test_of_unequal_supports_links_and_angles_the_right_one_counts() -> None:
+    law = three_bodies_on_bars()
+    assert law.depressions._farthest == pytest.approx(math.hypot(1.1, 1.05, 0.3)), "the second of three"
+    bars: Any = SimpleNamespace(bars=BarLink(shear=3.0, bending=5.0, tension=70.0, torsion=2.0, pendulum=0.0, load=1.0))
+    stiff, chain_of = cast("Any", SimpleNamespace(bars=None)), (law.masses, np.tile(np.eye(3), (3, 1, 1)), law.centers)
+    alone = fastest_bar_frequency([bars], *(part[1:] for part in chain_of))
+    assert fastest_bar_frequency([stiff, bars], *chain_of) == pytest.approx(alone)
+    flat = BRIEF.with_values({"isolator.period": None, "isolator.radius": math.inf, "duration": 0.2})
+    assert units_of(flat).time == pytest.approx(0.2 / (2.0 * math.pi)), "shorter than a period of the loading"
+    motion: Any = SimpleNamespace(coordinates=np.array([[0.0, 0.0, 0.0, 0.5, 0.7, 0.2]]), gap=np.zeros((1, 0)))
+    attitude = _measure_attitude(cast("Any", SimpleNamespace(bodies=np.arange(3)[None])), motion, np.zeros(1))
+    assert np.cos(attitude["tilt"]) == pytest.approx(rotation_matrices(np.array([0.5, 0.7, 0.2]))[2, 2])
 
 
 def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
