@@ -254,6 +254,6 @@ def _word_breaches(
 
 
 def _word_value(place: xr.Dataset, model: Model) -> str:
-    """Return mu by a model with its error in words."""
+    """Return the amplification mu by a model with its error in words."""
     mu, error = (float(place[name].sel(model=model.key)) for name in ("mu", "error"))
     return f"{model.title} {mu:.6g} ± {error:.1g}" if np.isfinite(error) else f"{model.title} {mu:.6g} (error unknown)"

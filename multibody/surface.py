@@ -146,7 +146,7 @@ def amplification(
 @dataclass(frozen=True)
 class _ReducedModel:
     """
-    Smallest model with the same mu as the model that the caller names.
+    Smallest model with the same amplification mu as the model that the caller names.
 
     complete: assembles the model that the caller names, for pairs where the reduced model has no answer; None where it
     is not reduced. in_full: whether every run goes to the end of the motion.

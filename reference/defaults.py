@@ -2,5 +2,5 @@
 
 from __future__ import annotations
 
-# Relative error that is required of every mu, and of the accelerations inside each step of a trajectory.
+# Relative error that is required of every amplification mu, and of the accelerations inside each step of a trajectory.
 DEFAULT_TOLERANCE = 1e-6

@@ -33,7 +33,7 @@ from reference.support.arguments import check_choice, check_number
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")  # quantities that `worst_phases` maximizes
-GRID_TOLERANCE = 1e-4  # relative error of mu on the grid of phases
+GRID_TOLERANCE = 1e-4  # relative error of the amplification mu on the grid of phases
 MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
 MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by more is neither classified nor refined
 

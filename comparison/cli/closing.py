@@ -118,7 +118,7 @@ def word_next_commands(results: Results, words: Sequence[str]) -> list[str]:
 
 
 def _film_command(headline: Headline, source: str) -> str:
-    """Return the command that makes a film of the motion with the largest mu."""
+    """Return the command that makes a film of the motion with the largest amplification mu."""
     phases = " ".join(f"{phase:.4f}" for phase in headline.maximum_phases)
     source = f"./{source}" if source.startswith("-") else source  # A leading hyphen would make it an option.
     return f"python -m multibody.animate {shlex.quote(source)} --phases {phases} --model {headline.maximum_model}"

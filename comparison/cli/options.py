@@ -18,7 +18,7 @@ from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 
-MIN_TOLERANCE = 1e-8  # smallest relative error of mu that --tolerance may ask for
+MIN_TOLERANCE = 1e-8  # smallest relative error of the amplification mu that --tolerance may ask for
 DEFAULT_GRID = 48  # phases per axis without --grid; a model with `Model.most` computes at most so many
 
 

@@ -23,7 +23,7 @@ from comparison.surfaces.waterfall import UNEQUAL_PHASES, Waterfall
 from comparison.surfaces.waterfall_chart import make_common_scale, place_bars
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 
-MIN_DRAWN_BAR = 0.01  # share of mu: a chart whose bars are all shorter is not drawn
+MIN_DRAWN_BAR = 0.01  # share of the amplification mu: a chart whose bars are all shorter is not drawn
 # scripts that are joined, in this order, to the script of the page
 SCRIPT_FILES = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 

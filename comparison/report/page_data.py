@@ -22,7 +22,7 @@ from reference.problem import Scene
 
 Rows = list[list[float | None]]  # one row for each alpha1, in it one value for each alpha2
 
-MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of mu and of an error
+MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of the amplification mu and of an error
 COMPRESSION_LEVEL = 6  # gzip's level for data on the page: level 7 takes half as long again for 2 % less
 
 

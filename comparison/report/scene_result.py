@@ -32,7 +32,7 @@ class ModelOutcome(Part):
 
 @result
 class RecordValue:
-    """mu of one model and body under a recorded motion."""
+    """Amplification mu of one model and body under a recorded motion."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]

@@ -123,7 +123,7 @@ def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Replace unusable answers by NaN, in place: mu and error (M, N), status (M).
+    Replace unusable answers by NaN, in place: amplification mu and error (M, N), status (M).
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is

@@ -152,7 +152,7 @@ class Model:
 @dataclass(frozen=True)
 class Pair:
     """
-    Two models whose difference is reported: `second` minus `first`, as a share of mu of `base`.
+    Two models whose difference is reported: `second` minus `first`, as a share of the amplification mu of `base`.
 
     effect: what the second adds to the first, "" for a pair that several effects or the reading of (5.1) tell apart.
     """

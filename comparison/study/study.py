@@ -63,7 +63,7 @@ def levels_of_phases(grid: int) -> NDArray[np.intp]:
 @dataclass(frozen=True)
 class Study:
     """
-    Scenes x models x a grid of `grid` by `grid` phase pairs, each mu to the relative error `tolerance`.
+    Scenes x models x a grid of `grid` by `grid` phase pairs, each amplification mu to the relative error `tolerance`.
 
     A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion

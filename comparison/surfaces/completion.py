@@ -56,7 +56,7 @@ Arguments = tuple[Scene, Model, Mapping[str, object], Array]
 
 @dataclass(frozen=True)
 class HeldOut:
-    """mu and its estimated absolute error, (n, N), at held-out phase pairs; NaN without an answer."""
+    """Amplification mu and its estimated absolute error, (n, N), at held-out phase pairs; NaN without an answer."""
 
     mu: Array
     error: Array
@@ -153,7 +153,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
 
 
 def compute_held_out(task: Arguments) -> HeldOut:
-    """Return mu of one model at the phase pairs of one task. Runs inside a worker process."""
+    """Return the amplification mu of one model at the phase pairs of one task. Runs inside a worker process."""
     scene, model, settings, phases = task
     answer = compute_amplification(scene, model, phases, **settings)
     return HeldOut(np.asarray(answer.mu, float), np.asarray(answer.error, float))
@@ -241,7 +241,7 @@ def _complete_body(
     about = scene.name, model.key, finer.key if finer else "", body
 
     def mu(of: Model, on: Model) -> Array:
-        """Return the usable mu of a body by model `of` at the phases of model `on`."""
+        """Return the usable amplification mu of a body by model `of` at the phases of model `on`."""
         values: Array = usable_mu(surfaces, scene.name, of, on)[body - 1]
         return values
 

@@ -1,4 +1,4 @@
-"""Distribution of mu by model over uniform phases, and its maximum on the phases computed."""
+"""Distribution of the amplification mu by model over uniform phases, and its maximum on the phases computed."""
 
 from collections.abc import Iterator, Sequence
 from typing import Annotated
@@ -19,7 +19,7 @@ CURVE_PROBABILITIES = np.linspace(0.01, 0.99, 50)  # probabilities of the points
 
 @result
 class Fractile:
-    """The value that mu stays below with a probability."""
+    """The value that the amplification mu stays below with a probability."""
 
     probability: Annotated[float, "probability"]
     value: Annotated[Number, "fractile of mu"]
@@ -28,7 +28,7 @@ class Fractile:
 
 @result
 class Distribution:
-    """mu of one model and body over phases that are independent and uniform."""
+    """Amplification mu of one model and body over phases that are independent and uniform."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]

@@ -100,7 +100,7 @@ def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) 
     stride = find_common_stride(surfaces, scene, *models)
 
     def mu(model: Model) -> Array:
-        """Return the usable mu of the body at the phases that all models have."""
+        """Return the usable amplification mu of the body at the phases that all models have."""
         every: Array = usable_mu(surfaces, scene, model, *models)[body - 1]
         return every
 
@@ -125,5 +125,5 @@ def usable_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
 
 
 def drop_unusable_values(mu: Array, error: Array) -> Array:
-    """Return mu where its error is at most half of it or unknown, NaN elsewhere."""
+    """Return the amplification mu where its error is at most half of it or unknown, NaN elsewhere."""
     return np.where(error > MAX_USABLE_ERROR * mu, np.nan, mu)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from comparison.surfaces.headline import Effect, Headline
 
 
-# Relative difference below which two mu count as equal: the error asked of the equations
+# Relative difference below which two amplification mu count as equal: the error asked of the equations
 EQUAL_DIFFERENCE = 1e-6
 UNRESOLVED_TEXT = "less than five times the numerical error"  # words for a difference that is not resolved
 MAX_NAMED_SCENES = 4  # largest number of scenes that a sentence names

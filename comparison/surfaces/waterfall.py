@@ -16,7 +16,7 @@ from comparison.surfaces.model_difference import RESOLVED_RATIO
 
 NAN = float("nan")
 UNEQUAL_PHASES = "phases"  # key of the bar for what remains because the models have different phase pairs
-MAX_ROUNDING_SHARE = 1e-9  # share of mu: a smaller remainder is rounding and has no bar
+MAX_ROUNDING_SHARE = 1e-9  # share of the amplification mu: a smaller remainder is rounding and has no bar
 
 
 @result

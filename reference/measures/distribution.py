@@ -1,4 +1,4 @@
-"""Distribution of mu over initial phases that are independent and uniform over a full turn."""
+"""Distribution of the amplification mu over initial phases that are independent and uniform over a full turn."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def fractile(values: ArrayLike, probability: float) -> float:
 @dataclass(frozen=True)
 class PhaseDistribution:
     """
-    Distribution of mu of one body over uniform initial phases.
+    Distribution of the amplification mu of one body over uniform initial phases.
 
     Attributes
     ----------
@@ -94,14 +94,14 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     coarse = [part for part in (values[i::2, j::2] for i in (0, 1) for j in (0, 1)) if np.isfinite(part).any()]
 
     def estimate_mean() -> Estimate:
-        """Return the mean of mu with its error."""
+        """Return the mean of the amplification mu with its error."""
         value = float(values[known].mean())
         sampling = max(abs(float(np.nanmean(part)) - value) for part in coarse)
         error = SAMPLING_FACTOR * sampling + float(errors.mean())
         return Estimate(value, error if known.all() else float("nan"))
 
     def estimate_fractile(probability: float) -> Estimate:
-        """Return the value that mu stays below with this probability, with its error."""
+        """Return the value that the amplification mu stays below with this probability, with its error."""
         value = fractile(values[known], probability)
         sampling = max(abs(fractile(part[np.isfinite(part)], probability) - value) for part in coarse)
         higher = fractile(np.where(known, values + errors, np.inf), probability) - value

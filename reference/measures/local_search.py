@@ -71,7 +71,7 @@ class ComputedPhases:
 
 @dataclass
 class Surface:
-    """A surface to search: mu of one body, or the displacement of the platform, m, over the phases."""
+    """A surface to search: amplification mu of one body, or the displacement of the platform, m, over the phases."""
 
     scene: Scene
     amplification: Callable[..., Amplification]

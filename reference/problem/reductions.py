@@ -46,7 +46,7 @@ def has_half_turn_symmetry(scene: Scene) -> Reduction:
 
 
 def has_one_axis_per_harmonic(scene: Scene) -> Reduction:
-    """Find whether adding pi to either phase alone mirrors the motion, with the same mu."""
+    """Find whether adding pi to either phase alone mirrors the motion, with the same amplification mu."""
     if not has_half_turn_symmetry(scene):
         return has_half_turn_symmetry(scene)
     used = scene.amplitudes[:2] != 0.0

@@ -122,7 +122,7 @@ class Amplification:
         return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {facts}{basis}>"
 
     def _repr_html_(self) -> str:
-        """Return a table of mu of each body for notebooks."""
+        """Return a table of the amplification mu of each body for notebooks."""
         bodies = self.mu.shape[-1]
         rows = []
         for body, (mu, error) in enumerate(zip(*(each.reshape(-1, bodies).T for each in (self.mu, self.error))), 1):

@@ -34,7 +34,7 @@ ENGINE = "multibody:amplification"  # import path of the engine function that th
 
 @command
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
-    """Vary the scenes of the command line and print the changes of mu; return the exit code."""
+    """Vary the scenes of the command line and print the changes of the amplification mu; return the exit code."""
     parser = CommandParser(
         "assumptions",
         "How far mu_i of the spatial model is from the translational one, over rings, heights, ovals, offsets, angles.",

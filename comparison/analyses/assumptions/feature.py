@@ -27,14 +27,14 @@ AXES: dict[Axis, str] = {
     "offset": "offset of bodies in the worst direction, m",
     "yaw": "angle of bodies and links in the worse sense, rad",
 }
-# Bands of a plot within which a change of mu, in percent, is small
+# Bands of a plot within which a change of the amplification mu, in percent, is small
 BANDS = [
     {"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in CHANGE_LIMITS
 ]
 
 
 def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
-    """Return a plot of the largest change of every mu_i over each varied quantity that has an effect."""
+    """Return a plot of the largest change of every amplification mu_i over each varied quantity that has an effect."""
     told = {each.key for each in found.ranges if each.scene == scene.name and not each.no_effect}
     panels = []
     for key in (key for key in AXES if key in told):
@@ -78,7 +78,7 @@ def section_context(report: Report) -> Mapping[str, Any]:
 
 
 def assumption_verdict(results: Results) -> str:
-    """Return the verdict in the section's title: how much mu changes when bodies may turn."""
+    """Return the verdict in the section's title: how much the amplification mu changes when bodies may turn."""
     return describe_verdict(FOUND.read_from(results))
 
 

@@ -19,7 +19,7 @@ from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UND
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
-NO_EFFECT = "no effect by symmetry"  # text in place of a change of mu that a symmetry makes zero
+NO_EFFECT = "no effect by symmetry"  # text in place of a change of the amplification mu that a symmetry makes zero
 Base = Literal["the translational model", "the stated spatial model"]  # model from whose mu a change is taken
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
@@ -68,7 +68,7 @@ def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: Ass
 
 
 def describe_change(change: Change) -> str:
-    """Return a phrase: by how much mu_i changes, with error, reading, base model and phase pair."""
+    """Return a phrase: by how much the amplification mu_i changes, with error, reading, base model and phase pair."""
     if change.no_effect:
         return f"mu_{change.body}: {NO_EFFECT}"
     if not math.isfinite(change.size):
@@ -153,7 +153,7 @@ def describe_variation(scene: Scene, variation: Variation) -> str:
 
 
 def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
-    """Return in words by how much a trial in one direction changed every mu_i, or NO_EFFECT."""
+    """Return in words by how much a trial in one direction changed every amplification mu_i, or NO_EFFECT."""
     what = describe_variation(scene, trial.variation)
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"

@@ -86,7 +86,7 @@ def answer_trials(task: Arguments) -> TaskTrials:
     if what is None:
         return TaskTrials((amplification_of(short, translational, None, tolerance, pairs),))
     if isinstance(what, Variation):
-        # One phase pair verifies that symmetry leaves mu unchanged.
+        # One phase pair verifies that symmetry leaves the amplification mu unchanged.
         checked = pairs[:1] if blind_by_symmetry(short, what) else pairs
         return TaskTrials((amplification_of(short, spatial, what, tolerance, checked),))
     plain = amplification_of(short, translational, None, tolerance, pairs)

@@ -37,7 +37,7 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
-# rad; rotation changes mu most at the first phase pair in fig3-I, at the second in fig3-II
+# rad; rotation changes the amplification mu most at the first phase pair in fig3-I, at the second in fig3-II
 PHASES = ((0.0, 0.0), (2.0, 0.7))
 MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
 SIZES, MORE_SIZES = 2, 8  # number of sizes along the worst direction of an assumption: in a study, in the command
@@ -58,11 +58,11 @@ class AssumptionCell:
     """why symmetry leaves the variation without effect: computed at the first phase pair as a control, no evidence"""
 
     def largest(self, body: int) -> float:
-        """Return the largest |change| of mu_i over the phase pairs; NaN if one has no value."""
+        """Return the largest |change| of the amplification mu_i over the phase pairs; NaN if one has no value."""
         return float(np.abs([row[body - 1] for row in self.change]).max())
 
     def error_estimate(self, body: int) -> float:
-        """Return the largest uncertainty of mu_i over the phase pairs; NaN if one has no value."""
+        """Return the largest uncertainty of the amplification mu_i over the phase pairs; NaN if one has no value."""
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:

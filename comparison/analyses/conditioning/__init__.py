@@ -1,1 +1,1 @@
-"""Conditioning of mu_i over the smallest speed that is resolved."""
+"""Conditioning of the amplification mu_i over the smallest speed that is resolved."""

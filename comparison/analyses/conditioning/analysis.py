@@ -1,5 +1,5 @@
 """
-Conditioning of mu_i: how it depends on the smallest speed that is resolved.
+Conditioning of the amplification mu_i: how it depends on the smallest speed that is resolved.
 
 The literal supremum of (5.1) holds one-sided limits at stops, which a sliding platform approaches like a low power of
 its speed. The resolved peak therefore climbs towards it while v_c falls over ten decades, as does the peak of an engine
@@ -148,7 +148,7 @@ EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # for referenc
 YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # with friction that yields: errors a tenth of that
 TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
 SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
-OVER_YIELDS = Question(  # mu over the yield displacement of elastic friction
+OVER_YIELDS = Question(  # amplification mu over the yield displacement of elastic friction
     "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
 )
 # Models whose mu is computed at several v_c, v_reg or u_y, with the literal supremum that it is compared with
@@ -173,7 +173,7 @@ Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases pe
 
 class _Answers(NamedTuple):
     """
-    mu and error (S, P, N) of N bodies at S speeds and P phase pairs, and the literal supremum (P, N).
+    Amplification mu and error (S, P, N) of N bodies at S speeds and P phase pairs, and the literal supremum (P, N).
 
     independent: pairs with a value that no symmetry relates. lost: the first status without a value.
     """

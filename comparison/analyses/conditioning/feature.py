@@ -1,4 +1,4 @@
-"""The conditioning of mu_i over the smallest resolved speed: in the report."""
+"""The conditioning of the amplification mu_i over the smallest resolved speed: in the report."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -55,7 +55,7 @@ def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Pan
 
 
 def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
-    """Plot mean and largest mu_1 over the yield displacement; the literal suprema are level lines."""
+    """Plot mean and largest amplification mu_1 over the yield displacement; the literal suprema are level lines."""
     dampings = [*dict.fromkeys(curve.damping for curve in curves)]
     series: list[dict[str, Any]] = []
     ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]

@@ -9,7 +9,7 @@ from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPRE
 
 # m/s, values of v_c below which no instrument (first) and no computation (second) resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
-ILL_CONDITIONED_CHANGE = 1e-3  # relative change of mu below LOW_V_C from which mu is ill-conditioned
+ILL_CONDITIONED_CHANGE = 1e-3  # relative change of the amplification mu below LOW_V_C from which mu is ill-conditioned
 MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
 
 
@@ -116,7 +116,7 @@ def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
 
 
 def _relative_mean_at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
-    """Return mean mu relative to the literal supremum at a speed, and its error."""
+    """Return mean amplification mu relative to the literal supremum at a speed, and its error."""
     place = curve.v.index(speed)
     return curve.relative_mean[place], curve.relative_error[place]
 

@@ -121,7 +121,7 @@ def _panel_over_values(
 
 
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
-    """Return the plot of mu of a body by every model over the value of the varied key."""
+    """Return the plot of the amplification mu of a body by every model over the value of the varied key."""
     curves = [curve for curve in family.curves if curve.body == body]
     lines = [(results.titles[each.model], n, each.mean, each.lowest, each.highest) for n, each in enumerate(curves)]
     return _panel_over_values(family, f"mu_{body}", f"mu_{body} of every model", f"μ_{body}", lines)

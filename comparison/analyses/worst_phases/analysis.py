@@ -31,7 +31,7 @@ from reference.measures.local_maxima import GRID, find_local_maxima
 from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, make_square_nodes, predict_best
 from reference.problem import Scene
 
-SEARCH_TOLERANCE = 1e-5  # relative error of mu at which the equations are solved in a search
+SEARCH_TOLERANCE = 1e-5  # relative error of the amplification mu at which the equations are solved in a search
 # Half width, rad, of the square around the equations' worst phases in which the engine is searched
 ENGINE_HALF_WIDTH = 0.02
 NO_PHASES = (math.nan, math.nan)  # phases or a direction that are not known
@@ -42,7 +42,7 @@ Quantity = Literal["amplification", "displacement"]  # what is searched for its 
 
 @result
 class LargestOverPhases:
-    """Largest mu of a body, or largest displacement of the platform, over all phases by one model."""
+    """Largest amplification mu of a body, or largest displacement of the platform, over all phases by one model."""
 
     scene: Annotated[str, "name of the scene"]
     model: Annotated[str, "key of the model"]
@@ -131,7 +131,7 @@ def _without_value(task: SearchTaskArguments, failed: TaskResult) -> list[Larges
 
 
 class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):
-    """Analysis that searches the largest mu of every body and the largest displacement in every scene."""
+    """Analysis that searches the largest amplification mu of every body and the largest displacement in every scene."""
 
     key, stage, needs_surfaces = "worst_phases", "worst phases", True
     seconds = 2.0

@@ -71,7 +71,7 @@ def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> St
 
 
 def find_folds(*cases: Evidence) -> StatementVerdict:
-    """Return whether every surface of mu has a fold or a jump at its sharpest curvature."""
+    """Return whether every surface of the amplification mu has a fold or a jump at its sharpest curvature."""
     rough = all(not (flat or bend.smooth) for case in cases for _, flat, bend in _list_curvatures(case))
     return verdict_with_reason(rough, "; ".join(map(_describe_curvatures, cases)))
 

@@ -65,7 +65,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     scene, cutoff = STATEMENT_CASES[question.case](), question.reading.cutoff
 
     def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
-        """Return mu by the printed equations at phase pairs (M, 2), rad."""
+        """Return the amplification mu by the printed equations at phase pairs (M, 2), rad."""
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
 
     surfaces = question.known

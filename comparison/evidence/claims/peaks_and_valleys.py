@@ -41,7 +41,7 @@ class PeakCounts(NamedTuple):
 
 def count_periodic_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
     """
-    Return the numbers of peaks and valleys of mu on the square of phases, which closes at 2 pi.
+    Return the numbers of peaks and valleys of the amplification mu on the square of phases, which closes at 2 pi.
 
     mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
     """

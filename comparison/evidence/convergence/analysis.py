@@ -41,7 +41,7 @@ PENETRATIONS = (3e-3, 1e-3, 3e-4)  # penetration of the contact under the weight
 STIFFNESS_V_REG = 1e-2  # m/s, v_reg while the contact stiffness varies: a constant step resolves it
 STEPS_PER_PERIOD = 2250  # constant steps per period of the faster harmonic; a second run takes twice as many
 MAX_STEPS = 20_000  # largest number of constant steps of a motion
-EQUATION_TOLERANCE = 1e-7  # relative error of mu by the equations
+EQUATION_TOLERANCE = 1e-7  # relative error of the amplification mu by the equations
 # Tolerances of the Newton iteration and of its residual in the engine's steps
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
 STEP_ERROR_FACTOR = 1.5  # error estimate over the change of mu by halved steps, which is 0.5 to 1 coarse errors
@@ -113,10 +113,10 @@ class ConvergenceCase(NamedTuple):
     applies: Callable[[Scene], bool]
 
 
-_by_equations = partial(  # mu by the equations at each v_reg against set-valued friction
+_by_equations = partial(  # amplification mu by the equations at each v_reg against set-valued friction
     _compare_at_speeds, reference, EQUATION_PHASES, EQUATION_PERIODS, EQUATION_TOLERANCE, REGULARIZATIONS
 )
-_by_engine = partial(  # mu by Exudyn at each v_reg against the equations with set-valued friction
+_by_engine = partial(  # amplification mu by Exudyn at each v_reg against the equations with set-valued friction
     _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
 )
 
@@ -144,7 +144,7 @@ CaseArguments = tuple[Scene, int]  # scene, and index of the limit in CONVERGENC
 
 
 def fit_limit_trends(task: CaseArguments) -> list[Trend]:
-    """Return how mu of every body tends to one limit in one scene. Runs inside a worker process."""
+    """Return how the amplification mu of every body tends to one limit in one scene. Runs inside a worker process."""
     scene, number = task
     sizes, errors = CONVERGENCE_CASES[number].measure(scene)
     return _fit_trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))

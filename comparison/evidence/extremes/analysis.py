@@ -99,7 +99,7 @@ def _judge_point(
 
 
 def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoint], tolerance: float) -> MatrixEntry:
-    """Return the verdict on mu with its error estimate at one phase pair, by finer runs."""
+    """Return the verdict on the amplification mu with its error estimate at one phase pair, by finer runs."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
     unconfirmed = MatrixEntry(CellVerdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)

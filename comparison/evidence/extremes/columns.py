@@ -7,7 +7,7 @@ from typing import Any
 from comparison.study.models import EXACT, TRANSLATIONAL, Model
 from reference.problem.readings import DEFAULT_V_REG
 
-# Import paths of the functions that compute mu by the equations and by the engine
+# Import paths of the functions that compute the amplification mu by the equations and by the engine
 EQUATIONS, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification
 
 

@@ -26,7 +26,7 @@ LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)  # factors s on the loading
 SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs computed at each scale
 SCALING_TOLERANCE = 1e-8  # relative error of mu: at the smallest scale exact and small equations differ by 1e-5
 EXACT_MINUS_SMALL = "exact minus small"  # name of the difference between exact and small equations
-SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of the change of mu when the loading is halved
+SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of the change of the amplification mu when the loading is halved
 
 Arguments = tuple[Scene, bool]  # scene, and whether the supremum is taken
 

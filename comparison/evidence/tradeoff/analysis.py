@@ -54,7 +54,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class SettingResult:
-    """Values of mu, their error estimates and the processor time of one measurement."""
+    """Values of the amplification mu, their error estimates and the processor time of one measurement."""
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
@@ -191,7 +191,7 @@ class TradeOff:
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """
-    Return the errors and the time of one setting at M phase pairs, against a reference mu (M, N).
+    Return the errors and the time of one setting at M phase pairs, against a reference amplification mu (M, N).
 
     Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
     """

@@ -116,7 +116,7 @@ def compute_absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array,
 
 
 def compute_amplification_factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """Return mu_i (N,) of a motion."""
+    """Return the amplification mu_i (N,) of a motion."""
     peaks: Array = (
         compute_absolute_accelerations(scene, phase, times, states, v_reg).max(axis=0)
         / ground_peak(scene, np.reshape(phase, (1, 2)))[0]

@@ -58,7 +58,7 @@ def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: flo
 def _compute_factors(
     scene: Scene, phases: ArrayLike, peak: Callable[[Any], Array], model: str, v_reg: float, **how: Any
 ) -> Array:
-    """Return mu (M, N) of one run for each phase pair; NaN where it ends early."""
+    """Return the amplification mu (M, N) of one run for each phase pair; NaN where it ends early."""
     pairs = check_phases(phases)
     runs = [multibody.single_run(scene, phase, model, v_reg, **how) for phase in pairs]
     nothing = np.full(len(scene.bodies), np.nan)

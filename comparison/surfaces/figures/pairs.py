@@ -1,4 +1,4 @@
-"""Figures in the paper's manner: mu_i over [0, 2 pi]^2 from two models, and their signed difference."""
+"""Figures in the paper's manner: amplification mu_i over [0, 2 pi]^2 from two models, and their signed difference."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -73,7 +73,7 @@ def draw_map(axes: Axes, phase: Array, values: Array, **style: Any) -> QuadMesh:
 
 
 def extend_surface_to_two_pi(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
-    """Return the phases of a model up to 2 pi, and mu on them."""
+    """Return the phases of a model up to 2 pi, and the amplification mu on them."""
     phase = surfaces["alpha1"].values[:: find_common_stride(surfaces, scene.name, model)]
     return close_period(phase, select_values(surfaces, "mu", scene.name, model)[body - 1])
 
@@ -92,7 +92,7 @@ def draw_in_space(
 
 
 def _draw_surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
-    """Draw mu over the phases as a surface in space."""
+    """Draw the amplification mu over the phases as a surface in space."""
     colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
     draw_in_space(axes, phase, height, (low, high), 0.62, 0.88, **colors)
     axes.tick_params(labelsize=8, pad=0)
