@@ -45,7 +45,7 @@ FORCE_NOISE_RATIO_OF_TURNING = 0.2  # noise of the contact force over its roundi
 # residual, because the engine takes a step without an iteration (measured: up to 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
-# Safety factor on the change of peaks by the springs of real bearings, if only a coarser level has shown that change.
+# Safety factor on how much bearings of finite stiffness change the peaks, if only a run in larger steps has shown it
 SAFETY_OF_BEARINGS = 2.0
 
 # Time from the start, over the square root of the penetration, within which stiff links oscillate (measured: peaks at

@@ -225,7 +225,7 @@ def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
 def make_friction_springs(
     mbs: Any, scene: Scene, units: Units, contacts: list[Any], first: int, depressions: Depressions
 ) -> FrictionSprings | None:
-    """Return the springs of `contacts`; first: first coordinate of their spheres. None where friction is rigid."""
+    """Return the springs of `contacts`; first: index of their first coordinate. None where friction is rigid."""
     if not scene.dry_friction.elastic:
         return None
     turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)

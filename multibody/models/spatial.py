@@ -213,7 +213,7 @@ def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, number
 
 
 def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, shared: bool) -> Supports:
-    """Add the supports: spheres fixed, on springs that share the load, or turning where friction yields."""
+    """Add the spheres of the supports: fixed, on springs to share the load, or free to roll if friction is elastic."""
     places = geometry.places
     if scene.dry_friction.elastic:
         moved = SPHERES_MASS if shared else 0.0

@@ -188,7 +188,7 @@ class Amplification:
 
     def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
         """
-        Draw mu_i of a grid of phases as a surface, with scene, body, model and reading of (5.1) above it.
+        Draw amplification mu_i of a grid of phases as a surface, with scene, body, model and reading of (5.1) above it.
 
         Parameters
         ----------

@@ -58,7 +58,7 @@ NOT_MET = 100  # outcome of a run whose error stays above the tolerance; system.
 
 
 class RunPeaks(NamedTuple):
-    """Largest absolute accelerations with estimated errors, and outcome, instant and cost of their runs."""
+    """Largest absolute accelerations with estimated errors; outcome, time of an early end and cost of their runs."""
 
     value: Array  # (M, N) m/s^2, largest absolute accelerations
     error: Array  # (M, N) m/s^2, their estimated errors

@@ -24,7 +24,8 @@ GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 
 MAX_SECANTS = 200  # largest number of iterations of regula falsi
 SECANTS_PER_HALVING = 3  # after so many iterations that do not halve the interval, a bisection follows
 LOCATION_TOLERANCE = 1e-15  # error of the location of an event, as a share of the step
-# Largest rise of the excess over the condition for rest from stage to stage, as a share of the squared friction limit
+# Largest rise between two stages, over the squared limit of friction, of the excess over the condition for rest: where
+# the excess stays lower by more than that, no slide begins within the step.
 NEAR_LIMIT = 0.5
 
 

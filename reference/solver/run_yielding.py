@@ -63,7 +63,8 @@ from reference.solver.work import (
 
 # Length of a phase's first step over that of an ordinary step: a short step misses no event before its first stage.
 FIRST_STEP_SHARE = 0.1
-# Largest errors, over the step, of its end at yield and at unloading; largest number of steps that aim at one event.
+# Largest errors of the instants of yield and of unloading, as shares of the step that ends there; largest
+# number of steps that aim at one of them.
 # An error of the instant of unloading has an effect of second order.
 YIELD_SHARE, UNLOADING_SHARE, MAX_AIMED_STEPS = 1e-11, 1e-6, 8
 MIN_EVENT_TIME = 1e-12  # events closer to the start count as events at the start; in units of RunSettings.period

@@ -162,7 +162,7 @@ def adapt_length(work: Workspace, h: float, factor: float) -> None:
 
 @compiled
 def commit_step(system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int) -> None:
-    """Make the end of the step the new state; `parts` of it, between pairs of work.edges, count for the peaks."""
+    """Make the end of the step the new state; read peaks in the `parts` intervals whose ends are in work.edges."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     peaking = False

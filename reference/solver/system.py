@@ -64,7 +64,7 @@ class System(NamedTuple):
 class Ground(NamedTuple):
     """Acceleration of the ground, m/s^2, and temperature factor of friction at one instant."""
 
-    x: float  # xi'' of (5.3), along x
+    x: float  # acceleration of the ground along x, xi'' of (5.3)
     y: float  # eta'', along y
     z: float  # zeta'', along the vertical
     k_t: float  # temperature factor of friction

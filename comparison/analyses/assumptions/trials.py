@@ -67,7 +67,7 @@ class DirectionTrial:
 
 @dataclass(frozen=True)
 class TaskTrials:
-    """Findings of one task: its trials, the directions that it tried first, and what went wrong, or ""."""
+    """Findings of one task: variations tried, the worst directions sought first, and an error message, or ""."""
 
     trials: tuple[Trial, ...]
     directions: tuple[DirectionTrial, ...] = ()

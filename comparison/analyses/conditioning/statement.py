@@ -1,4 +1,4 @@
-"""The conditioning of mu_i in one sentence, and what a yield displacement makes of mu_1 in another."""
+"""The conditioning of amplification mu_i in one sentence, and what a yield displacement makes of mu_1 in another."""
 
 import math
 from collections.abc import Sequence
@@ -141,7 +141,7 @@ def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningC
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
-    """Return the relative change of the mean over the last two speeds and its numerical error."""
+    """Return the relative change of the mean from the last but one speed to the last, and its numerical error."""
     (before, after), errors = curve.mean[-2:], curve.mean_error[-2:]
     return after / before - 1.0, sum(errors) / before
 

@@ -153,7 +153,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Return whether mu_2 has several peaks and valleys, and more than mu_1; name prominences at which this differs."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
-        """Return peaks and valleys of mu_1 and of mu_2 at a prominence, as a share of the range of mu."""
+        """Return peaks and valleys of amplification mu_1 and of mu_2 at a prominence, as a share of the range of mu."""
         return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:

@@ -125,7 +125,7 @@ def compute_amplification_factors(scene: Scene, phase: ArrayLike, times: Array, 
 
 
 def solve_factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
-    """Return mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if it fails at a phase pair."""
+    """Return amplification mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if it fails at a phase pair."""
     pairs: Array = check_phases(phases)
     return np.array(
         [

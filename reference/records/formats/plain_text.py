@@ -92,7 +92,7 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
 
 
 class Proposal(NamedTuple):
-    """Options to write for a plain text, with columns from 1, and the names of those that the file does not state."""
+    """Options proposed for reading a plain text (columns count from 1), and the names of those that it leaves open."""
 
     step: float
     unit: str
