@@ -163,8 +163,8 @@ def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> 
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)
-    high, low = (max(each.value + side * each.error for each, _ in places) for side in (1.0, -1.0))
-    return Estimate(number.value, max(high - number.value, number.value - low)), body
+    high = max(each.value + each.error for each, _ in places)  # The largest value falls by no more than it rises.
+    return Estimate(number.value, high - number.value), body
 
 
 def summarize_over_bodies(

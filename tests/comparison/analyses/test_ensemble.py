@@ -28,7 +28,7 @@ from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
 from comparison.study.models import EXACT, SMALL, TRANSLATIONAL
 from reference.measures import Estimate, FloorSpectra, StoryForces, story_forces
-from reference.problem import ground_peak, load_family, load_scene
+from reference.problem import SceneError, ground_peak, load_family, load_scene
 from reference.records.motion_lists import Motion
 
 SCENE = """title = "two bodies"
@@ -112,9 +112,21 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     assert known.largest_motion == "m2"
     assert (known.mean.value, known.mean.error) == pytest.approx((3.0, 0.3))
     engine = [replace(point, model="spatial") for point in points]
-    for count, models in ((3, {"exact"}), (4, {"exact", "spatial"})):
-        both = statistics.summarize_demands(analysis.EnsemblePoints(points, (), {"spatial": engine[:count]}))
-        assert {each.model for each in both} == models, "of all motions, or no statistics"
+    for motions, count, models in ((4, 3, {"exact"}), (4, 4, {"exact", "spatial"}), (1, 1, {"exact"})):
+        both = analysis.EnsemblePoints(points[:motions], (), {"spatial": engine[:count]})
+        assert {each.model for each in statistics.summarize_demands(both)} == models, "of all motions, or no statistics"
+
+
+def test_demands_have_their_own_order_and_scales_rise_whatever_the_file_says() -> None:
+    falling = [
+        demanding("m", scale, drift={3: sure(2.0), 2: sure(scale)}, base_shear=sure(scale), displacement=sure(3.0))
+        for scale in (2.0, 0.5)
+    ]
+    points, order = analysis.EnsemblePoints(falling), [("displacement", 0), ("base_shear", 0), ("drift", 2), ("drift", 3)]
+    assert statistics.list_quantities(falling) == order
+    assert [each.scale for each in statistics.summarize_demands(points)] == [0.5, 2.0] * 4
+    curves = {(each.quantity, each.body): (each.scales, each.values) for each in statistics.make_demand_curves(points)}
+    assert curves["drift", 2] == curves["base_shear", None] == ([0.5, 2.0], [0.5, 2.0])
 
 
 PLACES = [[3.0, 2.0], [-3.5, 2.0], [0.5, -2.5]]  # m
@@ -144,8 +156,9 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
         carrying("m1", 2.0, (9.0, 8.0, 7.0), (11.0, 12.0, 13.0), (0.0, 0.001, 0.0004)),
         carrying("m2", 2.0, (7.5, 5.5, 6.5), (25.0, 35.0, 45.0), (0.0, 0.002, 0.001)),
     ]
+    failed = replace(spatial[0], member=replace(spatial[0].member, motion="m0"), status="step limit", forces=None)
     found = list(
-        statistics.find_support_extremes(analysis.EnsemblePoints(equations, (), {"small": [], "spatial": spatial}))
+        statistics.find_support_extremes(analysis.EnsemblePoints(equations, (), {"small": [], "spatial": [failed, *spatial]}))
     )
     assert [(each.support, each.x, each.y) for each in found] == [(n, *PLACES[n - 1]) for n in (1, 2, 3)] * 2
     assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 2)] * 3
@@ -155,7 +168,7 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
     assert largest == [(24.0, "m2"), (31.0, "m1"), (40.0, "m2")]
     assert [each.uplift.value for each in found] == [None] * 3 + [0.0, 0.002, 0.001]
     assert (found[0].smallest.error, found[0].largest.error) == pytest.approx((0.7, 2.4))
-    assert [each.smallest.value for each in found[3:]] == [7.5, 5.5, 6.5]
+    assert [(each.smallest.value, each.smallest_motion) for each in found[3:]] == [(7.5, "m2"), (5.5, "m2"), (6.5, "m2")]
 
 
 def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_worst(
@@ -553,10 +566,14 @@ def test_the_plan_says_how_many_motions_the_engine_computes_at_most() -> None:
     scene = load_scene("synthetic-pair")
     assert bound_motion_count(None, scene, 22) == 6
     assert bound_motion_count(None, scene.with_values({"isolator.supports": None}), 22) == 4
+    assert bound_motion_count(None, scene.with_values({"bodies": [scene.bodies[0].model_dump()]}), 22) == 5
     assert bound_motion_count(None, scene, 3) == 3
     assert [bound_motion_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
     members = [EnsembleMember(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
     assert bound_engine_motion_count(members, None) == 12
+    for count, more in ((10, ""), (11, " and so on")):
+        with pytest.raises(SceneError, match=f"motions: m0, .*, m9{more}$"):
+            governing.parse_engine_option(["none"], members[:count])
 
 
 def test_structures_are_told_apart_by_the_values_that_differ() -> None:

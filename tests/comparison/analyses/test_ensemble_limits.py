@@ -219,9 +219,17 @@ def test_the_engine_says_nothing_of_motions_that_govern_and_that_it_has_not_comp
     assert "in the 2 of 3 motions that the spatial engine computed: " in line, "not called governing"
     end = "and the engine did not compute it: run without --engine)"
     assert line.endswith(f"not compared (by the equations Northridge has the largest drift, {end}")
-    forces: Values = {("support_force_max", None): (3e5, 9e5, 5e5), ("support_force_min", None): (2e5, 3e5, 1e5)}
+    forces = {("support_force_max", None): (3e5, 9e5, 5e5), ("support_force_min", None): (2e5, 3e5, 1e5)}
     (line,) = said_of(ensemble_of({**governed, **forces}, flat), uplift=0.0)
     assert line.endswith(f"not compared (by the equations Northridge has the smallest support force, {end}")
+    small = [replace(each, scales=[0.5, 1.0], values=[1e6 - each.values[0], *each.values], errors=[0.0, 0.0])
+             for each in ensemble_of({**governed, **forces}, flat).curves]  # fmt: skip
+    scaled = replace(ensemble_of({**governed, **forces}, flat), scales=[0.5, 1.0], curves=small)
+    assert said_of(scaled, uplift=0.0)[0].endswith(line.partition(" computed: ")[2]), "at the largest scale"
+    forces[("support_force_max", None)] = (3e5, 5e5, 9e5)
+    (line,) = said_of(ensemble_of({**governed, **forces}, flat), uplift=0.0)
+    assert "Northridge has the largest support force and the smallest support force, and the engine" in line
+    forces[("support_force_max", None)] = (3e5, 9e5, 5e5)
     carried: Values = {**governed, **forces, ("support_force_min", None): (0.0, 3e5, 1e5)}
     (line,) = said_of(ensemble_of(carried, flat), uplift=0.0)
     assert line.endswith("allowed 0 mm: met"), "the largest drift says nothing of an uplift"
@@ -286,6 +294,9 @@ def test_a_motion_that_reached_the_travel_breaks_a_limit_up_to_the_travel() -> N
     assert "not met (by more than 0 %)" in said_of(reached, displacement=0.45)[0]
     assert said_of(reached, displacement=0.46)[0].endswith("not compared (1 motion has no value)")
     other = with_travel(0.45, 0.30, None, 0.43, why="step limit")
+    mixed = replace(other, stripes=[replace(other.stripes[0], reasons={"step limit": 1, "travel reached": 1})])
+    assert "at least 450 mm, allowed 440 mm: not met" in said_of(mixed, displacement=0.44)[0], "at it is one of them"
+    assert "with the travel there" not in said_of(mixed, displacement=0.44, statistic="mean")[0]
     assert said_of(other, displacement=0.44)[0].endswith("not compared (1 motion has no value)")
 
 

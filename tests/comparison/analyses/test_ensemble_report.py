@@ -329,10 +329,16 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
     found = replace(planted(), structures=[replace(planted().structures[0], bodies=3)])
     found = with_demand(found, "drift_ratio", 2, exact=(0.001, 0.001, 0.001, 0.009), spatial=(0.001,) * 4)
     found = with_demand(found, "drift_ratio", 3, exact=(0.004, 0.004, 0.004, 0.005), spatial=(0.004,) * 4)
+    errors = [replace(each, errors=(0.0005 if each.body == 2 else 0.0055,)) for each in found.curves]
+    largest = rows.find_largest_over_bodies_by_motion(replace(found, curves=errors), "b", "drift_ratio", "exact", 1.0)
+    assert (largest["m4"][0].error, largest["m4"][1]) == (pytest.approx(0.0015), 2), "the other story may be the worst"
     unknown = [
         replace(each, values=(None,)) if (each.quantity, each.body, each.motion) == ("drift_ratio", 3, "m1") else each
         for each in found.curves
     ]
+    lost = [replace(each, answered=3, reasons={"rim reached": 1}) if each.body == 3 else each for each in found.stripes]
+    told = rows.summarize_over_bodies(replace(found, curves=unknown, stripes=lost), found.structures[0], "drift_ratio", 1.0)
+    assert (told and told.reasons) == {"rim reached": 1}, "of the body that lacks a motion"
     row = demand_row(replace(found, curves=unknown), "largest drift ratio")
     assert (row.cells[0], row.cells[4], row.where, row.motions) == ("0.5667 (of 3)", "≥ 0.9", "below body 2", "3 of 4")
 
@@ -459,6 +465,8 @@ def test_what_a_motion_without_a_value_leaves_open_is_said_and_is_no_table_of_no
     assert cells_of(replace(two_bounds(), stripes=rim)) == [
         ("200 (of 3)", "≥ 300", "m3", "3 of 4"), upper, envelope,
     ]  # fmt: skip
+    both = [replace(each, reasons={"rim reached": 1, "travel reached": 1}) if each.reasons else each for each in rim]
+    assert cells_of(replace(two_bounds(), stripes=both))[0] == ("200 (of 3)", "≥ 300", "m3", "3 of 5"), "not all at it"
     numbers = {name: Estimate(value, 0.0) for name, value in zip("abcd", (3.0, math.nan, 1.0, 2.0))}
     force = summarize_motions(("b", "support_force_min", None, "exact", "N", 1.0), numbers, {"rim reached": 1})
     assert (force.mean.value, [each.value for each in force.known], force.known_motion) == (None, [2.0, 1.0], "c")
