@@ -46,7 +46,7 @@ class HandCheck:
 
 def _word_number(value: float) -> str:
     """Return a number to four digits, from 10000 on as a whole number."""
-    return f"{value:.4g}" if value < 1e4 else f"{value:.0f}"
+    return f"{value:.4g}" if value < 9999.5 else f"{value:.0f}"
 
 
 def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:

@@ -87,7 +87,7 @@ def word_value(value: float | None, error: float | None, factor: float) -> str:
     if value is None:
         return "none"
     read = factor * value
-    digits = f"{read:.4g}" if abs(read) < 1e4 else f"{float(f'{read:.4g}'):.0f}"
+    digits = f"{read:.4g}" if abs(read) < 9999.5 else f"{float(f'{read:.4g}'):.0f}"
     if abs(read) < 1e-4:
         digits = "0" if read == 0.0 else f"{read:.1e}"
     if error is None or factor * error <= HIDDEN_IN_FOUR_DIGITS * abs(read):

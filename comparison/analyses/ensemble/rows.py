@@ -418,10 +418,9 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
         cell = word_cell(number, factor, column, at.stripe.motions, shown.quantity)
         cells.append(add_mark(cell, "" if sure else at.marks[column] or bound))
         bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_OF_ALL_MOTIONS else "")
-    motion = at.motion if cells[-1] != "none" else ""
-    where = locate_demand(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and motion else ""
+    where = locate_demand(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and at.motion else ""
     short = len(bounds) == len(cells) and max(map(len, bounds)) <= MAX_BOUND_LETTERS
-    said = motion if short or not motion else f"{motion}, {named[at.structure.name]}"
+    said = at.motion if short or not at.motion else f"{at.motion}, {named[at.structure.name]}"
     about = shown.name, unit_of_column(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
     return DemandRow(*about, is_first=False, bounds=tuple(bounds) if short else ())
 
@@ -432,7 +431,7 @@ def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator
     for structure in ensemble.structures:
         values = ensemble.values_at_largest_scale(structure.name, shown.quantity, None, ensemble.engine.model)
         known = {motion: each for motion, each in values.items() if each.value is not None}
-        if not known or shown.bodies:
+        if not known:
             continue
         motion = max(known, key=lambda name: known[name].value or 0.0)
         unit, factor = unit_of_column(shown, structure)

@@ -174,13 +174,14 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
 def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_worst(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    heights = (2.6, 5.9, 8.3)  # m: stories of 3.3 and 2.4 m
+    heights = (2.6, 5.9, 8.3, 8.1)  # m: stories of 3.3 and 2.4 m, and a body that hangs below the roof
     scene = load_scene("fig3-I").with_values({
         "bodies": [{"mass": 1.0, "height": height, "period": [1.0, 1.0]} for height in heights],
         "bodies.0.period": None,
     })  # fmt: skip
-    drifts = Estimate(0.033, 0.0033), Estimate(0.048, 0.0012)
-    monkeypatch.setattr(quantities, "list_demands", lambda demands: ())
+    drifts = Estimate(0.033, 0.0033), Estimate(0.048, 0.0012), sure(0.01)
+    stated = [("support_force_min", 0, sure(1.5)), ("energy_balance", 0, sure(0.1))]
+    monkeypatch.setattr(quantities, "list_demands", lambda demands: stated)
     forces = replace(
         FORCES, shear=(sure(9.0), sure(5.0), sure(2.0)), moment=(sure(70.0), sure(30.0), sure(4.0)),
         support_min=(sure(3.0), sure(2.0), sure(4.0)), support_max=(sure(6.0), sure(8.0), sure(7.0)),
@@ -192,9 +193,10 @@ def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_wor
     ratios = {body: (number.value, number.error) for (name, body), number in found.items() if name == "drift_ratio"}
     assert ratios[2] == pytest.approx((0.01, 0.001))
     assert ratios[3] == pytest.approx((0.02, 0.0005))
+    assert (sorted(ratios), ("energy_balance", 0) in found) == ([2, 3], False)
     assert [found["story_shear", body].value for body in (1, 2, 3)] == [9.0, 5.0, 2.0]
     assert [found["overturning_moment", body].value for body in (1, 2, 3)] == [70.0, 30.0, 4.0]
-    assert [found[f"support_force_{end}", 0].value for end in ("min", "max")] == [2.0, 8.0]
+    assert [found[f"support_force_{end}", 0].value for end in ("min", "max")] == [1.5, 8.0], "its own first"
     along = {(name, body): number.value for (name, body), number in found.items() if name[-2:] in ("_x", "_y")}
     assert [*along.values()] == [0.1, 0.2, 0.3, 2.2, 2.3, 1.1, 1.2, 1.3, 0.4, 0.5, 0.6, 2.5, 2.6, 1.4, 1.5, 1.6]
     assert [*along][3:8] == [("drift_x", 2), ("drift_x", 3), *(("overturning_moment_x", body) for body in (1, 2, 3))]

@@ -39,6 +39,7 @@ from comparison.analyses.ensemble.result import (
     Structure,
     SupportExtremes,
 )
+from comparison.analyses.ensemble.rows import make_demand_rows
 from comparison.analyses.ensemble.sentences import answer_sentence, drift_warning, limits_sentence, support_sentences
 from comparison.analyses.ensemble.terminal import print_engine, print_equations
 from comparison.runner.progress import make_wide_console
@@ -197,6 +198,7 @@ def test_uplift_is_that_of_the_motions_of_the_spatial_engine() -> None:
 def test_a_mean_of_the_engine_is_met_where_the_largest_of_the_governing_motions_is() -> None:
     flat: Values = {("uplift", None): (0.0, 0.0)}
     (line,) = said_of(ensemble_of(MOVED, flat), uplift=0.0, statistic="mean")
+    assert [row.motion for row in make_demand_rows(ensemble_of(MOVED, flat), 1.0) if "uplift" in row.name] == [""]
     assert line.endswith(f"{IN_TWO}, for the mean: 0 mm (Kobe), allowed 0 mm: met") or line.endswith(
         f"{IN_TWO}, for the mean: 0 mm (Imperial Valley), allowed 0 mm: met"
     )

@@ -356,6 +356,15 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     names = [*one.structures, replace(one.structures[0], name="c")]
     both = replace(one, structures=names, curves=curves, stripes=stripes)
     lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
+    for length, short in ((8, True), (9, False)):
+
+        def renamed(rest: Sequence[Any], name: str = "c" * length) -> list[Any]:
+            return [replace(each, structure=name) if each.structure == "c" else each for each in rest]
+
+        named = [one.structures[0], replace(one.structures[0], name="c" * length)]
+        parts = replace(both, structures=named, curves=renamed(curves), stripes=renamed(stripes))
+        row = demand_row(parts, "largest drift ratio", "envelope")
+        assert row.bounds == (("c" * 8, *row.bounds[1:4], "b") if short else ()), "a name that is too long hides all"
     row = demand_row(replace(both, curves=lost), "largest drift ratio", "envelope")
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
     lost = [replace(each, values=(None,)) if each.motion == "m4" and each.body else each for each in curves]
@@ -486,7 +495,7 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     wrong = {check.what: check.verdict for check in hand_checks.list_hand_checks(found, structure)}
     assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
-    assert hand_checks.HandCheck("weight", "", 28252.8, 28252.8, 28252.8, "kN").by_hand == "28253 kN"
+    assert hand_checks.HandCheck("weight", "", 9999.6, 28252.8, 28252.8, "kN").by_hand == "10000 to 28253 kN"
 
 
 def test_the_displaced_weight_is_worded_about_the_contact_points_and_once() -> None:
@@ -596,6 +605,15 @@ def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: Ens
     assert ">peak velocity x, m/s<" in text
 
 
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(-12345.6, None, "-12350"), (9999.6, 2.0, "10000 ± 2"), (9999.4, None, "9999"), (-5.0, 1e-5, "-5"),
+     (-5.0, 4e-4, "-5 ± 0.0004"), (-2e-5, None, "-2.0e-05"), (0.0, 0.0, "0")],
+)  # fmt: skip
+def test_numbers_have_four_digits_and_no_power_of_ten(value: float, error: float | None, text: str) -> None:
+    assert word_value(value, error, 1.0) == text
+
+
 def test_one_duration_is_no_range() -> None:
     assert sentences.ground_sentence(planted()).endswith("; duration 10 s.")
     unlike = [GroundMotion("m1", 30.0, 3.5), GroundMotion("m2", 10.0, 2.0), GroundMotion("m3", 20.0, 3.0)]
@@ -634,7 +652,7 @@ def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pyt
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
-    for motions, expected in ((2, ["–", "150", "–"]), (3, ["–", "200", "–"]), (4, ["114", "250", "386"])):
+    for motions, expected in ((1, ["–", "100", "–"]), (2, ["–", "150", "–"]), (3, ["–", "200", "–"]), (4, ["114", "250", "386"])):
         row = demand_row(planted(motions=motions), "isolator displacement")
         assert list(row.cells[1:4]) == expected
 

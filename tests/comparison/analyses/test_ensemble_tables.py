@@ -795,6 +795,8 @@ def test_a_block_has_no_table_of_drifts_and_takes_no_row_of_a_tower_behind_it() 
     both = replace(found, **kept, supports=[], structures=[block, tower])
     (table,) = sections_of(page.render_ensemble_page(both))["building"][0]
     assert [row[0] for row in table] == [row[0] for row in building_by_hand(("", ""))]
+    places = [row[0] for row in sections_of(page.render_ensemble_page(both))["height"][0][0] if row[0]]
+    assert places == ["place", "roof", "body 2", "platform"]
     plots = drawn(panels.make_height_panels(both))
     assert [*plots] == [f"{title} over the height" for _, title, *_ in OVER_HEIGHT], "drifts, too"
     plot = plots["floor acceleration, as integrated over the height"]
