@@ -418,7 +418,9 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
         cell = word_cell(number, factor, column, at.stripe.motions, shown.quantity)
         cells.append(add_mark(cell, "" if sure else at.marks[column] or bound))
         bounds.append(named[at.structure.name].removesuffix(" bound") if cell != NOT_OF_ALL_MOTIONS else "")
-    where = locate_demand(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and at.motion else ""
+    where = (
+        locate_demand(at.structure, shown.quantity, at.stripe.body) if shown.bodies == "floors" and at.motion else ""
+    )
     short = len(bounds) == len(cells) and max(map(len, bounds)) <= MAX_BOUND_LETTERS
     said = at.motion if short or not at.motion else f"{at.motion}, {named[at.structure.name]}"
     about = shown.name, unit_of_column(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""

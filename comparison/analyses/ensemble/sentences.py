@@ -367,7 +367,8 @@ def damping_sentence(structure: Structure) -> str:
     ]
     if not products or any(max(axis) - min(axis) > 1e-6 * max(axis) for axis in products):
         return ""
-    first = " along x, ".join(dict.fromkeys(percent(axis[0]) for axis in building.modal_damping if axis))
+    first = " along x, ".join(ratios := dict.fromkeys(percent(axis[0]) for axis in building.modal_damping if axis))
+    first += " along y" * (len(ratios) > 1)
     return (
         f"Damping is in proportion to the stiffness of the links, c = 2 ζ k / ω₁ with ζ = {first} in the first mode "
         "above a fixed base; a higher mode has a ratio in proportion to its frequency."

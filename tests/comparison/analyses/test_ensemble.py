@@ -19,14 +19,20 @@ from terminal_tables import rows_under
 
 import reference
 from comparison.analyses.ensemble import analysis, governing, quantities, statistics
-from comparison.analyses.ensemble.build import read_suite
+from comparison.analyses.ensemble.build import GROUND_PERIODS, describe_ground, read_suite
 from comparison.analyses.ensemble.command import CHECKS_FILE, WRITTEN_FILES, bound_engine_motion_count, main
 from comparison.analyses.ensemble.governing import bound_motion_count
-from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember, list_members, with_suite
+from comparison.analyses.ensemble.members import (
+    SCALE_KEY,
+    EnsembleMember,
+    list_members,
+    refuse_scenes_without_model_data,
+    with_suite,
+)
 from comparison.analyses.ensemble.rows import label_structures
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
-from comparison.study.models import EXACT, SMALL, TRANSLATIONAL
+from comparison.study.models import EXACT, SMALL, SPATIAL, TRANSLATIONAL
 from reference.measures import Estimate, FloorSpectra, StoryForces, story_forces
 from reference.problem import SceneError, ground_peak, load_family, load_scene
 from reference.records.motion_lists import Motion
@@ -122,7 +128,10 @@ def test_demands_have_their_own_order_and_scales_rise_whatever_the_file_says() -
         demanding("m", scale, drift={3: sure(2.0), 2: sure(scale)}, base_shear=sure(scale), displacement=sure(3.0))
         for scale in (2.0, 0.5)
     ]
-    points, order = analysis.EnsemblePoints(falling), [("displacement", 0), ("base_shear", 0), ("drift", 2), ("drift", 3)]
+    points, order = (
+        analysis.EnsemblePoints(falling),
+        [("displacement", 0), ("base_shear", 0), ("drift", 2), ("drift", 3)],
+    )
     assert statistics.list_quantities(falling) == order
     assert [each.scale for each in statistics.summarize_demands(points)] == [0.5, 2.0] * 4
     curves = {(each.quantity, each.body): (each.scales, each.values) for each in statistics.make_demand_curves(points)}
@@ -158,7 +167,9 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
     ]
     failed = replace(spatial[0], member=replace(spatial[0].member, motion="m0"), status="step limit", forces=None)
     found = list(
-        statistics.find_support_extremes(analysis.EnsemblePoints(equations, (), {"small": [], "spatial": [failed, *spatial]}))
+        statistics.find_support_extremes(
+            analysis.EnsemblePoints(equations, (), {"small": [], "spatial": [failed, *spatial]})
+        )
     )
     assert [(each.support, each.x, each.y) for each in found] == [(n, *PLACES[n - 1]) for n in (1, 2, 3)] * 2
     assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 2)] * 3
@@ -168,7 +179,11 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
     assert largest == [(24.0, "m2"), (31.0, "m1"), (40.0, "m2")]
     assert [each.uplift.value for each in found] == [None] * 3 + [0.0, 0.002, 0.001]
     assert (found[0].smallest.error, found[0].largest.error) == pytest.approx((0.7, 2.4))
-    assert [(each.smallest.value, each.smallest_motion) for each in found[3:]] == [(7.5, "m2"), (5.5, "m2"), (6.5, "m2")]
+    assert [(each.smallest.value, each.smallest_motion) for each in found[3:]] == [
+        (7.5, "m2"),
+        (5.5, "m2"),
+        (6.5, "m2"),
+    ]
 
 
 def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_worst(
@@ -209,6 +224,8 @@ def test_beside_a_suite_a_scene_keeps_its_scale_and_zero_line_alone() -> None:
     kept = {"record": record, "scale": {"values": [1.7]}, "detrend": "mean"}
     found = with_suite(stated, "fema-p695:farfield", 1, normalized=True)
     assert found == {"combine": "product", "title": "two", "excitation": kept}
+    scales = {"range": [0.5, 2.0], "steps": 4}
+    assert with_suite({**stated, "excitation": {**loading, "scale": scales}}, "a:b")["excitation"]["scale"] == scales
     for wrong in (-1.0, "20", True, [20.0], 1e12, NAN):
         again = with_suite({**stated, "duration": wrong}, "fema-p695:farfield")["duration"]
         assert again is wrong, "it is refused with whatever else is wrong"
@@ -401,6 +418,11 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 0", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 1e308", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}1e-300, 1\n1, 1", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n0.1, 1\n1, 1", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 0\n1, 1", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 2e5\n1, 1", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv", "--periods", "0.2", "2"), f"{HEAD}0.1, 1\n1, 1", "--periods = "),
+        ((*SUITE, "--target", "code.csv", "--periods", "0.5", "0.5"), f"{HEAD}0.1, 1\n1, 1", "the shorter first"),
         ((*SUITE, "--target", "code.csv", "--periods", "0.05", "1"), f"{HEAD}0.1, 1\n1, 1", "--periods = "),
         ((*SUITE, "--target", "code.csv", "--periods", "0.5", "0.2"), f"{HEAD}0.1, 1\n1, 1", "the shorter first"),
     ],
@@ -461,12 +483,14 @@ def test_bounds_on_the_command_line_are_the_two_structures_of_the_file(folder: P
 def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("peer").mkdir()
     for name in ("RSN1_A_B_H1", "RSN1_A_B_H2", "RSN1_A_B-V", "RSN2_I.H_E11140", "RSN2_I.H_E11230"):
-        Path(f"peer/{name}.AT2").write_text(f"PEER\nX\nIN UNITS OF G\nNPTS= 40, DT= .05 SEC\n{'0.1 ' * 40}\n")
+        Path(f"peer/{name}.AT2").write_text(
+            f"PEER\nX\nIN UNITS OF G\nNPTS= 40, DT= .0{5 - (name[3] == '2')} SEC\n{'0.1 ' * 40}\n"
+        )
     assert run("mine.toml", "--suite", "peer", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
     said = capsys.readouterr().out
     assert "2 motions, paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
     assert "4 motions by the equations, 1 by the engine: about" in said
-    assert "The motions last 1.95 to 1.95 s. Nothing was computed." in said
+    assert "The motions last 1.56 to 1.95 s. Nothing was computed." in said
     assert not list(Path().glob("out*"))
 
 
@@ -505,6 +529,18 @@ def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     assert len(target.motions) == 1
     assert np.ptp(np.diff(np.log(target.acceleration))) < 1e-12, "straight in the logarithms"
     assert {member.factor for member in scaled} == {target.motions[0].factor}
+    time, ground = scene.record[:, 0], scene.record[:, 1:3] * [0.0, 2.0]
+    along_y = scene.with_values({"excitation": {"record": {"time": time, "acceleration": ground}}})
+    others = [EnsembleMember("b", "m", 1.0, along_y), EnsembleMember("a", "n", 1.0, scene)]
+    scaled, target = match_spectrum([*members, *others], str(tmp_path / "code.csv"), None)
+    assert [each.motion for each in target.motions] == ["m", "m", "n"], "each by its own samples and name"
+    first, other, _ = (each.factor for each in target.motions)
+    assert [member.factor for member in scaled] == [first, first, other, first] != [first] * 4
+    own = describe_ground(others[0])["spectrum"]
+    assert own == pytest.approx(reference.response_spectrum(time, ground[:, 1:], GROUND_PERIODS).tolist())
+    upward = {"time": time, "acceleration": scene.record[:, [1, 1, 2]] * [0.0, 0.0, 1.0]}
+    lifted = scene.with_values({"excitation": {"record": upward}})
+    assert describe_ground(EnsembleMember("b", "m", 1.0, lifted))["spectrum"] == ()
 
 
 def test_the_terminal_names_motions_without_value(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -571,6 +607,9 @@ def test_the_plan_says_how_many_motions_the_engine_computes_at_most() -> None:
     assert bound_motion_count(None, scene.with_values({"bodies": [scene.bodies[0].model_dump()]}), 22) == 5
     assert bound_motion_count(None, scene, 3) == 3
     assert [bound_motion_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
+    flat = EnsembleMember("flat", "m", 1.0, scene.with_values({"isolator.supports": None}))
+    with pytest.raises(SceneError, match="lacks isolator.supports"):
+        refuse_scenes_without_model_data([EnsembleMember("mine", "m", 1.0, scene), flat], SPATIAL)
     members = [EnsembleMember(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
     assert bound_engine_motion_count(members, None) == 12
     for count, more in ((10, ""), (11, " and so on")):

@@ -15,6 +15,7 @@ import pytest
 from markupsafe import escape
 from places import write_pulses
 
+from comparison.analyses.ensemble import limits
 from comparison.analyses.ensemble.command import main
 from comparison.analyses.ensemble.limits import (
     check_limits,
@@ -114,6 +115,13 @@ def test_a_demand_that_is_beyond_its_limit_by_its_numerical_error_alone_meets_it
     assert said_of(ensemble_of(MOVED, error=0.02), displacement=0.49)[0].endswith("met")
     assert "not met" not in said_of(ensemble_of(MOVED, error=0.02), displacement=0.49)[0]
     assert "not met (by +4.2 %)" in said_of(ensemble_of(MOVED, error=0.01), displacement=0.48)[0]
+    unlike = [replace(each, errors=[error]) for each, error in zip(ensemble_of(MOVED).curves, (0.02, 0.01, 0.03))]
+    for stated, verdict in ((0.385, "not met (by +6.5 %)"), (0.395, "met")):
+        (line,) = said_of(replace(ensemble_of(MOVED), curves=unlike), displacement=stated, statistic="mean")
+        assert line.endswith(f"mm: {verdict}"), "the mean of the errors"
+    engine = ensemble_of(MOVED, {("displacement", None): (9.0, 9.0)})
+    assert said_of(engine, displacement=0.5) == [f"{LARGEST_MOVED}allowed 500 mm: met"], "by the equations"
+    assert [limits._name_motions(names) for names in ("abc", "abcd")] == ["a, b, c", "4 motions"]
 
 
 def test_a_limit_is_on_the_largest_of_several_scales_and_names_it() -> None:
@@ -317,6 +325,9 @@ def test_the_last_line_is_the_limit_that_is_broken_by_the_largest_share() -> Non
     count, *lines = word_checks(check_limits(ensemble, limits))
     assert count == "3 demands: 0 met, 2 not met, 1 not compared"
     assert [" uplift " in lines[0], " isolator," in lines[1], "base shear" in lines[2]] == [True] * 3
+    lifted = ensemble_of({**MOVED, ("uplift", None): (0.0, 0.001, 0.0)})
+    *_, last = word_checks(check_limits(lifted, {"job[upper bound]": DemandLimits(displacement=0.01, uplift=0.0)}))
+    assert " uplift " in last, "no share of zero is small"
     assert word_checks([]) == []
 
 
@@ -382,6 +393,11 @@ def test_a_demand_that_one_of_two_ensembles_lacks_is_not_compared() -> None:
     assert [line.rpartition(": ")[2] for line in lines[2:]] == ["not compared (the stored ensemble lacks it)"] * 2
     ended = ensemble_of({("displacement", None): (0.30, None, 0.43)})
     assert compare_with_stored(ended, ended, 0.01) == [], "neither has mean or largest value"
+    lacking = compare_with_stored(ended, ensemble_of(MOVED), 0.01)
+    assert {word_check(check).rpartition(": ")[2] for check in lacking} == {"not compared (this ensemble lacks it)"}
+    two = ensemble_of({("displacement", None): (0.30, None, 0.43)}, bounds=("a", "b"))
+    judged = list_verdicts(compare_with_stored(two, ensemble_of(MOVED, bounds=("a", "b")), 0.01))
+    assert limits_sentence(replace(two, limits=judged)).endswith("isolator (a, b)."), "each bound once"
 
 
 def test_the_report_has_the_verdict_on_every_limit() -> None:
@@ -417,6 +433,13 @@ def test_the_report_has_the_verdict_on_every_limit() -> None:
     (row,) = make_limit_rows(list_verdicts(check_limits(least, {"job[upper bound]": DemandLimits(displacement=0.4)})))
     assert (row[2], row[4], row[7]) == ("≥ 450 mm", "≥ 1.12", "not met (by more than +12 %)")
     assert "not compared." not in render_ensemble_page(ensemble), "no section without limits"
+    stored = replace(two, limits=list_verdicts([*check_limits(two, stated), *compare_with_stored(two, two, 0.0)]))
+    assert ["limit or stored" in render_ensemble_page(each) for each in (judged, stored)] == [False, True]
+    for count, more in ((12, "demand 12."), (13, "demand 12 and 1 more.")):
+        many = [
+            replace(stored.limits[0], verdict="not met", what=f"demand {n}", found=None) for n in range(1, count + 1)
+        ]
+        assert re.sub(r" \([^)]*\)", "", limits_sentence(replace(two, limits=many))).endswith(more)
 
 
 SCENE = """title = "a block"
@@ -536,10 +559,10 @@ def test_a_wrong_comparison_is_one_line_before_anything_is_computed(folder, caps
 
 
 def test_a_drift_beyond_a_tenth_of_the_story_is_one_warning_with_story_and_motion() -> None:
-    rows: Values = {("drift_ratio", 2): (0.05, 0.236, 0.1), ("drift_ratio", 3): (0.05, 0.12, 0.1)}
+    rows: Values = {("drift_ratio", body): (0.05, 0.236 if body == 3 else 0.12, 0.1) for body in (2, 3, 4)}
     ensemble = ensemble_of(rows)
     (structure,) = ensemble.structures
     said = drift_warning(ensemble, structure)
-    assert said.startswith("Warning: the drift below body 2 under Imperial Valley is 23.6 % of the height of the story")
+    assert said.startswith("Warning: the drift below body 3 under Imperial Valley is 23.6 % of the height of the story")
     usual = ensemble_of({("drift_ratio", 2): (0.05, 0.1, 0.01)})
     assert drift_warning(usual, structure) == drift_warning(ensemble_of(MOVED), structure) == ""

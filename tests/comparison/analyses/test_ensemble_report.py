@@ -337,7 +337,9 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
         for each in found.curves
     ]
     lost = [replace(each, answered=3, reasons={"rim reached": 1}) if each.body == 3 else each for each in found.stripes]
-    told = rows.summarize_over_bodies(replace(found, curves=unknown, stripes=lost), found.structures[0], "drift_ratio", 1.0)
+    told = rows.summarize_over_bodies(
+        replace(found, curves=unknown, stripes=lost), found.structures[0], "drift_ratio", 1.0
+    )
     assert (told and told.reasons) == {"rim reached": 1}, "of the body that lacks a motion"
     row = demand_row(replace(found, curves=unknown), "largest drift ratio")
     assert (row.cells[0], row.cells[4], row.where, row.motions) == ("0.5667 (of 3)", "≥ 0.9", "below body 2", "3 of 4")
@@ -456,6 +458,15 @@ def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reach
     assert ("at least the travel" in said, "(c alone, m4)" in said) == (False, True)
     stopped = [EndedMotion("b", "m4", 1.0, "rim reached", 3.0)]
     assert sentences.travel_sentence(replace(two_bounds(), ended=stopped)) == ""
+    other = [replace(each, building=replace(each.building, travel=travel))
+             for each, travel in zip(two_bounds().structures, (0.5, 0.4))]  # fmt: skip
+    both = [replace(each, structure=name) for each in two_bounds().stripes[:1] for name in "bc"]
+    said = sentences.answer_sentence(replace(two_bounds(), structures=other, stripes=both))
+    assert "displacement: at least the travel, 500 mm (b); at least the travel, 400 mm (c); no demand is known" in said
+    for count, named in ((3, "m1, m2, m3 (b)"), (4, "4 motions (b)")):
+        lost = [replace(each, values=(None,)) if each.motion in ("m1", "m2", "m3", "m4")[:count] else each
+                for each in planted().curves]  # fmt: skip
+        assert f"No value under {named}." in sentences.answer_sentence(replace(planted(), curves=lost))
     alike = [planted().stripes[0], two_bounds().stripes[1]]
     assert "(b, m4)" in sentences.answer_sentence(replace(two_bounds(), stripes=alike)), "the first of equal bounds"
 
@@ -495,6 +506,9 @@ def test_checks_by_hand_are_those_of_the_report_and_show_a_number_that_is_wrong(
     wrong = {check.what: check.verdict for check in hand_checks.list_hand_checks(found, structure)}
     assert (wrong["weight"], wrong["dead loads of all supports together"]) == ("+100.00 %", "−50.00 %")
     assert next(verdict for what, verdict in wrong.items() if "base shear" in what).startswith("outside by ")
+    modes = replace(found.structures[0].building, modal_damping=[[0.01, 0.02, 0.03, 0.04], [0.02, 0.03]])
+    *_, drift = hand_checks.list_hand_checks(found, replace(found.structures[0], building=modes))
+    assert drift.formula.endswith("ζ = 0.03"), "of the third mode"
     assert hand_checks.HandCheck("weight", "", 9999.6, 28252.8, 28252.8, "kN").by_hand == "10000 to 28253 kN"
 
 
@@ -518,7 +532,8 @@ def test_damping_in_proportion_to_the_stiffness_is_said_and_no_other_is() -> Non
 
     assert "c = 2 ζ k / ω₁ with ζ = 4 % in the first mode" in said(0.04, 0.1, 0.04, 0.1)
     assert said(0.04, 0.1, 0.04, 0.04) == ""
-    assert said(0.0, 0.0, 0.0, 0.0) == ""
+    assert said(0.0, 0.0, 0.0, 0.0) == said(0.04, 0.1, 0.04, 0.0) == ""
+    assert "ζ = 4 % along x, 6 % along y in the first mode" in said(0.04, 0.1, 0.06, 0.15)
 
 
 def test_support_forces_say_of_how_many_motions_they_are() -> None:
@@ -635,6 +650,32 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
         "By the spatial engine, 2 of 4 motions of each bound: largest force 9 ± 0.03 kN, support 2 at [-3.5, 2.5] m "
         "(m1, c); smallest force -2 ± 0.02 kN, support 1 at [3, 2] m (m3, b); largest uplift 2 mm at support 1 (b)."
     ]
+    down = [replace(each, uplift=Statistic(0.0, 0.0)) for each in supports]
+    (said,) = sentences.support_sentences(replace(two_bounds(), supports=down))
+    assert said.endswith("; largest uplift 0 mm.")
+
+
+def test_lists_of_the_report_end_and_sizes_and_heights_are_of_every_body() -> None:
+    (structure,) = planted().structures
+    read = [replace(structure, building=replace(structure.building, sizes=sizes, heights=heights)) for sizes, heights in (
+        ([(7.0, 5.5, 1.0)], (0.0, 1.0)), ([(7.0, 5.5, 1.0)] * 2, (0.5, -0.2)), ([(7.0, 5.5, 1.0), None], (-0.2, 0.5)),
+    )]  # fmt: skip
+    assert [sentences.word_plan_sizes(each) for each in read] == ["7 × 5.5", "7 × 5.5, all", "7 × 5.5; not stated"]
+    assert [sentences.below_contact_sentence(each) != "" for each in read] == [False, False, True], "of the platform"
+    for count, end in ((12, "m12 (a)."), (13, "m12 (a) and 1 more.")):
+        chosen = [ChosenMotion("b", f"m{number}", 1.0, ["a"], {}) for number in range(1, count + 1)]
+        first, _ = sentences.engine_sentences(replace(planted(), engine=EngineMotions("spatial", chosen)))
+        assert first.endswith(end)
+    stripe, scales = replace(planted().stripes[0], quantity="uplift", model="spatial"), (1.0, 0.5)
+    lifted, (uplift,) = replace(planted(), stripes=[stripe], scales=scales), (
+        each for each in rows.MAIN_TABLE_COLUMNS if each.quantity == "uplift")  # fmt: skip
+    assert [rows.statistics_of_column(lifted, uplift, scale, structure) for scale in scales] == [stripe, None]
+    lost = [replace(planted().stripes[0], quantity=name, answered=3, reasons={"rim reached": 1})
+            for name in ("displacement", "residual")]  # fmt: skip
+    rest = [replace(planted().stripes[0], quantity="base_shear")]
+    for stripes, what in ((lost, "every demand"), ([*lost, *rest], "isolator displacement, residual displacement")):
+        line, *_ = sentences.missing_sentences(replace(planted(), stripes=stripes), structure)
+        assert line.endswith(f": {what} (rim reached).")
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pytest.CaptureFixture[str]) -> None:
@@ -652,7 +693,12 @@ def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pyt
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
-    for motions, expected in ((1, ["–", "100", "–"]), (2, ["–", "150", "–"]), (3, ["–", "200", "–"]), (4, ["114", "250", "386"])):
+    for motions, expected in (
+        (1, ["–", "100", "–"]),
+        (2, ["–", "150", "–"]),
+        (3, ["–", "200", "–"]),
+        (4, ["114", "250", "386"]),
+    ):
         row = demand_row(planted(motions=motions), "isolator displacement")
         assert list(row.cells[1:4]) == expected
 
