@@ -121,7 +121,8 @@ def _answering(mu_at: Any) -> Any:
 
     def amplification(scene: Scene, phases: Array, **settings: Any) -> Amplification:
         first = np.array(mu_at(settings.get("regularization") or settings.get("cutoff")))
-        mu = first[:, None] * np.array([1.0, 2.0])
+        mu = np.abs(first[:, None]) * np.array([1.0, 2.0])
+        mu[first < 0.0, 1] = math.nan  # a negative number stands for a second body without a value
         status = np.where(np.isfinite(first), "ok", "step limit")
         return Amplification(mu, 1e-3 * mu, status, np.full(len(mu), np.nan), 0.0)
 
@@ -165,9 +166,10 @@ def test_a_pair_that_lacks_a_speed_counts_at_none(monkeypatch: pytest.MonkeyPatc
     curve, _ = conditioning_curves((load_scene("fig3-I"), SPATIAL, 0))
     assert curve.mean[:4] == (2.0,) * 4
     assert (curve.pairs, curve.reason, math.isnan(curve.mean[4]), math.isnan(curve.largest[4])) == (2, "", True, True)
-    monkeypatch.setattr(reference, "amplification", _answering(lambda v: [2.0, nan if v == 1e-9 else 4.0, 5.0]))
-    resolved, _, supremum, _ = conditioning_curves((load_scene("fig3-I"), EXACT, 0))
-    assert (resolved.pairs, resolved.mean[0], supremum.pairs, supremum.mean) == (2, 3.5, 2, (3.5,))
+    for lost, at in ((nan, 1e-9), (-4.0, 1e-9), (-4.0, None)):  # of all bodies, of the second, of its supremum
+        monkeypatch.setattr(reference, "amplification", _answering(lambda v: [2.0, lost if v == at else 4.0, 5.0]))
+        resolved, _, supremum, _ = conditioning_curves((load_scene("fig3-I"), EXACT, 0))
+        assert (resolved.pairs, resolved.mean[0], supremum.pairs, supremum.mean) == (2, 3.5, 2, (3.5,))
     monkeypatch.setattr(reference, "amplification", _answering(lambda speed: [nan] * 3))
     curve, _ = conditioning_curves((load_scene("fig3-I"), SPATIAL, 0))
     assert (curve.pairs, curve.reason) == (0, "step limit")
@@ -176,6 +178,15 @@ def test_a_pair_that_lacks_a_speed_counts_at_none(monkeypatch: pytest.MonkeyPatc
     text = kind.dump_json([curve])
     assert b"NaN" not in text
     assert kind.validate_json(text)[0].v == curve.v
+
+
+def test_the_error_on_a_grid_is_the_root_of_that_of_numbers_and_that_of_sampling() -> None:
+    size = np.linspace(-0.2, -0.1, 16)
+    answers: Any = SimpleNamespace(independent=16, phases=np.zeros((16, 2)))
+    sure, found = (analysis._statistics_at_speed(1.0 + size, size, size, error, answers, GRID).relative_error
+                   for error in (0.0 * size, np.linspace(0.0, 0.04, 16)))  # fmt: skip
+    assert found == pytest.approx(math.hypot(0.02, sure))
+    assert found > 1.05 * max(sure, 0.02)
 
 
 def test_each_scene_with_dry_friction_and_phases_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -292,8 +303,9 @@ def test_the_sentence_leaves_out_an_engine_without_the_pairs() -> None:
     )
     assert conditioning_line([*others, spatial]).endswith(tail)
     assert conditioning_line([*others, replace(translational, pairs=2), spatial]).endswith(tail)
-    silent = replace(translational, mean=(*translational.mean[:-1], math.nan))
-    assert conditioning_line([*others, silent, spatial]).endswith(tail)
+    for place in (-2, -1):
+        mean = [math.nan if number == translational.mean[place] else number for number in translational.mean]
+        assert conditioning_line([*others, replace(translational, mean=tuple(mean)), spatial]).endswith(tail)
     assert conditioning_line(others).endswith("(mean of 8 × 8 phases).")
     assert conditioning_line(None) == conditioning_line([]) == conditioning_line([translational, spatial]) == ""
 
@@ -416,7 +428,8 @@ def test_the_sentence_on_a_yield_displacement_follows_from_the_curve() -> None:
     assert "+3.0" not in yielding_line(_known_yields(relative_mean=(-0.02, -0.07, 0.05)))
     assert "between −7.0 ± 0.5 % (at 1e-3 m)" in yielding_line(_known_yields(relative_mean=(-0.02, -0.07, 0.05)))
     assert "yields at 1e-4 m: mu_1 is 1.9 ± 0.0003" in yielding_line(_known_yields(own=1e-4))
-    assert yielding_line(known_curves()) == yielding_line(None) == ""
+    assert yielding_line(known_curves()) == yielding_line(None) == yielding_line(_known_yields()[:1]) == ""
+    assert yielding_line([replace(each, pairs=0) for each in _known_yields()]) == "", "no pair has an answer"
     assert conditioning_line(_known_yields()) == ""
 
 
@@ -429,5 +442,7 @@ def test_yield_displacements_have_a_panel_and_a_table_of_their_own() -> None:
     assert lines["mean, links as stated, rigid, literal supremum"]["y"] == [2.3, 2.3]
     *others, table = conditioning_tables([*known_curves(), *_known_yields()])
     assert others == conditioning_tables(known_curves())
+    shuffled = conditioning_tables([*_known_yields(), *known_curves()[::-1]])
+    assert [each["speed"] for each in shuffled] == ["v_c", "v_reg", "u_y"]
     assert (table["speed"], table["unit"], table["heads"]) == ("u_y", "m", ["2e-3", "1e-3", "1e-4"])
     assert [value for value, _ in table["rows"][1]["cells"]] == [2.1, 2.3, 2.2, pytest.approx(3.22)]

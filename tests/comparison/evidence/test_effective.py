@@ -136,6 +136,9 @@ def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
     bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
     scene = load_scene("fig3-I").with_values({"duration": 2.0, "bodies.1.period": None, "bodies.1.bars": bars})
     assert read_scene_values(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
+    platform, body = scene.model_dump(exclude_none=True)["bodies"]
+    upper = {**body, "mass": 0.5, "height": 2.0, "bars": {**bars, "count": 5}}
+    assert read_scene_values(scene.with_values({"bodies": [platform, body, upper]})).stiffness == pytest.approx(48.0)
     for model in (*MODEL_HIERARCHY[-2:], SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL):
         own = scene.softened() if "softened" in model.settings else scene
         assert read_values_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key

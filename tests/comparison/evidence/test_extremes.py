@@ -83,6 +83,9 @@ AGAINST_A_RULE = replace(PLAIN, scene=make_baseline_scene(friction=-0.1))
         (AGAINST_A_RULE, fake("honest"), "FAILED", "friction"),
         (replace(PLAIN, invalid=True), fake("honest"), "FAILED", "accepts an input that is against the rules"),
         (PLAIN, fake("raises"), "FAILED", "an inner fault"),
+        (PLAIN, fake("honest", finer="raises"), "FAILED", "no finer run confirms it: none"),
+        (replace(PLAIN, right=("contact lost",)), fake("honest"), "converged", "confirmed"),
+        (replace(PLAIN, right=("rim reached",)), fake("at_the_rim", finer="honest"), "refused", "rim reached"),
         (PLAIN, fake("calls_nan_ok"), "FAILED", "no finite number"),
         (PLAIN, fake("lies_about_its_error"), "FAILED", "times what is claimed"),
         (PLAIN, fake("misses_the_tolerance"), "FAILED", "asked: 0.001"),
@@ -241,11 +244,31 @@ def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
 
 
 def test_a_value_with_an_error_as_large_as_itself_is_not_confirmed() -> None:
-    mu, status = np.array([[1.0, 2.0]]), (Outcome.TOLERANCE_NOT_MET.value,)
-    assert [analysis.makes_checkable_claim(analysis.ModelAnswer(mu, share * mu, status)) for share in (1.0, 0.9)] == [
-        False,
-        True,
-    ]
+    mu, status = np.array([[1.0, 2.0], [3.0, 4.0]]), (Outcome.TOLERANCE_NOT_MET.value,) * 2
+    for shares, claims in (([1.0, 1.0], False), ([1.0, 0.9], True), ([[1.0, 1.0], [0.9, 1.0]], True)):
+        assert analysis.makes_checkable_claim(analysis.ModelAnswer(mu, shares * mu, status)) == claims
+
+
+@pytest.mark.parametrize(
+    ("mu", "error", "finer", "status", "verdict"),
+    [
+        ((1.0, np.nan), (1e-5, 1e-5), [((1.0, 2.0), 1e-6)], "ok", "FAILED"),
+        ((1.0, np.nan), (np.nan, np.nan), [((1.0, 2.0), 1e-6)], "ok", "FAILED"),
+        ((1.0, np.nan), (np.nan, np.nan), [((np.nan, np.nan), np.nan)], "rim reached", "FAILED"),  # and yet a value
+        ((1.0, 2.0), (1e-5, 1e-5), [((1.0, np.nan), 1e-6)], "ok", "FAILED"),  # of one body alone
+        ((1.0, 2.0), (1e-5, 1e-5), [((1.0, 2.0), (1e-6, 9e-3))], "ok", "FAILED"),
+        ((1.0, 2.0), (np.nan, np.nan), [((1.0, 2.0), 1e-6), ((1.1, 2.0), 1e-6)], "ok", "converged"),  # the first counts
+        ((1.0, 2.0), (np.nan, np.nan), [((1.1, 2.0), 1e-6), ((1.0, 2.0), 1e-6)], "ok", "limit"),
+    ],
+)
+def test_a_value_is_that_of_every_body_and_of_the_finest_run(
+    mu: Any, error: Any, finer: Any, status: str, verdict: str
+) -> None:
+    reply, *runs = (
+        analysis.ModelAnswer(np.array([value]), np.broadcast_to(known, (1, 2)), (status,))
+        for value, known in ((mu, error), *finer)
+    )
+    assert analysis.judge_answer(reply, runs, 1e-3, False, ()).verdict == verdict
 
 
 def test_a_motion_that_leaves_the_model_is_refused() -> None:

@@ -1,6 +1,7 @@
 """Fitted exponents, and the trends over scaled loading, ever smaller v_reg and ever stiffer contacts."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from comparison.evidence.trends import Trend, fit_slope, fit_trend, word_trends
 from comparison.study.shorten import shorten_scene
 from comparison.study.study import Study
 from reference import trajectory
-from reference.problem import Amplification, Scene, load_scene
+from reference.problem import Amplification, Scene, ground_peak, load_scene
 from reference.problem.readings import DEFAULT_V_C
 
 Array = NDArray[np.float64]
@@ -248,6 +249,17 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
         trends = fit_limit_trends((load_scene("fig3-I"), number))
         assert {each.verdict for each in trends} == {says}
         assert [each.exponent for each in trends] == pytest.approx([power] * 2, abs=1e-6)
+    asked: list[tuple[float | None, float | None]] = []
+    answer = _regularized(power)
+
+    def noted(*given: object, **settings: object) -> Amplification:
+        asked.append((settings.get("regularization"), settings.get("cutoff")))  # type: ignore[arg-type]
+        return answer(*given, **settings)  # type: ignore[operator, no-any-return]
+
+    with monkeypatch.context() as patch:
+        patch.setattr(reference, "amplification", noted)
+        speeds = fit_limit_trends((load_scene("fig3-I"), 0))[0].parameter
+    assert asked == [pair for v in speeds for pair in ((v, None), (None, v))], "each beside v_c = v_reg"
     against_supremum = fit_limit_trends((load_scene("fig3-I"), 1))[0]
     assert against_supremum.verdict.startswith("hardly falls")
     speeds = against_supremum.parameter
@@ -280,6 +292,22 @@ def test_a_limit_has_its_error_and_as_many_periods_as_asked() -> None:
     sizes, errors = convergence._relative_differences([(answer, limit)])
     assert (sizes.tolist(), errors.ravel().tolist()) == ([[[0.5, 0.5]]], pytest.approx([2.5e-3] * 2))
     assert shorten_scene(load_scene("fig3-I"), 3.0).duration == pytest.approx(3.0 * 1.1), "of 0.9 and 1.1 s"
+
+
+def test_a_run_at_a_constant_step_is_over_the_ground_of_its_phases_and_has_no_value_where_it_ends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, steps, statuses = load_scene("fig3-I"), [], iter(("step limit", "ok"))
+
+    def run(scene: Scene, phase: Array, step: float, **settings: float) -> SimpleNamespace:
+        steps.append(scene.duration / step)
+        return SimpleNamespace(status=next(statuses), peak=np.array([6.0, 3.0]))
+
+    monkeypatch.setattr(multibody, "single_run", run)
+    lost, found = convergence._solve_at_constant_step(scene, 1e-2, 1e-3, 1)
+    assert np.isnan(lost).all()
+    assert found == pytest.approx(np.array([6.0, 3.0]) / ground_peak(scene, convergence.ENGINE_PHASES[1:]))
+    assert steps == pytest.approx([20_000] * 2), "2250 in each 0.9 s of 20 s would be more"
 
 
 @pytest.mark.parametrize("order", [1, 2])
