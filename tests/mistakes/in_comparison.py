@@ -323,7 +323,7 @@ MISTAKES = (
     Mistake(ANALYSES + "ensemble/rows.py", "if not all(math.isfinite(number.value) for number, _ in places):", "if not places:",
             "A motion without a value in one story has a largest drift.",
             (ENSEMBLE_REPORT + "test_statistics_over_several_places_are_of_the_largest_value_of_every_motion",)),
-    Mistake(ANALYSES + "ensemble/rows.py", 'if shown.bodies == "floors" and motion else ""', 'if shown.bodies == "floors" else ""',
+    Mistake(ANALYSES + "ensemble/rows.py", 'if shown.bodies == "floors" and at.motion else ""', 'if shown.bodies == "floors" else ""',
             "An envelope without a largest value has its place.",
             (ENSEMBLE_REPORT + "test_an_envelope_has_the_place_and_bound_of_its_largest_value",)),
     Mistake(ANALYSES + "ensemble/sentences.py", '"{} alone, " if unknown else "{}, "', '"{}, "',

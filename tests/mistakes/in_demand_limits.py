@@ -399,7 +399,7 @@ MISTAKES = (
     Mistake(HAND_CHECKS, 'name, top, EXACT.key) for', 'name, top - 1, EXACT.key) for',
             "The drift by hand is that of a story below the top.",
             (TABLES + "page_shows_every_table_and_sentence",)),
-    Mistake("comparison/analyses/ensemble/rows.py", 'f"{motion}, {named[at.structure.name]}"', 'f"{named[at.structure.name]}, {motion}"',
+    Mistake("comparison/analyses/ensemble/rows.py", 'f"{at.motion}, {named[at.structure.name]}"', 'f"{named[at.structure.name]}, {at.motion}"',
             "Motion and structure of an envelope are exchanged.", (TABLES + "terminal_shows_every_table_and_sentence",)),
     Mistake("comparison/analyses/ensemble/rows.py", '"" if own.value is not None else mark', '"" if own.value is None else mark',
             "A known fractile is marked as a bound, an unknown one is not.", (TABLES + "page_shows_every_table_and_sentence",)),

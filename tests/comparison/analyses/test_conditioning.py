@@ -167,7 +167,8 @@ def test_a_pair_that_lacks_a_speed_counts_at_none(monkeypatch: pytest.MonkeyPatc
     assert curve.mean[:4] == (2.0,) * 4
     assert (curve.pairs, curve.reason, math.isnan(curve.mean[4]), math.isnan(curve.largest[4])) == (2, "", True, True)
     for lost, at in ((nan, 1e-9), (-4.0, 1e-9), (-4.0, None)):  # of all bodies, of the second, of its supremum
-        monkeypatch.setattr(reference, "amplification", _answering(lambda v: [2.0, lost if v == at else 4.0, 5.0]))
+        given = {at: [2.0, lost, 5.0]}
+        monkeypatch.setattr(reference, "amplification", _answering(lambda v, at=given: at.get(v, [2.0, 4.0, 5.0])))
         resolved, _, supremum, _ = conditioning_curves((load_scene("fig3-I"), EXACT, 0))
         assert (resolved.pairs, resolved.mean[0], supremum.pairs, supremum.mean) == (2, 3.5, 2, (3.5,))
     monkeypatch.setattr(reference, "amplification", _answering(lambda speed: [nan] * 3))
@@ -303,9 +304,8 @@ def test_the_sentence_leaves_out_an_engine_without_the_pairs() -> None:
     )
     assert conditioning_line([*others, spatial]).endswith(tail)
     assert conditioning_line([*others, replace(translational, pairs=2), spatial]).endswith(tail)
-    for place in (-2, -1):
-        mean = [math.nan if number == translational.mean[place] else number for number in translational.mean]
-        assert conditioning_line([*others, replace(translational, mean=tuple(mean)), spatial]).endswith(tail)
+    for mean in ((*translational.mean[:-1], math.nan), (*translational.mean[:-2], math.nan, translational.mean[-1])):
+        assert conditioning_line([*others, replace(translational, mean=mean), spatial]).endswith(tail)
     assert conditioning_line(others).endswith("(mean of 8 × 8 phases).")
     assert conditioning_line(None) == conditioning_line([]) == conditioning_line([translational, spatial]) == ""
 

@@ -19,16 +19,11 @@ from terminal_tables import rows_under
 
 import reference
 from comparison.analyses.ensemble import analysis, governing, quantities, statistics
+from comparison.analyses.ensemble import members as member_lists
 from comparison.analyses.ensemble.build import GROUND_PERIODS, describe_ground, read_suite
 from comparison.analyses.ensemble.command import CHECKS_FILE, WRITTEN_FILES, bound_engine_motion_count, main
 from comparison.analyses.ensemble.governing import bound_motion_count
-from comparison.analyses.ensemble.members import (
-    SCALE_KEY,
-    EnsembleMember,
-    list_members,
-    refuse_scenes_without_model_data,
-    with_suite,
-)
+from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember, list_members, with_suite
 from comparison.analyses.ensemble.rows import label_structures
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
@@ -128,11 +123,8 @@ def test_demands_have_their_own_order_and_scales_rise_whatever_the_file_says() -
         demanding("m", scale, drift={3: sure(2.0), 2: sure(scale)}, base_shear=sure(scale), displacement=sure(3.0))
         for scale in (2.0, 0.5)
     ]
-    points, order = (
-        analysis.EnsemblePoints(falling),
-        [("displacement", 0), ("base_shear", 0), ("drift", 2), ("drift", 3)],
-    )
-    assert statistics.list_quantities(falling) == order
+    points, names = analysis.EnsemblePoints(falling), ["displacement", "base_shear", "drift", "drift"]
+    assert statistics.list_quantities(falling) == [*zip(names, (0, 0, 2, 3))]
     assert [each.scale for each in statistics.summarize_demands(points)] == [0.5, 2.0] * 4
     curves = {(each.quantity, each.body): (each.scales, each.values) for each in statistics.make_demand_curves(points)}
     assert curves["drift", 2] == curves["base_shear", None] == ([0.5, 2.0], [0.5, 2.0])
@@ -166,11 +158,8 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
         carrying("m2", 2.0, (7.5, 5.5, 6.5), (25.0, 35.0, 45.0), (0.0, 0.002, 0.001)),
     ]
     failed = replace(spatial[0], member=replace(spatial[0].member, motion="m0"), status="step limit", forces=None)
-    found = list(
-        statistics.find_support_extremes(
-            analysis.EnsemblePoints(equations, (), {"small": [], "spatial": [failed, *spatial]})
-        )
-    )
+    by_model = {"small": [], "spatial": [failed, *spatial]}
+    found = list(statistics.find_support_extremes(analysis.EnsemblePoints(equations, (), by_model)))
     assert [(each.support, each.x, each.y) for each in found] == [(n, *PLACES[n - 1]) for n in (1, 2, 3)] * 2
     assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 2)] * 3
     smallest = [(each.smallest.value, each.smallest_motion) for each in found[:3]]
@@ -179,11 +168,7 @@ def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motion
     assert largest == [(24.0, "m2"), (31.0, "m1"), (40.0, "m2")]
     assert [each.uplift.value for each in found] == [None] * 3 + [0.0, 0.002, 0.001]
     assert (found[0].smallest.error, found[0].largest.error) == pytest.approx((0.7, 2.4))
-    assert [(each.smallest.value, each.smallest_motion) for each in found[3:]] == [
-        (7.5, "m2"),
-        (5.5, "m2"),
-        (6.5, "m2"),
-    ]
+    assert [(each.smallest.value, each.smallest_motion) for each in found[3:]] == [(n, "m2") for n in (7.5, 5.5, 6.5)]
 
 
 def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_worst(
@@ -483,9 +468,8 @@ def test_bounds_on_the_command_line_are_the_two_structures_of_the_file(folder: P
 def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("peer").mkdir()
     for name in ("RSN1_A_B_H1", "RSN1_A_B_H2", "RSN1_A_B-V", "RSN2_I.H_E11140", "RSN2_I.H_E11230"):
-        Path(f"peer/{name}.AT2").write_text(
-            f"PEER\nX\nIN UNITS OF G\nNPTS= 40, DT= .0{5 - (name[3] == '2')} SEC\n{'0.1 ' * 40}\n"
-        )
+        sampled = f"NPTS= 40, DT= .0{5 - (name[3] == '2')} SEC\n{'0.1 ' * 40}\n"
+        Path(f"peer/{name}.AT2").write_text(f"PEER\nX\nIN UNITS OF G\n{sampled}")
     assert run("mine.toml", "--suite", "peer", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
     said = capsys.readouterr().out
     assert "2 motions, paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
@@ -536,11 +520,11 @@ def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     assert [each.motion for each in target.motions] == ["m", "m", "n"], "each by its own samples and name"
     first, other, _ = (each.factor for each in target.motions)
     assert [member.factor for member in scaled] == [first, first, other, first] != [first] * 4
-    own = describe_ground(others[0])["spectrum"]
-    assert own == pytest.approx(reference.response_spectrum(time, ground[:, 1:], GROUND_PERIODS).tolist())
-    upward = {"time": time, "acceleration": scene.record[:, [1, 1, 2]] * [0.0, 0.0, 1.0]}
-    lifted = scene.with_values({"excitation": {"record": upward}})
-    assert describe_ground(EnsembleMember("b", "m", 1.0, lifted))["spectrum"] == ()
+    along_z = {"record": {"time": time, "acceleration": np.insert(0.0 * ground, 2, ground[:, 1], axis=1)}}
+    lifted = EnsembleMember("b", "m", 1.0, scene.with_values({"excitation": along_z}))
+    read, nothing = (describe_ground(member)["spectrum"] for member in (others[0], lifted))
+    assert read == pytest.approx(reference.response_spectrum(time, ground[:, 1:], GROUND_PERIODS).tolist())
+    assert nothing == ()
 
 
 def test_the_terminal_names_motions_without_value(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -608,8 +592,8 @@ def test_the_plan_says_how_many_motions_the_engine_computes_at_most() -> None:
     assert bound_motion_count(None, scene, 3) == 3
     assert [bound_motion_count(asked, scene, 22) for asked in (0, 7, ("a", "b"))] == [0, 7, 2]
     flat = EnsembleMember("flat", "m", 1.0, scene.with_values({"isolator.supports": None}))
-    with pytest.raises(SceneError, match="lacks isolator.supports"):
-        refuse_scenes_without_model_data([EnsembleMember("mine", "m", 1.0, scene), flat], SPATIAL)
+    with pytest.raises(SceneError, match="no spatial model, as it lacks"):
+        member_lists.refuse_scenes_without_model_data([EnsembleMember("mine", "m", 1.0, scene), flat], SPATIAL)
     members = [EnsembleMember(bound, f"m{n}", 1.0, scene) for bound in ("lower", "upper") for n in range(22)]
     assert bound_engine_motion_count(members, None) == 12
     for count, more in ((10, ""), (11, " and so on")):

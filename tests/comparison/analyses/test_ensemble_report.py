@@ -337,9 +337,8 @@ def test_statistics_over_several_places_are_of_the_largest_value_of_every_motion
         for each in found.curves
     ]
     lost = [replace(each, answered=3, reasons={"rim reached": 1}) if each.body == 3 else each for each in found.stripes]
-    told = rows.summarize_over_bodies(
-        replace(found, curves=unknown, stripes=lost), found.structures[0], "drift_ratio", 1.0
-    )
+    about = found.structures[0], "drift_ratio", 1.0
+    told = rows.summarize_over_bodies(replace(found, curves=unknown, stripes=lost), *about)
     assert (told and told.reasons) == {"rim reached": 1}, "of the body that lacks a motion"
     row = demand_row(replace(found, curves=unknown), "largest drift ratio")
     assert (row.cells[0], row.cells[4], row.where, row.motions) == ("0.5667 (of 3)", "≥ 0.9", "below body 2", "3 of 4")
@@ -358,15 +357,13 @@ def test_an_envelope_has_the_place_and_bound_of_its_largest_value() -> None:
     names = [*one.structures, replace(one.structures[0], name="c")]
     both = replace(one, structures=names, curves=curves, stripes=stripes)
     lost = [replace(each, values=(None,)) if each.structure == "c" and each.body else each for each in curves]
-    for length, short in ((8, True), (9, False)):
-
-        def renamed(rest: Sequence[Any], name: str = "c" * length) -> list[Any]:
-            return [replace(each, structure=name) if each.structure == "c" else each for each in rest]
-
-        named = [one.structures[0], replace(one.structures[0], name="c" * length)]
-        parts = replace(both, structures=named, curves=renamed(curves), stripes=renamed(stripes))
-        row = demand_row(parts, "largest drift ratio", "envelope")
-        assert row.bounds == (("c" * 8, *row.bounds[1:4], "b") if short else ()), "a name that is too long hides all"
+    for length, bounds in ((8, ("c" * 8, "b")), (9, ())):
+        parts: dict[str, Any] = {
+            part: [replace(each, **{key: "c" * length}) if getattr(each, key) == "c" else each for each in rest]
+            for part, key, rest in (("structures", "name", names), ("curves", "structure", curves),
+                                    ("stripes", "structure", stripes))}  # fmt: skip
+        row = demand_row(replace(both, **parts), "largest drift ratio", "envelope")
+        assert row.bounds[::4] == bounds, "a name that is too long hides all"
     row = demand_row(replace(both, curves=lost), "largest drift ratio", "envelope")
     assert (row.cells[4], row.motion, row.where) == ("≥ 0.9", "m4", "below body 2"), "of the bound that has values"
     lost = [replace(each, values=(None,)) if each.motion == "m4" and each.body else each for each in curves]
@@ -458,14 +455,13 @@ def test_the_largest_displacement_of_one_bound_is_not_that_of_a_bound_that_reach
     assert ("at least the travel" in said, "(c alone, m4)" in said) == (False, True)
     stopped = [EndedMotion("b", "m4", 1.0, "rim reached", 3.0)]
     assert sentences.travel_sentence(replace(two_bounds(), ended=stopped)) == ""
-    other = [replace(each, building=replace(each.building, travel=travel))
-             for each, travel in zip(two_bounds().structures, (0.5, 0.4))]  # fmt: skip
-    both = [replace(each, structure=name) for each in two_bounds().stripes[:1] for name in "bc"]
-    said = sentences.answer_sentence(replace(two_bounds(), structures=other, stripes=both))
+    one, two = two_bounds().structures
+    other = replace(two, building=replace(two.building, travel=0.4))
+    both = [replace(two_bounds().stripes[0], structure=name) for name in "bc"]
+    said = sentences.answer_sentence(replace(two_bounds(), structures=[one, other], stripes=both))
     assert "displacement: at least the travel, 500 mm (b); at least the travel, 400 mm (c); no demand is known" in said
     for count, named in ((3, "m1, m2, m3 (b)"), (4, "4 motions (b)")):
-        lost = [replace(each, values=(None,)) if each.motion in ("m1", "m2", "m3", "m4")[:count] else each
-                for each in planted().curves]  # fmt: skip
+        lost = [replace(each, values=(None,)) if int(each.motion[1]) <= count else each for each in planted().curves]
         assert f"No value under {named}." in sentences.answer_sentence(replace(planted(), curves=lost))
     alike = [planted().stripes[0], two_bounds().stripes[1]]
     assert "(b, m4)" in sentences.answer_sentence(replace(two_bounds(), stripes=alike)), "the first of equal bounds"
@@ -620,13 +616,10 @@ def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: Ens
     assert ">peak velocity x, m/s<" in text
 
 
-@pytest.mark.parametrize(
-    ("value", "error", "text"),
-    [(-12345.6, None, "-12350"), (9999.6, 2.0, "10000 ± 2"), (9999.4, None, "9999"), (-5.0, 1e-5, "-5"),
-     (-5.0, 4e-4, "-5 ± 0.0004"), (-2e-5, None, "-2.0e-05"), (0.0, 0.0, "0")],
-)  # fmt: skip
-def test_numbers_have_four_digits_and_no_power_of_ten(value: float, error: float | None, text: str) -> None:
-    assert word_value(value, error, 1.0) == text
+def test_numbers_have_four_digits_and_no_power_of_ten() -> None:
+    numbers = (-12345.6, None), (9999.6, 2.0), (9999.4, None), (-5.0, 1e-5), (-5.0, 4e-4), (-2e-5, None), (0.0, 0.0)
+    texts = ["-12350", "10000 ± 2", "9999", "-5", "-5 ± 0.0004", "-2.0e-05", "0"]
+    assert [word_value(*number, 1.0) for number in numbers] == texts
 
 
 def test_one_duration_is_no_range() -> None:
@@ -657,24 +650,25 @@ def test_numbers_and_names_of_sentences_are_those_of_their_bound() -> None:
 
 def test_lists_of_the_report_end_and_sizes_and_heights_are_of_every_body() -> None:
     (structure,) = planted().structures
-    read = [replace(structure, building=replace(structure.building, sizes=sizes, heights=heights)) for sizes, heights in (
-        ([(7.0, 5.5, 1.0)], (0.0, 1.0)), ([(7.0, 5.5, 1.0)] * 2, (0.5, -0.2)), ([(7.0, 5.5, 1.0), None], (-0.2, 0.5)),
-    )]  # fmt: skip
+    stated = (
+        ([(7.0, 5.5, 1.0)], (0.0, 1.0)),
+        ([(7.0, 5.5, 1.0)] * 2, (0.5, -0.2)),
+        ([(7.0, 5.5, 1.0), None], (-0.2, 0.5)),
+    )
+    read = [replace(structure, building=replace(structure.building, sizes=sizes, heights=at)) for sizes, at in stated]
     assert [sentences.word_plan_sizes(each) for each in read] == ["7 × 5.5", "7 × 5.5, all", "7 × 5.5; not stated"]
     assert [sentences.below_contact_sentence(each) != "" for each in read] == [False, False, True], "of the platform"
     for count, end in ((12, "m12 (a)."), (13, "m12 (a) and 1 more.")):
         chosen = [ChosenMotion("b", f"m{number}", 1.0, ["a"], {}) for number in range(1, count + 1)]
         first, _ = sentences.engine_sentences(replace(planted(), engine=EngineMotions("spatial", chosen)))
         assert first.endswith(end)
-    stripe, scales = replace(planted().stripes[0], quantity="uplift", model="spatial"), (1.0, 0.5)
-    lifted, (uplift,) = replace(planted(), stripes=[stripe], scales=scales), (
-        each for each in rows.MAIN_TABLE_COLUMNS if each.quantity == "uplift")  # fmt: skip
-    assert [rows.statistics_of_column(lifted, uplift, scale, structure) for scale in scales] == [stripe, None]
-    lost = [replace(planted().stripes[0], quantity=name, answered=3, reasons={"rim reached": 1})
-            for name in ("displacement", "residual")]  # fmt: skip
-    rest = [replace(planted().stripes[0], quantity="base_shear")]
-    for stripes, what in ((lost, "every demand"), ([*lost, *rest], "isolator displacement, residual displacement")):
-        line, *_ = sentences.missing_sentences(replace(planted(), stripes=stripes), structure)
+    stripe, shown = replace(planted().stripes[0], quantity="uplift", model="spatial"), rows.DemandColumn("", "uplift")
+    lifted = replace(planted(), stripes=[stripe], scales=(1.0, 0.5))
+    assert [rows.statistics_of_column(lifted, shown, scale, structure) for scale in lifted.scales] == [stripe, None]
+    rest, first = (replace(planted().stripes[0], quantity=name) for name in ("base_shear", "displacement"))
+    lost = [replace(first, quantity=name, reasons={"rim reached": 1}) for name in ("displacement", "residual")]
+    for kept, what in ((lost, "every demand"), ([*lost, rest], "isolator displacement, residual displacement")):
+        line, *_ = sentences.missing_sentences(replace(planted(), stripes=kept), structure)
         assert line.endswith(f": {what} (rim reached).")
 
 
@@ -693,11 +687,11 @@ def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pyt
 
 
 def test_a_fractile_beyond_the_outermost_motions_is_left_out() -> None:
-    for motions, expected in (
-        (1, ["–", "100", "–"]),
-        (2, ["–", "150", "–"]),
-        (3, ["–", "200", "–"]),
-        (4, ["114", "250", "386"]),
+    for motions, *expected in (
+        (1, "–", "100", "–"),
+        (2, "–", "150", "–"),
+        (3, "–", "200", "–"),
+        (4, "114", "250", "386"),
     ):
         row = demand_row(planted(motions=motions), "isolator displacement")
         assert list(row.cells[1:4]) == expected

@@ -392,9 +392,7 @@ def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:
     assert [round(each.steady, 2) for each in compute_forced_ratios(scene) if each.axis == "y"] == [1.29, 5.26]
     damped = scene.with_values({"bodies.1.damping": [0.1, 0.3], "excitation.amplitudes": [[1.0, 2.0], [0.0, 1.0]]})
     found = compute_forced_ratios(damped)
-    assert [(each.axis, each.harmonic) for each in found] == [("x", 1), ("x", 2), ("y", 2)], (
-        "what is not loaded has none"
-    )
+    assert [(each.axis, each.harmonic) for each in found] == [("x", 1), ("x", 2), ("y", 2)], "of what is loaded"
     for each in found:
         s, axis = complex(-0.3 / each.period, 2.0 * np.pi / each.period), "xy".index(each.axis)
         link = damped.stiffness[0, axis] + s * damped.damping[0, axis]

@@ -249,25 +249,19 @@ def test_a_value_with_an_error_as_large_as_itself_is_not_confirmed() -> None:
         assert analysis.makes_checkable_claim(analysis.ModelAnswer(mu, shares * mu, status)) == claims
 
 
-@pytest.mark.parametrize(
-    ("mu", "error", "finer", "status", "verdict"),
-    [
-        ((1.0, np.nan), (1e-5, 1e-5), [((1.0, 2.0), 1e-6)], "ok", "FAILED"),
-        ((1.0, np.nan), (np.nan, np.nan), [((1.0, 2.0), 1e-6)], "ok", "FAILED"),
-        ((1.0, np.nan), (np.nan, np.nan), [((np.nan, np.nan), np.nan)], "rim reached", "FAILED"),  # and yet a value
-        ((1.0, 2.0), (1e-5, 1e-5), [((1.0, np.nan), 1e-6)], "ok", "FAILED"),  # of one body alone
-        ((1.0, 2.0), (1e-5, 1e-5), [((1.0, 2.0), (1e-6, 9e-3))], "ok", "FAILED"),
-        ((1.0, 2.0), (np.nan, np.nan), [((1.0, 2.0), 1e-6), ((1.1, 2.0), 1e-6)], "ok", "converged"),  # the first counts
-        ((1.0, 2.0), (np.nan, np.nan), [((1.1, 2.0), 1e-6), ((1.0, 2.0), 1e-6)], "ok", "limit"),
-    ],
-)
-def test_a_value_is_that_of_every_body_and_of_the_finest_run(
-    mu: Any, error: Any, finer: Any, status: str, verdict: str
-) -> None:
-    reply, *runs = (
-        analysis.ModelAnswer(np.array([value]), np.broadcast_to(known, (1, 2)), (status,))
-        for value, known in ((mu, error), *finer)
-    )
+NONE, BOTH, ONE = (np.nan, np.nan), (1.0, 2.0), (1.0, np.nan)
+
+
+@pytest.mark.parametrize(("mu", "error", "finer", "status", "verdict"), [
+    (ONE, 1e-5, [(BOTH, 1e-6)], "ok", "FAILED"), (ONE, np.nan, [(BOTH, 1e-6)], "ok", "FAILED"),
+    (ONE, np.nan, [(NONE, np.nan)], "rim reached", "FAILED"),  # and yet a value
+    (BOTH, 1e-5, [(ONE, 1e-6)], "ok", "FAILED"), (BOTH, 1e-5, [(BOTH, (1e-6, 9e-3))], "ok", "FAILED"),
+    (BOTH, np.nan, [(BOTH, 1e-6), ((1.1, 2.0), 1e-6)], "ok", "converged"),  # the first is the most trusted
+    (BOTH, np.nan, [((1.1, 2.0), 1e-6), (BOTH, 1e-6)], "ok", "limit"),
+])  # fmt: skip
+def test_a_value_is_that_of_every_body_and_of_the_finest_run(mu, error, finer, status, verdict) -> None:
+    reply, *runs = (analysis.ModelAnswer(np.array([value]), np.broadcast_to(known, (1, 2)), (status,))
+                    for value, known in ((mu, error), *finer))  # fmt: skip
     assert analysis.judge_answer(reply, runs, 1e-3, False, ()).verdict == verdict
 
 
