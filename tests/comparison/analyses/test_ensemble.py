@@ -115,19 +115,21 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     engine = [replace(point, model="spatial") for point in points]
     for motions, count, models in ((4, 3, {"exact"}), (4, 4, {"exact", "spatial"}), (1, 1, {"exact"})):
         both = analysis.EnsemblePoints(points[:motions], (), {"spatial": engine[:count]})
-        assert {each.model for each in statistics.summarize_demands(both)} == models, "of all motions, or no statistics"
+        assert {each.model for each in statistics.summarize_demands(both)} == models, "of all motions, or none"
 
 
 def test_demands_have_their_own_order_and_scales_rise_whatever_the_file_says() -> None:
     falling = [
-        demanding("m", scale, drift={3: sure(2.0), 2: sure(scale)}, base_shear=sure(scale), displacement=sure(3.0))
+        demanding(
+            "m", scale, drift={3: sure(2.0), 2: sure(scale)}, story_shear={1: sure(scale)}, displacement=sure(3.0)
+        )
         for scale in (2.0, 0.5)
     ]
-    points, names = analysis.EnsemblePoints(falling), ["displacement", "base_shear", "drift", "drift"]
-    assert statistics.list_quantities(falling) == [*zip(names, (0, 0, 2, 3))]
+    points, names = analysis.EnsemblePoints(falling), ["displacement", "drift", "drift", "story_shear"]
+    assert statistics.list_quantities(falling) == [*zip(names, (0, 2, 3, 1))]
     assert [each.scale for each in statistics.summarize_demands(points)] == [0.5, 2.0] * 4
     curves = {(each.quantity, each.body): (each.scales, each.values) for each in statistics.make_demand_curves(points)}
-    assert curves["drift", 2] == curves["base_shear", None] == ([0.5, 2.0], [0.5, 2.0])
+    assert curves["drift", 2] == curves["story_shear", 1] == ([0.5, 2.0], [0.5, 2.0])
 
 
 PLACES = [[3.0, 2.0], [-3.5, 2.0], [0.5, -2.5]]  # m
