@@ -93,6 +93,19 @@ def test_a_record_has_one_value_and_no_phases(study: Study, demands: xr.Dataset)
     assert np.isnan(row.highest.phases).all()
 
 
+def test_the_extremes_of_a_demand_have_their_own_errors_and_phases(study: Study, demands: xr.Dataset) -> None:
+    value, planted = 10.0 + np.arange(16.0).reshape(4, 4), demands.copy(deep=True)
+    value[1, 3], value[2, 0], value[0, 1] = 1.0, 99.0, np.nan
+    for name, numbers in (("base_shear", value), ("base_shear_error", 0.01 * value[::-1])):
+        planted[name].loc[{"scene": "fig3-I", "model": EXACT.key}] = numbers
+    rows = {(row.model, row.quantity): row for row in demand_statistics(study, planted, study.scenes[0])}
+    row, axis = rows[EXACT.key, "base_shear"], phase_axis(4)
+    found = [(each.value, each.error, *each.phases) for each in (row.lowest, row.highest)]
+    assert found[0] == pytest.approx((1.0, 0.21, axis[1], axis[3]))
+    assert found[1] == pytest.approx((99.0, 0.14, axis[2], axis[0]))
+    assert row.unknown == pytest.approx(1.0 / 16.0)
+
+
 def test_an_unknown_error_of_a_demand_is_one_of_its_mean(study: Study, demands: xr.Dataset) -> None:
     unsure = demands.assign(drift_error=demands["drift_error"].where(demands["alpha1"] > 0.0))
     rows = {

@@ -1,6 +1,7 @@
 """A range in a scene file, or many files, is one study; its budget is drawn against the value that runs."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from comparison.analyses.families.analysis import (
     FamilyStep,
     list_family_demands_over_phases,
 )
-from comparison.analyses.families.feature import family_panels
+from comparison.analyses.families.feature import family_panels, family_results
 from comparison.registry import make_report
 from comparison.result_types import UncertainNumber
 from comparison.study.study import Study
@@ -31,6 +32,13 @@ def file(tmp_path: Path) -> Path:
     place, friction = tmp_path / "mine.toml", "friction = {range = [0.1, 0.2], steps = 3}"
     place.write_text(scene_text("fig3-I", ("friction = 0.1", friction)), encoding="utf-8")
     return place
+
+
+def statistics(value: float) -> list[DemandStatistics]:
+    fractiles = tuple(Fractile(probability, value + probability, 0.0) for probability in FRACTILES)
+    low, high = (PhaseExtreme(value + shift, 0.0, (0.0, 0.0)) for shift in (-1.0, 2.0))
+    mean = UncertainNumber(value=value, error=0.0)
+    return [DemandStatistics("small", "drift", 2, 16, 0.25, mean, fractiles, low, high, ())]
 
 
 def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
@@ -49,6 +57,11 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
     assert steps["translational", 1].resolved == (True, False, True)
     assert results.unchecked == {scene.name: ["total", "translational"] for scene in family.scenes}
+    findings: Any = SimpleNamespace(found={}, families=[family], study=study, surfaces=surfaces)
+    first, *others = results.scenes
+    stated = [first.model_copy(update={"demand_statistics": statistics(5.0)}), *others]
+    (found,) = family_results(findings, stated) or ()
+    assert (found.demands_over_phases, len(found.demands)) == (True, 1), "of one scene"
     assert [limit.scene for limit in results.limits] == [scene.name for scene in family.scenes for _ in range(5)]
 
 
@@ -56,7 +69,7 @@ def test_every_plot_of_a_family_has_the_lines_of_its_body_and_quantity(file: Pat
     family = load_family(file)
     study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
     results = make_report(study, solved(study), {}, [], RUN, families=[family]).results
-    keys, sides = ("exact", "spatial"), (1, 2)
+    keys, sides = ("exact", "translational", "spatial"), (1, 2)
     curves = [
         FamilyCurve(key, body, *[(100.0 * body + 10.0 * n + shift,) * 3 for shift in (0.0, -1.0, 2.0)], (0.1,) * 3)
         for n, key in enumerate(keys)
@@ -85,13 +98,12 @@ def test_every_plot_of_a_family_has_the_lines_of_its_body_and_quantity(file: Pat
 
     expected: dict[str, list[Any]] = {}
     for b in sides:
-        mu = [(100.0 * b + 10.0 * n, n) for n in range(2)]
-        expected[f"mu_{b}"] = [
-            (title[keys[n]], values, [middle] * 3, n, [middle - 1.0] * 3, [middle + 2.0] * 3) for middle, n in mu
-        ]
+        mu = [(100.0 * b + 10.0 * n, n) for n in range(3)]
+        bands = [([middle - 1.0] * 3, [middle + 2.0] * 3) if n != 1 else (None, None) for middle, n in mu]
+        expected[f"mu_{b}"] = [(title[keys[n]], values, [middle] * 3, n, *bands[n]) for middle, n in mu]
         expected[f"what each effect adds to mu_{b}"] = [
             (name, values, [100.0 * (b + 0.1 * n)] * 3, "ink" if name == "total" else n + 1, None, None)
-            for n, name in enumerate((effect["exact"], effect["spatial"], "total"))
+            for n, name in enumerate((*(effect[key] for key in keys), "total"))
         ]
     for name, factor, value in (("platform acceleration", 1.0, 5.0), ("drift of the lowest story", 1e3, 0.04)):
         scaled = [[factor * (value + shift), None, factor * value] for shift in (0.0, -0.5, 0.5)]
@@ -104,15 +116,6 @@ def test_every_plot_of_a_family_has_the_lines_of_its_body_and_quantity(file: Pat
 
 def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
     family = load_family(file)
-
-    def statistics(value: float) -> list[DemandStatistics]:
-        fractiles = tuple(Fractile(probability, value + probability, 0.0) for probability in FRACTILES)
-        low, high = (PhaseExtreme(value + shift, 0.0, (0.0, 0.0)) for shift in (-1.0, 2.0))
-        return [
-            DemandStatistics(
-                "small", "drift", 2, 16, 0.25, UncertainNumber(value=value, error=0.0), fractiles, low, high, ()
-            )
-        ]
 
     first, _, third = (scene.name for scene in family.scenes)
     [band] = list_family_demands_over_phases(family, {first: statistics(5.0), third: statistics(7.0)})

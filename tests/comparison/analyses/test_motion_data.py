@@ -22,6 +22,7 @@ from comparison.analyses.motions.analysis import (
     compute_stored_motion,
     decimate,
 )
+from comparison.analyses.motions.feature import _demands_of_motions
 from comparison.analyses.motions.page_data import (
     contact_geometry,
     encode_motions,
@@ -150,6 +151,15 @@ def test_at_the_largest_difference_of_every_body_its_own_model_moves() -> None:
     stride = study.strides["spatial"]
     assert stride > 1
     assert {(row % stride, column % stride) for key, row, column in moving if key == "spatial"} == {(0, 0)}
+
+
+def test_demands_of_a_stored_motion_have_the_phases_of_its_place() -> None:
+    scene = load_scene("fig3-I").with_values({"duration": 1.0})
+    motion = compute_stored_motion((scene, SMALL, 1e-3, MotionPlace(scene.name, 1, 2, "a"), PHASE))
+    axes = {name: SimpleNamespace(values=values) for name, values in (("alpha1", (0, 1, 2)), ("alpha2", (0, 4, 5)))}
+    findings: Any = SimpleNamespace(surfaces=axes, found={"motions": [motion]})
+    (row,) = _demands_of_motions(findings, scene)
+    assert (row.phases, row.why, row.model) == ((1.0, 5.0), "a", "small")
 
 
 def test_no_two_spread_places_are_mirror_images() -> None:
