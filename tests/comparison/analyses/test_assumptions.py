@@ -268,13 +268,14 @@ def test_a_blind_trial_is_no_evidence() -> None:
     assert " met" not in describe_verdict(found)
     assert describe_verdict(found).endswith(f"fig3-I not compared: {NO_EFFECT}.")
     assert assumption_panels(found, FIRST) == []
-    partly = validity.find_validity_ranges(FIRST, [*rings[:2], cell(Variation(ring=2.0), 0.003)])
-    assert next((r.holds, r.fails, r.no_effect) for r in partly if r.key == "ring") == (2.0, None, "")
+    for ring in (2.0, 0.2):
+        partly = validity.find_validity_ranges(FIRST, [*rings[:2], cell(Variation(ring=ring), 0.003)])
+        assert next((r.holds, r.fails, r.no_effect) for r in partly if r.key == "ring") == (ring, None, "")
 
 
 def test_a_blind_trial_that_has_an_effect_is_not_called_blind() -> None:
     plain = trials.Trial(None, np.full((2, 2), 2.0), np.full((2, 2), 1e-4), ("ok",) * 2, "", 0.0)
-    for size, reason in ((1.0, ONE_PLANE), (1.02, "")):
+    for size, reason in ((1.0, ONE_PLANE), (1.02, ""), (np.array([1.0, 1.02]), "")):
         control = trials.Trial(Variation(ring=0.5), plain.mu[:1] * size, plain.error[:1], ("ok",), "", 0.0)
         assert validity._make_cell(PLANAR, control, plain).no_effect == reason
         lost = replace(plain, error_message="lost")
@@ -330,6 +331,8 @@ def test_the_verdict_is_that_of_the_worst_body_of_every_scene() -> None:
         "Bodies that turn leave mu_i (as integrated) within 1 % of the translational model: fig3-I met: mu_1 +0.4 %; "
         "fig3-II not met (by 2.1 %): mu_2 −3.0 ± 0.1 %."
     )
+    close = replace(second, change=((0.009, 0.0085),) * 2)  # the smaller one may be the larger
+    assert "fig3-II met: mu_2 +0.9 ± 0.1 %" in describe_verdict(found_of([close]))
     assert describe_verdict(found_of([cell(Variation(), math.nan)])).endswith("fig3-I not compared: no value.")
     assert describe_verdict(found_of([])) == ""
 
