@@ -174,6 +174,7 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     first, again = stored(4), stored(4)
     assert (first[1], again[1]) == (0, again[2])
     assert (first[3]["pictures"], again[3]["pictures"]) == ((3, 0), (3, 3))
+    assert first[3].keys().isdisjoint(model.title for model in MODEL_HIERARCHY), "parts are what is beside the surfaces"
     line = f"{again[2]} of {again[2]} batches, 6 of 11 analyses are in "  # the models have no motions for the others
     assert line in again[0], again[0][:400]
     assert "are in " not in first[0]

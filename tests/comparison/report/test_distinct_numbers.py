@@ -280,3 +280,6 @@ def test_the_page_draws_every_value_of_its_scene_model_and_body() -> None:
     ]  # fmt: skip
     assert (pair["second"], pair["uncertainty"], pair["contours"]) == (other, None, lines)
     assert [len(each) > 0 for each in lines] == [True, False], "the bodies are told apart"
+    coarse = replace(alone, hierarchy=[replace(m, most=COARSE) if m.key == CHAIN[0] else m for m in alone.hierarchy])
+    [scene] = json.loads(collect_page_data(make_report(coarse, solved(coarse), {}, [], RUN, families=())))["scenes"]
+    assert np.shape(scene["pairs"][0]["uncertainty"]) == (2, COARSE, COARSE), "the first is drawn as points"
