@@ -67,7 +67,7 @@ def compute_tasks(
     cache = Cache(locate_store(out))
     if options.fresh:
         cache.remove(task.key for task in tasks)
-    results = TaskResults(cache)
+    results = TaskResults(cache, options.fresh)
     missing = results.find_missing(tasks)
     if stored := len(tasks) - len(missing):
         line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."

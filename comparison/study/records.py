@@ -17,7 +17,8 @@ def describe_records(scenes: Sequence[Scene], names: Sequence[str] = ()) -> list
     read: dict[Hashable, RecordDescription] = {}
     for scene, name in zip(scenes, names or [""] * len(scenes), strict=True):
         if isinstance(record := scene.excitation, Record):
-            what = record.files, tuple(record.origin), record.detrend
+            # Files of one name may stand in several folders.
+            what = record.files, record.detrend, record.samples.tobytes()
             if what not in read:
                 one = describe_record(scene)
                 read[what] = replace(one, title=name or one.title)

@@ -139,7 +139,7 @@ def make_selection(
         else:
             by_scene[scene.name] = names
             unnamed.clear()
-        unnamed -= {*(asked[1] or ()), *added}
+        unnamed -= {*(asked[1] or ())}
     return Selection(
         tuple(analyses), by_scene, of_the_paper=tuple(sorted(unnamed)), on_request=tuple(sorted(on_request))
     )

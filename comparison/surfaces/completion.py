@@ -171,7 +171,7 @@ def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
 
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
     """
-    mirrored = model.symmetric(scene) and study.grid % study.stride(model) == 0 and not study.full
+    mirrored = model.symmetric(scene) and not study.full
     same = indices_of_solved_pairs(scene, study.grid) if mirrored else np.arange(study.grid**2)
     candidates = np.setdiff1d(same, same[study.places(model)])
     seed = hashlib.sha256(f"{scene.digest()} {model.key}".encode()).digest()

@@ -39,6 +39,13 @@ def test_every_record_is_told_once_and_its_scale_where_the_scenes_agree(tmp_path
     assert (one.scale, one.samples) == (2.0, 301)
     (several,) = describe_records([scene, scene_of(tmp_path, 3.0)])
     assert several.scale == 1.0
+    for name, offset in (("a", 0.02), ("b", 0.03)):
+        (tmp_path / name).mkdir()
+        scene_of(tmp_path / name, offset=offset)
+    alike, other = (load_scene(tmp_path / name / "scene.toml") for name in "ab")  # files of one name in two folders
+    listed = describe_records([scene, alike, other, scene.with_values({"excitation.detrend": "mean"})])
+    assert [record.detrend for record in listed] == [None, None, "mean"]
+    assert ["mean of +0.03 m/s^2" in "".join(record.warnings) for record in listed] == [False, True, False]
     findings = SimpleNamespace(study=SimpleNamespace(scenes=[load_scene("fig3-I")]))
     assert list_recorded_motions(findings, []) is None  # type: ignore[arg-type]
 

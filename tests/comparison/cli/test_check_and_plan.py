@@ -19,7 +19,7 @@ import reference
 from comparison.analyses.demands.analysis import DemandSurfaces
 from comparison.cli.options import parse_options
 from comparison.runner.processes import count_cores
-from comparison.study.costs import estimate_motion_seconds
+from comparison.study.costs import estimate_model_seconds, estimate_motion_seconds
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, check_limits
@@ -187,6 +187,22 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
 def test_the_cost_of_a_model_is_that_of_all_its_batches() -> None:
     costs = solved(Study((reference.load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy()))["cost"]
     assert costs.values.ravel() == pytest.approx(0.016), "16 phase pairs of 1 ms each"
+
+
+def test_rough_costs_grow_with_bodies_knots_and_the_fastest_link() -> None:
+    record, small, spatial = reference.load_scene("synthetic-pair"), MODEL_HIERARCHY[0], MODEL_HIERARCHY[-1]
+    parts = 4e-4 * record.duration + 3.7e-6 * len(record.record)
+    assert estimate_motion_seconds(record, small) == pytest.approx(0.02 + (len(record.bodies) + 1) * parts)
+    bodies = [{"mass": mass, "stiffness": stiffness} for mass, stiffness in ((1.0, [3.0, 900.0]), (0.25, [4.0, 5.0]))]
+    scene = reference.load_scene("fig3-I").with_values({"bodies": [{"mass": 0.5}, *bodies]})
+    radians = scene.duration * np.sqrt(900.0 * (1.0 / 0.5 + 1.0))
+    costs = [estimate_motion_seconds(scene, model) for model in MODEL_HIERARCHY[-2:]]
+    assert costs == pytest.approx([8e-4 * radians, 1.25e-3 * 3 * radians])
+    alone = reference.load_scene("fig3-I").with_values({"bodies": [{"mass": 0.5}], "duration": 3.0})
+    assert estimate_motion_seconds(alone, spatial) == pytest.approx(1.25e-3 * 3.0 * 7.0)
+    scenes = (reference.load_scene("fig3-I"), reference.load_scene("fig4-viscous"))  # no law of friction in the second
+    seconds = [estimate_model_seconds(Study(each, 4, 1e-3), MODEL_HIERARCHY[3]) for each in (scenes, scenes[:1])]
+    assert seconds[0] == seconds[1] > 0.0
 
 
 def test_the_plan_counts_every_motion_of_the_demands() -> None:

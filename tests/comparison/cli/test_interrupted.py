@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from argparse import Namespace
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
@@ -19,14 +20,18 @@ import psutil
 import pytest
 from fake_models import fake_hierarchy
 from known_results import PLAIN, fake
+from light_tasks import doubled
 from places import HELPERS, ROOT
 from report_texts import summary_of
+from rich.console import Console
 from runs import Run, no_executor
 
+from comparison.cli.computing import compute_tasks
 from comparison.evidence.extremes import command as extremes
 from comparison.evidence.extremes.matrix import STORED
 from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import publish_files
+from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -169,6 +174,7 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     first, again = stored(4), stored(4)
     assert (first[1], again[1]) == (0, again[2])
     assert (first[3]["pictures"], again[3]["pictures"]) == ((3, 0), (3, 3))
+    assert first[3].keys().isdisjoint(model.title for model in MODEL_HIERARCHY), "parts are what is beside the surfaces"
     line = f"{again[2]} of {again[2]} batches, 6 of 11 analyses are in "  # the models have no motions for the others
     assert line in again[0], again[0][:400]
     assert "are in " not in first[0]
@@ -182,6 +188,18 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     out, before, *_ = stored(8)
     assert before == sum(key in coarse for key in fine) > 0
     assert "Level 1 of" not in out, "a level that is done at once has no report of its own"
+
+
+def test_fresh_computes_also_what_follows_from_the_first_tasks(tmp_path: Path) -> None:
+    first, second = (Task(doubled, str(tmp_path / name), "test", needs_compiled_reference=False) for name in "ab")
+
+    def calls(fresh: bool) -> list[str]:
+        before = {*tmp_path.iterdir()}
+        options = Namespace(jobs="1", scheduler=None, out=tmp_path / "report", fresh=fresh)
+        compute_tasks("test", options, [], [first], set(), Console(), ThreadPoolExecutor, lambda *rest: [second])
+        return sorted(mark.name[0] for mark in {*tmp_path.iterdir()} - before if mark.is_file())
+
+    assert [calls(fresh) for fresh in (False, False, True)] == [["a", "b"], [], ["a", "b"]]
 
 
 def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(

@@ -121,12 +121,12 @@ def test_every_statistic_of_a_difference_is_that_of_its_pair(scene: dict[str, An
         agrees(rows[pair], statistics(np.abs(signed), phases))
         more = {
             "mean": signed.mean(), "spread": signed.std(), "ratio": (np.abs(signed) / error).max(),
-            "beyond_error": (np.abs(signed) > error).mean(), "not_ok": 0, "unanswered": 0,
+            "beyond_error": (np.abs(signed) > error).mean(), "numerical_error": error.mean(), "not_ok": 0, "unanswered": 0,
         }  # fmt: skip
         agrees(rows[pair], more)
         found[pair] = {**statistics(np.abs(signed), phases), **more}
         digits = {f"{abs(number):.2g}" for name, number in found[pair].items() if isinstance(number, float)}
-        assert len(digits) == 7, "no two are written alike"
+        assert len(digits) == 8, "no two are written alike"
     limits = {limit["key"]: [breach["found"] for breach in limit["breaches"]] for limit in scene["limits"]}
     alike, total = found["like-for-like"], found["total"]["maximum"]
     for key, number in {
@@ -280,3 +280,6 @@ def test_the_page_draws_every_value_of_its_scene_model_and_body() -> None:
     ]  # fmt: skip
     assert (pair["second"], pair["uncertainty"], pair["contours"]) == (other, None, lines)
     assert [len(each) > 0 for each in lines] == [True, False], "the bodies are told apart"
+    coarse = replace(alone, hierarchy=[replace(m, most=COARSE) if m.key == CHAIN[0] else m for m in alone.hierarchy])
+    [scene] = json.loads(collect_page_data(make_report(coarse, solved(coarse), {}, [], RUN, families=())))["scenes"]
+    assert np.shape(scene["pairs"][0]["uncertainty"]) == (2, COARSE, COARSE), "the first is drawn as points"

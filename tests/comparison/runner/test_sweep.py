@@ -284,6 +284,7 @@ def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path, monkeypatch: py
     """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
     model = make_user_model("mine", {"function": "user_engines:plain"})
     tasks = make_surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
+    assert {task.group for task in tasks} == {"mine"}, "no process is shared with another engine"
     results = _run(tasks, Limited, jobs=1, folder=tmp_path)
     assert [result.outcome for result in results] == [*[Outcome.TIME_LIMIT] * 3, Outcome.NOT_ASKED]
     assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP_MESSAGE]

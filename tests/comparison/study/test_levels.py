@@ -64,6 +64,11 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
         assert axis["small"] == axis["regularised"] == level.study.grid
 
 
+def test_levels_of_one_side_alone_have_its_own_grids() -> None:
+    for models, grid, grids in ((MODEL_HIERARCHY[:6], 48, [16, 48]), (MODEL_HIERARCHY[6:], 50, [50])):
+        assert [level.study.grid for level in make_levels(Study(SCENES[:1], grid, 1e-3, models), {})] == grids
+
+
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
     models = [*MODEL_HIERARCHY, make_user_model("mine", {"function": "user_engines:plain"})]
     study = Study((load_scene("fig3-I"),), 48, 1e-3, models, selection=registry.EVERYTHING)

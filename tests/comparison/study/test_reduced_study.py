@@ -83,6 +83,11 @@ def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
     (row,) = list_skipped_computations(Study((scene,), GRID, 1e-3, [EXACT]))
     why = "a harmonic without amplitude: its phase changes nothing"
     assert row[:3] == ("mirrored phases, all but 1/4", "all models", why)
+    models = [EXACT, replace(TRANSLATIONAL, most=4)]
+    rows = list_skipped_computations(Study((scene,), 8, 1e-3, models))
+    assert [row[:2] for row in rows[:2]] == [
+        ("mirrored phases, all but 1/8", "exact"), ("mirrored phases, all but 1/4", "translational"),
+    ]  # fmt: skip
 
 
 def test_without_friction_no_law_of_friction_is_varied() -> None:

@@ -126,6 +126,8 @@ def test_claims_are_of_the_papers_scenes(command: Callable[..., Run], tmp_path: 
     selection = make_selection(SELECTABLE, [mine, named, paper], None, None)
     assert [selection.has("claims", scene.name) for scene in (mine, named, paper)] == [False, True, True]
     assert make_selection(SELECTABLE, [mine], ["claims"], None).has("claims", "mine")
+    assert make_selection(SELECTABLE, [mine], None, None, ["claims"]).has("claims", "mine")
+    assert make_selection(SELECTABLE, [mine], ["budget"], None).explain_absence("claims") == "not asked for"
     skipped = make_selection(SELECTABLE, [mine], None, ["claims", "demands"])
     assert not skipped.has("claims", "mine")
     assert [skipped.explain_absence(key) for key in ("claims", "demands")] == ["not asked for"] * 2

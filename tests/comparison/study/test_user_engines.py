@@ -35,7 +35,13 @@ from comparison.runner.processes import make_process_pool
 from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.models import EXACT_AS_INTEGRATED, MODEL_HIERARCHY, REGULARIZED, Model, pairs_of
 from comparison.study.study import Study
-from comparison.study.user_models import REFERENCE_MODEL_KEYS, amplification, make_user_model, silence_output
+from comparison.study.user_models import (
+    REFERENCE_MODEL_KEYS,
+    _read_answer,
+    amplification,
+    make_user_model,
+    silence_output,
+)
 from comparison.surfaces.budget import list_budget_entries
 from comparison.surfaces.headline import make_headline
 from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
@@ -393,6 +399,18 @@ def test_missing_values_of_an_engine_break_the_gate_of_a_scene_without_limits(
     run = command(limited_scene(tmp_path, ""), *words, hierarchy=fake_hierarchy(engine))
     line = "limit broken: limited: acceptance.failed: 1 points without an answer (mine 1 of 16), 0 allowed by default"
     assert (run.code, run.err.count(line), run.err.count("acceptance.failed")) == (count, count, count)
+
+
+def test_what_is_no_number_of_an_answer_is_unknown_and_costs_no_other() -> None:
+    nan = np.nan
+    answer = SimpleNamespace(
+        mu=[[1.0, 2.0], [nan, 2.0], [3.0, 4.0]], error=[[0.1, -0.3], [0.1, 0.2], [0.3, 0.4]],
+        instant=[1.0, 2.0, 1e13], displacement=[0.1, 0.2, -0.5],
+    )  # fmt: skip
+    found = _read_answer(answer, 3, 2, 0.5)
+    assert found.status.tolist() == ["ok", "solver failed", "ok"]
+    np.testing.assert_array_equal(found.error[[0, 2]], [[0.1, nan], [0.3, 0.4]])
+    np.testing.assert_array_equal([found.instant, found.displacement], [[1.0, 2.0, nan], [0.1, nan, nan]])
 
 
 def test_a_value_of_ours_counts_by_its_status_and_its_error() -> None:

@@ -19,6 +19,7 @@ from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.budget import TOTAL, BudgetEntry, compute_closure_error, list_budget_entries
 from comparison.surfaces.differences import Difference
+from comparison.surfaces.distribution import find_grid_maxima
 from comparison.surfaces.missing_values import list_missing_values
 from comparison.surfaces.model_difference import RESOLVED_RATIO, ModelDifference
 from reference.problem import builtin_scenes, load_scene
@@ -59,6 +60,20 @@ def test_a_budget_without_a_step_does_not_close() -> None:
     broken = BodyComparison(study, surfaces, study.scenes[0], 1)
     broken.__dict__["consecutive_model_pairs"] = broken.consecutive_model_pairs[1:]
     assert compute_closure_error(broken) == pytest.approx(0.32), "the largest of all phase pairs"
+    surfaces["mu"].loc[{"model": "translational", "alpha1": np.pi, "alpha2": np.pi}] = np.nan
+    assert compute_closure_error(BodyComparison(study, surfaces, study.scenes[0], 1)) < 1e-14, "where all have a value"
+    surfaces["stride"].loc[{"model": "resolved"}] = 4
+    assert compute_closure_error(BodyComparison(study, surfaces, study.scenes[0], 1)) < 1e-14, "on the phases of all"
+
+
+def test_the_largest_value_has_its_own_error_and_phases_beside_a_gap() -> None:
+    study, surfaces = planted_study({})
+    scene, model = study.scenes[0], study.hierarchy[-1]
+    at = [{"model": model.key, "body": 2, "alpha1": surfaces["alpha1"][a], "alpha2": 0.0} for a in (0, 2, 4)]
+    for place, mu, error in zip(at, (9.0, 7.0, np.nan), (0.2, 0.3, 0.9)):
+        surfaces["mu"].loc[place], surfaces["error"].loc[place] = mu, error
+    largest = find_grid_maxima(surfaces, scene, [model])[1]
+    assert (largest.mu, largest.error, largest.phases) == (9.0, 0.2, (0.0, 0.0))
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])

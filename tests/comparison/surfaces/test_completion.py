@@ -21,6 +21,7 @@ from comparison.surfaces.completion import (
     CompletedSurfaces,
     Completion,
     HeldOut,
+    add_completed,
     choose_held_out,
     complete_surfaces,
 )
@@ -167,24 +168,26 @@ def test_records_and_models_with_all_phases_are_not_completed(blank: tuple[Study
     assert {task.argument[1].key for task in level} == {"spatial"}, "a level that has all phases holds none of them out"
 
 
-@pytest.mark.parametrize(("scene", "images"), [("fig3-I", 4), ("fig3-II", 2)])
-def test_held_out_phases_are_no_mirror_images(scene: str, images: int) -> None:
+@pytest.mark.parametrize(("scene", "images", "grid"), [("fig3-I", 4, FINE), ("fig3-II", 2, FINE), ("fig3-I", 4, 50)])
+def test_held_out_phases_are_no_mirror_images(scene: str, images: int, grid: int) -> None:
+    """Of 50 phases a model computes 13, the last closer to the first than the others."""
     model = replace(TRANSLATIONAL, most=COARSE)
-    study = Study((load_scene(scene),), FINE, 1e-3, (model,))
+    named = replace(model, key="other")
+    study = Study((load_scene(scene),), grid, 1e-3, (model, named))
     chosen = choose_held_out(study, study.scenes[0], model)
     assert len(chosen) == 59
     np.testing.assert_array_equal(chosen, choose_held_out(study, study.scenes[0], model), err_msg="alike in every run")
-    row, column = np.divmod(chosen, FINE)
-    half = FINE // 2
+    row, column = np.divmod(chosen, grid)
+    half, stride = grid // 2, study.stride(model)
     shifts = [(0, 0), (half, half), (0, half), (half, 0)][:images]
-    every = {((r + a) % FINE, (c + b) % FINE) for r, c in zip(row, column) for a, b in shifts}
+    every = {((r + a) % grid, (c + b) % grid) for r, c in zip(row, column) for a, b in shifts}
     assert len(every) == 59 * images, "each counts once"
-    assert all(r % 3 or c % 3 for r, c in every), "none was computed"
-    other = choose_held_out(study, load_scene("fig4-dry"), model)
-    assert len(np.intersect1d(chosen, other)) < 20, "another scene, another choice"
+    assert all(r % stride or c % stride for r, c in every), "none was computed"
+    for other in (study, load_scene("fig4-dry"), model), (study, study.scenes[0], named):
+        assert len(np.intersect1d(chosen, choose_held_out(*other))) < 20, "another scene or model, another choice"
     full = choose_held_out(replace(study, full=True), study.scenes[0], model)
     assert len(full) == 59
-    assert (np.column_stack(np.divmod(full, FINE)) % 3).any(axis=1).all()
+    assert (np.column_stack(np.divmod(full, grid)) % stride).any(axis=1).all()
 
 
 def test_the_analysis_computes_what_is_held_out(
@@ -197,7 +200,15 @@ def test_the_analysis_computes_what_is_held_out(
     place = choose_held_out(study, scene, ENGINE)
     truth = surfaces["mu"].sel(scene=scene.name, model="exact").values.reshape(2, -1)[:, place]
     np.testing.assert_allclose(found[scene.name, "translational"].mu.T, truth, rtol=1e-12)
-    assert all(surface.accepted for surface in complete_surfaces(study, surfaces, scene, found))
+    listed = complete_surfaces(study, surfaces, scene, found)
+    assert all(surface.accepted for surface in listed)
+    of_engine = found[scene.name, "translational"]
+    worse = {**found, (scene.name, "translational"): HeldOut(of_engine.mu, of_engine.error * [1.0, 3.0])}
+    one, other = complete_surfaces(study, surfaces, scene, worse)[:2]
+    assert other.model_error == pytest.approx(3.0 * one.model_error), "of its own body"
+    stored = add_completed(surfaces, [replace(one, error=0.01), replace(other, error=0.02)]).sel(model="translational")
+    np.testing.assert_array_equal(stored["completed"].values, [[one.mu, other.mu]])
+    assert stored["completed_error"].values.tolist() == [[0.01, 0.02]]
     assert CompletedSurfaces().collect(study, surfaces, TaskResults()) is None, "where the time ended before them"
     reasons = {surface.reason for surface in complete_surfaces(study, surfaces, scene, None)}
     assert reasons == {"no phase pairs were held out to check an interpolation"}

@@ -74,10 +74,12 @@ def test_an_effect_between_literal_suprema_stands_beside_that_as_integrated() ->
 
 
 def test_an_interaction_is_the_effect_in_another_order_less_that_of_the_chain() -> None:
-    numbers = told(*planted_study({**gaps(0.05, 0.03, 0.03, 0.03), "small-regularised": -0.04}))
-    effects = [numbers.find_effect(name) for name in (GEOMETRY, FRICTION)]
-    assert [effect.elsewhere for effect in effects] == pytest.approx([0.07, -0.04])
-    assert [effect.interaction for effect in effects] == pytest.approx([0.02, -0.02])
+    study, surfaces = planted_study({**gaps(0.05, 0.03, 0.03, 0.03), "small-regularised": -0.04})
+    place = {"model": "small-regularised", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    surfaces["mu"].loc[place] *= 1.2  # at one of 64 phase pairs
+    effects = [told(study, surfaces).find_effect(name) for name in (GEOMETRY, FRICTION)]
+    assert [effect.elsewhere for effect in effects] == pytest.approx([0.067, -0.037])
+    assert [effect.interaction for effect in effects] == pytest.approx([0.017, -0.017])
 
 
 def test_the_largest_literal_supremum_is_above_not_the_largest_size() -> None:
@@ -88,6 +90,8 @@ def test_the_largest_literal_supremum_is_above_not_the_largest_size() -> None:
     numbers = told(study, surfaces)
     assert numbers.supremum_maximum == pytest.approx(0.3)
     assert numbers.supremum_phases != (surfaces["alpha1"][2], surfaces["alpha2"][4])
+    row = BodyComparison(study, surfaces, study.scenes[0], 1).rows["supremum"]
+    assert numbers.supremum_error == row.error > 2.0 * row.numerical_error, "with that of sampling"
 
 
 def test_the_largest_difference_has_the_phases_of_its_own_model() -> None:
@@ -96,7 +100,9 @@ def test_the_largest_difference_has_the_phases_of_its_own_model() -> None:
     for key, row, column, factor in (("translational", 2, 4, 0.5), ("spatial", 6, 0, 1.3)):
         place = {"model": key, "body": 1, "alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
         surfaces["mu"].loc[place] *= factor
+        surfaces["error"].loc[place] = 0.01 * row * surfaces["mu"].sel({**place, "model": "small-resolved"})
     numbers = told(study, surfaces)
+    assert (numbers.maximum_error, numbers.high_error) == pytest.approx((0.02, 0.06), rel=1e-3)
     assert (numbers.maximum_model, numbers.maximum) == ("translational", pytest.approx(-0.5))
     assert numbers.maximum_phases == pytest.approx((np.pi / 2.0, np.pi))
     assert numbers.high_phases == pytest.approx((1.5 * np.pi, 0.0))

@@ -15,7 +15,7 @@ from studies import body_comparisons, solved
 from comparison.analyses.motions import analysis as motions
 from comparison.analyses.motions.analysis import compute_stored_motion
 from comparison.study import batches
-from comparison.study.models import MODEL_HIERARCHY, chain_of
+from comparison.study.models import MODEL_HIERARCHY, chain_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import compute_closure_error
 from comparison.surfaces.missing_values import leave_out_empty_models, list_missing_values
@@ -73,7 +73,12 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     (lacking,) = list_missing_values(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == f"step limit: {why_refused(scene, 1e-3)}"
-    alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
+    pairs = {pair.key: pair.sentence for pair in study.pairs(scene)}
+    assert ("translational" in pairs) == (silent == "resolved"), "from the printed equations, to no total"
+    assert pairs["total"].endswith("the most complete model of Exudyn") == (silent != "spatial")
+    (alone,) = pairs_of(scene, study.hierarchy[:6])
+    assert alone.sentence == "the paper's printed equations against the exact equations, v_reg"
+    alike = "like-for-like" in pairs
     assert alike == (silent in ("spatial", "resolved", "small-resolved")), "never said of other models"
     surfaces["mu"].loc[{"model": [*left[1:]]}] = np.nan
     alone = leave_out_empty_models(study, surfaces)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,18 +11,23 @@ import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
 from known_analyses import collected
+from matplotlib.figure import Figure
 from pypdf import PdfReader
 from runs import quick_figures
-from studies import solved
+from studies import planted_study, solved
 
+from comparison.result_types import Array
 from comparison.runner.cache import Cache
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
+from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.figures.pairs import find_height_limits
+from comparison.surfaces.body_comparison import BodyComparison
+from comparison.surfaces.figures import paper
+from comparison.surfaces.figures.pairs import _draw_difference_map, find_height_limits
 from comparison.surfaces.figures.paper import draw_paper_figure
 from comparison.surfaces.figures.pictures import Pictures
-from reference.problem import load_scene
+from reference.problem import Scene, load_scene
 
 
 class Broken(Executor):
@@ -66,6 +72,33 @@ def test_a_flat_surface_has_room_above_and_below() -> None:
     flat, nothing = np.full((2, 2), 2.0), np.full((2, 2), np.nan)
     assert find_height_limits([flat, nothing]) == pytest.approx((1.7, 2.3))
     assert (find_height_limits([flat, 3.0 * flat]), find_height_limits([nothing])) == ((2.0, 6.0), (0.0, 1.0))
+
+
+def test_one_phase_pair_that_differs_is_seen_among_many_alike() -> None:
+    study, surfaces = planted_study({})
+    surfaces["mu"].loc[{"model": "resolved", "alpha1": np.pi, "alpha2": 0.0}] *= 1.3
+    comparison = BodyComparison(study, surfaces, study.scenes[0], 1)
+    figure = Figure()
+    _draw_difference_map(figure, figure.add_axes((0, 0, 1, 1)), comparison.difference(comparison.effect_pairs[0]))
+    assert figure.axes[0].collections[0].get_clim() == pytest.approx((-30.0, 30.0))
+
+
+def test_a_figure_in_the_manner_of_the_paper_has_no_engine_of_the_user(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, surfaces = planted_study({})
+    mine = replace(study.hierarchy[5], key="mine", side="user", like="regularised")
+    drawn: list[str] = []
+
+    def noted(data: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
+        drawn.append(f"{model.key} {body}")
+        return np.arange(3.0), np.ones((3, 3))
+
+    monkeypatch.setattr(paper, "extend_surface_to_two_pi", noted)
+    monkeypatch.setattr(Figure, "savefig", lambda *rest, **options: None)
+    with_mine = replace(study, hierarchy=(*study.hierarchy, mine))
+    draw_paper_figure(tmp_path / "paper.png", with_mine, surfaces, study.scenes[0])
+    assert drawn == [f"{key} {body}" for body in (1, 2) for key in ("small-resolved", "translational")]
 
 
 def test_fonts_of_a_figure_in_the_manner_of_the_paper_are_such_as_journals_take(tmp_path: Path) -> None:

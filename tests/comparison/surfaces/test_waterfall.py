@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from studies import GRID, KEYS, planted_study
+from studies import GRID, KEYS, planted_study, solved
 
 from comparison.report.page_data import find_crossings
 from comparison.study.models import MODEL_HIERARCHY
@@ -73,6 +73,12 @@ def test_the_largest_difference_may_be_of_the_finer_engine() -> None:
     assert largest.total.error == pytest.approx(0.01, rel=1e-3), "of this phase pair, not of others"
     assert (largest.total.model, largest.total.size) == ("translational", pytest.approx(-0.4, rel=1e-9))
     assert largest.phases == pytest.approx((2.0 * np.pi * 3 / 8, 2.0 * np.pi * 4 / 8))
+    surfaces["mu"].loc[{"model": "translational", "alpha1": 0.0, "alpha2": 0.0}] = np.nan
+    assert bars_of_body(study, surfaces, 2).largest == largest, "a value missing elsewhere changes nothing"
+    surfaces["mu"].loc[{"model": "resolved", "body": 2}] *= 3.0
+    equations = bars_of_body(replace(study, hierarchy=study.hierarchy[:6]), surfaces, 2).largest
+    assert (equations.total.model, equations.total.size) == ("regularised", pytest.approx(-0.4)), "the last of them"
+    surfaces["mu"].loc[{"model": "resolved", "body": 2}] /= 3.0
     assert {bar.model: bar.size for bar in largest.bars} == pytest.approx(
         {"resolved": -0.4, "regularised": 0.0, "translational": 0.0}, abs=1e-12
     )
@@ -108,6 +114,10 @@ def test_independent_phases_are_counted_by_symmetries() -> None:
         count_independent_phases(study, study.scenes[0], [study.hierarchy[0], MODEL_HIERARCHY[0]], every, stride=1)
         == 64
     )
+    chain = [replace(model, symmetric=MODEL_HIERARCHY[0].symmetric) for model in study.hierarchy]
+    base = replace(study, hierarchy=[replace(chain[2], symmetric=study.hierarchy[2].symmetric), *chain[3:6]])
+    rows = BodyComparison(base, solved(base), base.scenes[0], 1).rows
+    assert rows["regularized-friction"].independent == 64, "that the base has no symmetry counts"
 
 
 STEPS = [WaterfallBar(*bar, 1e-4, True) for bar in (("resolved", 0.02), ("regularised", -0.10), ("spatial", 0.03))]
