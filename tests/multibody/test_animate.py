@@ -155,6 +155,18 @@ def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, 
     assert choose_magnification(np.array([0.0, -largest]), 0.3) == factor
 
 
+def test_a_frame_lasts_whole_hundredths_of_a_second_as_files_count_it() -> None:
+    assert [100 % rate for rate in animate.FRAME_RATES] == [0] * 8
+
+
+def test_reduced_heights_of_a_tall_frame_are_named() -> None:
+    scene = load_scene("fig3-I").with_values({"bodies.1.height": 40.0})
+    motion: Any = SimpleNamespace(time=np.array([0.0, 1.0]), position=np.zeros((2, 2, 3)), extra={})
+    factor = arrange_boxes(scene)[2]
+    assert factor < 0.5
+    assert film_module.make_drawing(scene, motion, 1.0, 2).scales.endswith(f", heights x {factor:.2g}")
+
+
 def test_the_help_says_what_a_speed_is(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--help"])

@@ -125,6 +125,15 @@ def test_a_push_that_is_gone_leaves_bearings_at_rest() -> None:
     run = pair.run_level(multibody.levels(scene, "spatial")[0], Budget(1e5), keep=True)
     later = np.concatenate([chunk.coordinates for chunk in run.chunks])[:, 2]
     assert np.ptp(later) < 1e-6
+    # one that bearings do not follow, though a contact of their place would
+    begins = []
+    for amplitude in (0.0, 4.0):
+        slower = scene.with_values({"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [amplitude, 0.0]],
+                                    "excitation.decay": [500.0, 500.0], "duration": 1e-3})  # fmt: skip
+        pair = PhasePair(slower, assemble(slower, "spatial", 5e-3), np.zeros(2))
+        begin = pair.run_level(multibody.levels(slower, "spatial")[0], Budget(1e5), keep=True)
+        begins.append(begin.chunks[0].coordinates[0])
+    np.testing.assert_allclose(*begins, rtol=0.0, atol=1e-7)
 
 
 def test_a_push_that_no_contact_follows_is_an_error_of_the_engine() -> None:

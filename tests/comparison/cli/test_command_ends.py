@@ -60,6 +60,15 @@ def test_a_command_ends_with_its_own_exit_code_or_that_of_the_signal(body: str, 
     assert ended(body) == (code, line)
 
 
+@POSIX
+def test_a_signal_that_was_ignored_before_stays_ignored() -> None:
+    def ignore() -> None:  # as nohup does
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+    assert ended("os.kill(os.getpid(), signal.SIGHUP); return 0", preexec_fn=ignore) == (0, "")
+    assert ended("os.kill(os.getpid(), signal.SIGHUP); return 0")[0] == 128 + signal.SIGHUP
+
+
 def test_an_unexpected_error_is_exit_3_and_one_line(tmp_path: Path) -> None:
     code, err = ended(r"raise ZeroDivisionError('two\nlines')", env={**os.environ, "TMPDIR": str(tmp_path)})
     assert (code, err.count("\n")) == (3, 1)
