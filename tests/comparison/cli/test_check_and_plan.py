@@ -71,7 +71,8 @@ def test_a_limit_must_hold_at_a_tenth_of_the_tolerance(
 ) -> None:
     """The engine claims its tolerance as its error: 0.5 of both errors at 1e-3 are 5 at 1e-4, where 2 are allowed."""
     scene = limited_scene(tmp_path, f"[acceptance]\nratio = 2.0\n{'confirm = true' if confirm else ''}\n", "mine.toml")
-    run = command(scene, "--grid", "2", "--check", "--only", "budget", hierarchy=fake_hierarchy(gap=gap))
+    words = [scene, limited_scene(tmp_path, "", "beside.toml"), "--grid", "2", "--check", "--only", "budget"]
+    run = command(*words, hierarchy=fake_hierarchy(gap=gap))
     assert run.code == int(confirm)
     assert re.findall(r"body 1: acceptance.ratio: (\S+) found", run.err) == found
     assert run.report.with_name("report-tighter").exists() is confirm
@@ -80,8 +81,7 @@ def test_a_limit_must_hold_at_a_tenth_of_the_tolerance(
 def test_a_limit_that_is_broken_at_first_stays_broken(command: Callable[..., Run], tmp_path: Path) -> None:
     """5e-4 at a tolerance of 1e-3, 5e-5 at a tenth of it."""
     scene = limited_scene(tmp_path, "[acceptance]\nmedian = 2e-4\nconfirm = true\n", "mine.toml")
-    words = [scene, limited_scene(tmp_path, "", "beside.toml"), "--grid", "2", "--check", "--skip", "claims"]
-    run = command(*words, hierarchy=fake_hierarchy("nearing"))
+    run = command(scene, "--grid", "2", "--check", "--skip", "claims", hierarchy=fake_hierarchy("nearing"))
     assert (run.code, run.err.count("acceptance.median: 0.0005 found")) == (1, 2)
 
 

@@ -62,7 +62,9 @@ def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
         (list_first_tasks(each, select_analyses(each)), estimate_stage_seconds(each)) for each in (one, alone)
     )
     stages = {task.stage for task in expected if task.stage == STAGES["effective"]}
-    assert [task.key for task in kept if task.stage in stages] == [task.key for task in expected if task.stage in stages]
+    assert [task.key for task in kept if task.stage in stages] == [
+        task.key for task in expected if task.stage in stages
+    ]
     assert seconds[STAGES["effective"]] == own[STAGES["effective"]] > 0.0, "of the scenes that ask for it"
     first, pictures = tasks(["surfaces"], None)
     assert (first, len(pictures)) == ([], 1 + 2), "that in the manner of the paper, and the total of both bodies"
