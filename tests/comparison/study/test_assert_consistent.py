@@ -2,14 +2,12 @@
 
 import re
 from fractions import Fraction
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from known_analyses import answering, with_engine_off_by
-from places import scene_text
 
 import reference
 from comparison.study.batches import execute_batch
@@ -174,11 +172,3 @@ def test_only_the_models_that_a_limit_needs_are_computed(
     computed.clear()
     assert_consistent(scene, **{"like_for_like": 1e-3, limit: 1e-3})
     assert {batch.model for batch in computed} == {*models, "regularised", "translational"}
-
-
-def test_every_scene_of_a_family_is_held_to_the_limits(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    with_engine_off_by(monkeypatch, 1.01)
-    (tmp_path / "fam.toml").write_text(scene_text("fig3-I", ("friction = 0.1", "friction = {values = [0.02, 0.04]}")))
-    lines = failure(str(tmp_path / "fam.toml"), like_for_like=1e-3, grid=2)
-    names = [f"fam[friction={value}], body {body}" for value in (0.02, 0.04) for body in (1, 2)]
-    assert [line.partition(":")[0] for line in lines] == names
