@@ -18,6 +18,7 @@ from studies import body_comparisons, difference_rows, solved
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces
 from comparison.cli.options import parse_options
+from comparison.run import _tighter_command
 from comparison.runner.processes import count_cores
 from comparison.study.costs import estimate_model_seconds, estimate_motion_seconds
 from comparison.study.models import MODEL_HIERARCHY
@@ -70,7 +71,8 @@ def test_a_limit_must_hold_at_a_tenth_of_the_tolerance(
 ) -> None:
     """The engine claims its tolerance as its error: 0.5 of both errors at 1e-3 are 5 at 1e-4, where 2 are allowed."""
     scene = limited_scene(tmp_path, f"[acceptance]\nratio = 2.0\n{'confirm = true' if confirm else ''}\n", "mine.toml")
-    run = command(scene, "--grid", "2", "--check", "--only", "budget", hierarchy=fake_hierarchy(gap=gap))
+    words = [scene, limited_scene(tmp_path, "", "beside.toml"), "--grid", "2", "--check", "--only", "budget"]
+    run = command(*words, hierarchy=fake_hierarchy(gap=gap))
     assert run.code == int(confirm)
     assert re.findall(r"body 1: acceptance.ratio: (\S+) found", run.err) == found
     assert run.report.with_name("report-tighter").exists() is confirm
@@ -91,6 +93,12 @@ def test_a_point_without_an_answer_breaks_any_limit(
     scene = limited_scene(tmp_path, f"[acceptance]\n{limits}\n", "mine.toml")
     run = command(scene, "--grid", "4", "--check", "--only", "budget", hierarchy=fake_hierarchy("failing_point"))
     assert (run.code, run.err.count("failed: 2 points without an answer")) == (code, code), run.err
+
+
+def test_the_second_run_of_a_check_has_its_own_tolerance_folder_and_analyses(tmp_path: Path) -> None:
+    words = ["fig3-I", "--also=demands", "--skip", "claims", "--tolerance", "2e-3", "--out", str(tmp_path / "r")]
+    tighter = ["--tolerance", "0.0002", "--out", str(tmp_path / "r-tighter"), "--only", "differences,budget"]
+    assert _tighter_command(parse_options(words), words) == ["fig3-I", *tighter]
 
 
 def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[..., Run]) -> None:
@@ -153,6 +161,7 @@ def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path
     (tmp_path / "many.toml").write_text(family, "utf-8")
     out = command(str(tmp_path / "many.toml"), "--plan", hierarchy=MODEL_HIERARCHY).out.splitlines()
     assert len(out) <= 30
+    assert any(f"{22 * 48**2:,}" in line.split() for line in out), "phase pairs of all scenes of the file"
     (line,) = [line for line in out if "adding pi to either phase" in line]
     few = ", ".join(f"many[friction={value}]" for value in ("0.05", "0.051", "0.052", "0.053"))
     why = "each harmonic has its own axis and none is vertical: adding pi to either phase mirrors the motion"

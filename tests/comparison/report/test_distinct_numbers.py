@@ -121,7 +121,8 @@ def test_every_statistic_of_a_difference_is_that_of_its_pair(scene: dict[str, An
         agrees(rows[pair], statistics(np.abs(signed), phases))
         more = {
             "mean": signed.mean(), "spread": signed.std(), "ratio": (np.abs(signed) / error).max(),
-            "beyond_error": (np.abs(signed) > error).mean(), "numerical_error": error.mean(), "not_ok": 0, "unanswered": 0,
+            "beyond_error": (np.abs(signed) > error).mean(), "numerical_error": error.mean(),
+            "not_ok": 0, "unanswered": 0,
         }  # fmt: skip
         agrees(rows[pair], more)
         found[pair] = {**statistics(np.abs(signed), phases), **more}

@@ -138,7 +138,10 @@ def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.Mo
     before = hash_source("some_model")
     inner.write_text("a = 2\n", encoding="utf-8")
     hash_source.cache_clear()
-    assert hash_source("some_model") != before != "absent"
+    assert (changed := hash_source("some_model")) != before != "absent"
+    inner.rename(inner.parents[1] / "inner.py")
+    hash_source.cache_clear()
+    assert hash_source("some_model") != changed, "the same file in another folder"
     assert hash_source("no_such_package") == "absent"
 
 

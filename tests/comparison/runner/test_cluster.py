@@ -151,6 +151,21 @@ def test_workers_with_other_code_are_refused(
     assert "here it is 9.9: install the same" in run.err
 
 
+def test_a_cluster_without_workers_is_waited_for_a_minute(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, count = 100.0, 3
+    monkeypatch.setattr(dask, "time", SimpleNamespace(monotonic=lambda: now))
+    nthreads = lambda: dict.fromkeys(range(count), 1)  # noqa: E731
+    client: Any = SimpleNamespace(status="running", nthreads=nthreads, get_executor=lambda pure: None)
+    executor = dask.ClusterExecutor(client)
+    widths = [executor.width]
+    for now, count in ((101.0, 0), (150.0, 0), (160.9, 0)):  # noqa: B007
+        widths.append(executor.width)
+    assert widths == [3, 3, 1, 1], "counted every two seconds"
+    now = 163.1
+    with pytest.raises(ExecutorLostError, match="no worker on the cluster for 60 s"):
+        executor.width  # noqa: B018
+
+
 def test_a_task_that_killed_every_worker_it_was_on_has_died_as_often() -> None:
     remote: Future[Any] = Future()
     remote.set_exception(KilledWorker("task", SimpleNamespace(address="tcp://there"), 3))

@@ -84,6 +84,17 @@ class Deadly(ThreadPoolExecutor):
         return died
 
 
+def test_a_death_that_a_cluster_has_repeated_is_not_repeated_here(tmp_path: Path) -> None:
+    class Cluster(ThreadPoolExecutor):
+        def start(self, call: object, seconds: float | None, group: str) -> Future[TaskResult]:
+            died: Future[TaskResult] = Future()
+            died.set_exception(WorkerDiedError("killed", 4))
+            return died
+
+    (result,) = _run(_tasks(tmp_path, "one"), Cluster)
+    assert result.reason == "worker died: the worker process died 4 times"
+
+
 @pytest.mark.parametrize("batch", [2, 16])
 def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
     hierarchy = [model for model in fake_hierarchy(batch=batch, gap=0.0) if model.key == "translational"]
@@ -119,6 +130,8 @@ def test_halves_of_a_batch_are_its_points_in_order() -> None:
     ):  # fmt: skip
         np.testing.assert_array_equal(found, expected)
     assert (whole.status, whole.cost, whole.error_message) == (["ok", "ok"], 0.75, "singular")
+    joined = Task(execute_batch, batch, "test").join([TaskResult(part, cost) for part, cost in zip(parts, (0.5, 2.0))])
+    assert (joined.cost, joined.outcome) == (2.5, Outcome.OK)
     lost = batch.without_result(Outcome.RIM_REACHED, "no")
     numbers = [lost.mu, lost.error, lost.instant[:, None], lost.displacement[:, None]]
     assert np.isnan(np.hstack(numbers)).all()
@@ -234,6 +247,10 @@ def test_a_silent_process_is_waited_for_by_its_limit(monkeypatch: pytest.MonkeyP
     for seconds in (1.5, None):
         processes._limit_processor_time(seconds)
     assert limits == [(4, (0, never)), (0, (102, never)), (4, (0, never)), (0, (never, never))], "no dump, 1.5 s, none"
+    for most, end in ((101, 101), (200, 102)):
+        monkeypatch.setattr(system, "getrlimit", lambda kind, most=most: (7, most))
+        processes._limit_processor_time(1.5)
+        assert limits[-1] == (0, (end, most)), "no more than the system allows"
 
 
 def test_a_process_runs_the_tasks_of_one_group(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -101,6 +101,7 @@ def test_points_without_a_usable_value_fail_unless_they_are_allowed(monkeypatch:
     assert bodies == [f"fig3-I, body {body}: like_for_like: no phase pair has a value by {both}" for body in (1, 2)]
     assert gap.startswith("fig3-I: translational engine: no value at any of 16 phase pairs")
     assert (gap[-11:], why) == ("; 0 allowed", "multibody:amplification called a non-finite answer ok")
+    assert sum("; 20 allowed" in line for line in failure(like_for_like=1.0, total=1.0, failed=20)) == 2, "16 each"
     with_engine_off_by(monkeypatch, 1.0, error=1.2)  # above half of 2
     gaps = failure(like_for_like=1.0)[2:]
     assert ["only values with errors above half of them" in line for line in gaps] == [True, True]
@@ -187,3 +188,6 @@ def test_only_the_models_that_a_limit_needs_are_computed(
     with_engine_off_by(monkeypatch, 1.0)
     assert_consistent(scene, **{limit: 1e-3})
     assert {batch.model: batch.settings["tolerance"] for batch in computed} == models
+    computed.clear()
+    assert_consistent(scene, **{"like_for_like": 1e-3, limit: 1e-3})
+    assert {batch.model for batch in computed} == {*models, "regularised", "translational"}

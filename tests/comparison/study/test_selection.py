@@ -12,10 +12,17 @@ from report_texts import both_pages, schema_errors, summary_of
 from runs import Run
 
 from comparison.cli.options import parse_options
-from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, list_first_tasks, select_analyses
+from comparison.registry import (
+    EVERYTHING,
+    FEATURES,
+    SELECTABLE,
+    estimate_stage_seconds,
+    list_first_tasks,
+    select_analyses,
+)
 from comparison.runner.cache import CacheKey
 from comparison.runner.task import Task
-from comparison.study.selection import make_selection, select_names
+from comparison.study.selection import Selection, make_selection, select_names
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.surfaces import label_surfaces
@@ -48,6 +55,17 @@ def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
         assert stage in {task.stage for task in every}
         kept, _ = tasks(None, [analysis])
         assert [task.key for task in kept] == [task.key for task in every if task.stage != stage]
+    both = replace(study, scenes=(*study.scenes, load_scene("fig4-dry")))
+    one = replace(both, selection=Selection(SELECTABLE, {"fig3-I": ("effective",), "fig4-dry": ("budget",)}))
+    alone = replace(one, scenes=study.scenes)
+    (kept, seconds), (expected, own) = (
+        (list_first_tasks(each, select_analyses(each)), estimate_stage_seconds(each)) for each in (one, alone)
+    )
+    stages = {task.stage for task in expected if task.stage == STAGES["effective"]}
+    assert [task.key for task in kept if task.stage in stages] == [
+        task.key for task in expected if task.stage in stages
+    ]
+    assert seconds[STAGES["effective"]] == own[STAGES["effective"]] > 0.0, "of the scenes that ask for it"
     first, pictures = tasks(["surfaces"], None)
     assert (first, len(pictures)) == ([], 1 + 2), "that in the manner of the paper, and the total of both bodies"
     assert tasks(["budget"], None)[1] == set(), "its bars are drawn on the page"

@@ -117,6 +117,7 @@ def test_a_study_without_limits_holds_none(command: Callable[..., Run], tmp_path
     [
         ("[acceptance]\nmaximun = 1.0\n", "acceptance.maximun = 1.0: unknown key; did you mean maximum?"),
         ("[acceptance.totals]\nmedian = 1.0\n", "this study has no engine of this name; did you mean total?"),
+        ("[acceptance.mina]\nmedian = 1.0\n", "this study has no engine of this name; did you mean mine?"),
         (
             "[acceptance.mine]\nmedian = 1.0\n[acceptance.zzz]\nmedian = 2.0\n",
             "this study has no engine of this name; --model zzz=module:function enters it",
