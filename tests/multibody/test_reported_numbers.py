@@ -426,6 +426,9 @@ def test_a_body_that_turns_about_its_link_s_end_bends_it(body: int) -> None:
     law, coordinates = three_bodies_on_bars(), np.random.default_rng(9).uniform(-0.3, 0.3, 18)
     places = law.centers + coordinates.reshape(3, 6)[:, :3]
     turned = rotation_matrices(coordinates.reshape(3, 6)[:, 3:])
+    both = law._bar_rates(coordinates, turned).reshape(2, 3, 18)
+    alone = replace(law, rigid=np.arange(2) == body - 1)._bar_rates(coordinates, turned)
+    np.testing.assert_array_equal(alone, both[body - 1])  # of a rigid link beside one that gives way
     end = np.array([0.0, 0.0, law.centers[body - 1 : body + 1, 2].mean()])  # at rest
     below, above = (places[each] + turned[each] @ (end - law.centers[each]) for each in (body - 1, body))
     for axis in np.eye(3):
