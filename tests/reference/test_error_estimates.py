@@ -9,6 +9,7 @@ from chains import chain
 
 import reference
 from reference.problem import Scene, phase_grid
+from reference.solver import error_estimate
 from reference.solver.error_estimate import RunPeaks, _compare_runs, _estimate_error, peaks_at
 from reference.solver.system import RIM, SOLVED, TRAVEL, UNSOLVED, YIELDING
 from reference.surface import prepare_run
@@ -31,6 +32,30 @@ def test_an_error_counts_what_equal_steps_between_knots_miss(period):
         found = reference.amplification(scene, [(0.0, 0.0)])
         truth = reference.amplification(scene, [(0.0, 0.0)], tolerance=1e-9)
         assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error), seed
+
+
+@pytest.mark.parametrize(("changes", "runs"), [((0.3, 0.01, 1e-6, 0.0), 4), ((0.3, 8e-4, 5e-4, 1e-5), 4)])
+def test_heated_runs_repeat_until_they_settle_and_the_last_change_is_error(
+    changes: tuple[float, ...], runs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At a tolerance of 1e-3 a change settles below 2e-5, or below 1e-3 where it is more than half of that before."""
+    peaks, made = np.cumsum([2.0, *changes]), []
+
+    def run(x: Any, v: Any, system: Any, phases: Any, settings: Any, record: Any) -> RunPeaks:
+        record.counts[:] = 1
+        made.append(peaks[len(made)])
+        none = np.zeros(1)
+        return RunPeaks(made[-1] * np.array([[1.0, 2.0]]), np.full((1, 2), 1e-4), np.array([SOLVED]), *[none] * 4)
+
+    for name, function in (("peaks_from", run), ("set_factor_by_heat", lambda system, *rest: system)):
+        monkeypatch.setattr(error_estimate, name, function)
+    monkeypatch.setattr(error_estimate, "mean_factor", lambda system: 0.9)
+    system: Any = SimpleNamespace(record=[], heat=[1.0], k_t=[1.0])
+    found, *_ = error_estimate.record_run(
+        np.zeros((2, 2)), np.zeros((2, 2)), system, np.zeros(2), SimpleNamespace(tolerance=1e-3)
+    )
+    assert len(made) == runs
+    np.testing.assert_allclose(found.error, 1e-4 + changes[runs - 2] * np.array([[1.0, 2.0]]), rtol=1e-9)
 
 
 def test_reading_and_states_add_to_an_error() -> None:

@@ -145,6 +145,9 @@ def test_the_value_that_runs_is_a_coordinate_of_results(tmp_path: Path) -> None:
     columns = {"acceptance.median": [0.2, 0.1], "acceptance.total.median": [0.4, 0.3]}
     labeled = make_family(data, "mine.toml").to_xarray(results)
     assert {name: labeled[name].values.tolist() for name in columns} == columns, "whole keys where the last parts agree"
+    data = tomllib.loads(scene_text("fig3-I").decode())
+    data["bodies"][1]["mass"] = {"values": [1.0, 2.0]}
+    assert make_family(data, "mine.toml").to_xarray(results)["mu"].dims == ("bodies.1.mass", "body"), "of which body"
 
 
 def combined(tmp_path: Path, top: str, friction: str, scale: str) -> Path:
