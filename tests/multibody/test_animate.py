@@ -33,7 +33,7 @@ PHASES = ["--phases", "0.3", "1.1"]
 @pytest.fixture
 def words(tmp_path: Path) -> list[str]:
     (tmp_path / "short.toml").write_text(SHORT)
-    return [str(tmp_path / "short.toml"), *PHASES, "--out", str(tmp_path / "run.gif")]
+    return [str(tmp_path / "short.toml"), *PHASES, "--out", str(tmp_path / "run.GIF")]
 
 
 def test_a_film_is_made_as_asked_for(
@@ -51,7 +51,7 @@ def test_a_film_is_made_as_asked_for(
     assert main([*words, *of_motion, "--rate", "50", "--speed", "0.5", "--size", "640", "400"]) == 0
     assert computed == [(1.5, "translational", 5e-3, {"max_work": 1e5})]
     assert out.read_bytes() == b"mine", "a film never takes the place of a file"
-    written, said = out.with_name("run-2.gif"), capsys.readouterr()
+    written, said = out.with_name("run-2.GIF"), capsys.readouterr()
     assert said.err == f"{out} exists and stays: the film is in {written}\n"
     assert said.out == f"{written}: 0.20 s of motion, status ok\n"
     with Image.open(written) as film:
@@ -126,6 +126,7 @@ NAMED = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen
         (["fig3-I", "--speed", "1e-9"], "--speed: 1e-09: a film of 20 s of motion has 2 to 1500 frames, 25 per second: "
          "give 0.33 to 5e+02"),
         (["fig3-I", "--speed", "501"], "give 0.33 to 5e+02"),
+        (["fig3-I", "--speed", "1e-320"], "--speed: 9.99989e-321: a film of 20 s"),
         (["fig3-I", "--stretch", "1e300"], "--stretch"),
         (["fig3-I", "--rate", "30"], "--rate: 30: must be 1, 2, 4, 5, 10, 20, 25 or 50 per second"),
         (["fig3-I", "--size", "500", "10"], "--size: 500 10: must be 320 to 4000 pixels each"),

@@ -140,8 +140,9 @@ def test_a_push_that_no_contact_follows_is_an_error_of_the_engine() -> None:
     """A rigid contact transmits it at once: the translational model, whose start is exact, lies within the error."""
     push = {"excitation.amplitudes": [[0.2, 0.0], [0.0, 0.1], [0.6, 0.5]], "excitation.decay": [3e7, 2e7]}
     scene = ON_BEARINGS.with_values({**push, "duration": 1e-3, "isolator.support_stiffness": None})
-    rigid = multibody.amplification(scene, (0.4, 0.9))
-    soft = multibody.amplification(scene, (0.4, 0.9), "spatial", max_work=3e4)
+    upward_and_downward = [(0.4, 0.9), (0.4 + math.pi, 0.9 + math.pi)]
+    rigid = multibody.amplification(scene, upward_and_downward)
+    soft = multibody.amplification(scene, upward_and_downward, "spatial", max_work=3e4)
     assert (np.abs(rigid.mu - soft.mu) < rigid.error + soft.error).all()
     stated = scene.with_values({"isolator.support_stiffness": 1e3})  # bearings give way, which is no error
     assert (multibody.amplification(stated, (0.4, 0.9), "spatial", max_work=3e4).error < 0.1 * soft.error).all()

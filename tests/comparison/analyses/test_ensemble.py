@@ -398,6 +398,7 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--model", "spatial"), "", "--model translational"),
         (("mine.toml", *SUITE), "", "two files have this name"),
         ((*SUITE, "--bounds", "1.5", "0.8"), "", "--bounds = '1.5 0.8': the smaller factor must be the first"),
+        ((*SUITE, "--bounds", "0.8", "0.8"), "", "--bounds = '0.8 0.8': the smaller factor must be the first"),
         ((*SUITE, "--bounds", "0.8", "x"), "", "--bounds = 'x': must be a number from 0.01 to 100"),
         ((*SUITE, "--periods", "0.2", "1"), "", "needs --target"),
         ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[yd/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
@@ -453,7 +454,7 @@ def test_several_scenes_have_statistics_of_their_own(folder: Path) -> None:
 def test_bounds_on_the_command_line_are_the_two_structures_of_the_file(folder: Path, capsys) -> None:
     friction = "friction = {slow = 0.025, fast = 0.05, rate = 50.0}"
     (folder / "mine.toml").write_text(SCENE.replace("friction = 0.05", friction))
-    assert run("mine.toml", *SUITE, "--engine", "0", "--bounds", "0.8", "1.2") == 0
+    assert run("mine.toml", *SUITE, "--engine", "0", "--model", "spatial", "--bounds", "0.8", "1.2") == 0
     found = content()
     assert [each["name"] for each in found["structures"]] == ["mine[lower bound]", "mine[upper bound]"]
     assert "\nlower bound:\n" in (said := capsys.readouterr().out)

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import psutil
 import pytest
@@ -21,7 +23,7 @@ from rich.console import Console
 from runs import Run
 
 import comparison.run
-from comparison.cli import reports, terminal
+from comparison.cli import closing, reports, terminal
 from comparison.cli.computing import collect_run_facts
 from comparison.cli.start import Clock
 from comparison.cli.terminal import make_table
@@ -146,3 +148,16 @@ def test_the_film_is_of_the_largest_difference(command: Callable[..., Run]) -> N
     assert words[:5] == ["python", "-m", "multibody.animate", "fig3-I", "--phases"]
     assert [float(word) for word in words[5:7]] == pytest.approx(phases[place].tolist(), abs=1e-4)
     assert words[7:] == ["--model", model]
+
+
+@pytest.mark.parametrize(("before", "more"), [(0, 3), (3, 0), (2, 1)])
+def test_a_level_prints_eight_new_sentences_and_counts_the_others(
+    before: int, more: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said: Any = [f"sentence {number}" for number in range(11)]
+    monkeypatch.setattr(closing, "_headline_sentences", lambda results: results)
+    level: Any = SimpleNamespace(title="level 1 of 3")
+    closing.print_level(Console(width=200), said, said[:before], level, Path("report"))
+    shown = [f"  {sentence}" for sentence in said[before : before + 8]]
+    rest = [f"  and {more} more on the page."] * (more > 0)
+    assert capsys.readouterr().out.splitlines() == [f"Level 1 of 3: {Path('report/index.html')}", *shown, *rest]

@@ -146,7 +146,8 @@ def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch,
         monkeypatch.setattr(outside, function, getattr(outside, function).py_func)
     bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
     values = {"duration": 0.8, "bodies": bodies} | ({"isolator.friction": friction} if friction else {})
-    scene = load_scene(name).with_values(values).with_amplitude(3.0)
+    along = load_scene(name).amplitudes[:2].tolist()
+    scene = load_scene(name).with_values({**values, "excitation.amplitudes": [*along, [0.7, -0.4]]}).with_amplitude(3.0)
     expected = amplification(scene, [(0.3, 1.1)], regularization=None if scene.lubricated else 1e-2)
     found = outside.solve_factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
     np.testing.assert_allclose(found, expected.mu, rtol=2e-6)

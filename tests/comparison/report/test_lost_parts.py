@@ -1,5 +1,6 @@
 """Whatever a library raises in one part of a report costs that part alone, and is one line."""
 
+import errno
 import json
 import re
 from collections.abc import Callable, Iterator
@@ -24,6 +25,7 @@ from comparison.registry import FEATURES
 from comparison.report import page, writing
 from comparison.report.results import Results
 from comparison.run import main
+from comparison.runner.attempts import attempt
 from comparison.runner.runner import Runner
 
 FAMILY = "friction = 0.1", "friction = {values = [0.1, 0.2]}"
@@ -185,3 +187,16 @@ def test_what_json_cannot_hold_is_null() -> None:
     assert json.loads(format_json({"a": float("nan"), "b": [1.5, (float("inf"), {"c": -float("inf")})]})) == {
         "a": None, "b": [1.5, [None, {"c": None}]],
     }  # fmt: skip
+
+
+def test_a_disk_that_takes_no_file_ends_the_command_and_a_file_of_others_costs_a_part() -> None:
+    lines: list[str] = []
+
+    def fail(number: int) -> None:
+        raise OSError(number, "no")
+
+    for number in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO):
+        with pytest.raises(OSError, match="no"):
+            attempt("a picture", partial(fail, number), lines.append)
+    assert attempt("a picture", partial(fail, errno.EACCES), lines.append) is None
+    assert lines == ["a picture could not be shown: PermissionError: [Errno 13] no"]

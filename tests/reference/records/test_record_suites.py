@@ -157,3 +157,6 @@ def test_every_file_of_a_suite_is_parsed_twice_however_often_it_is_listed(folder
     os.utime(other, ns=(0, 1))
     list_motions("many", folder)
     assert parsed == ["m1.csv", "m2.csv", "m2.csv"]
+    os.utime(other, ns=(0, 2))  # within the same second
+    list_motions("many", folder)
+    assert parsed == ["m1.csv", "m2.csv", "m2.csv", "m2.csv"]
