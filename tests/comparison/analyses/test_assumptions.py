@@ -323,6 +323,15 @@ def test_a_verdict_has_three_words(size: float, error: float, reason: str, verdi
     assert change.verdict == verdict
 
 
+def test_rings_and_offsets_are_told_in_meters_and_other_sizes_as_shares() -> None:
+    wide = FIRST.with_values({"isolator.ring": 2.5, "name": FIRST.name})
+    changes = {"ring": Variation(ring=2.0), "offset": Variation(offset=0.1), "oval": Variation(oval=0.5)}
+    cells = [cell(Variation(), 0.001), *(cell(variation, 0.2) for variation in changes.values())]
+    ranges = validity.find_validity_ranges(wide, cells)
+    found = {each.key: each.fails for each in ranges if (each.body, each.share) == (1, 0.01)}
+    assert {key: found[key] for key in changes} == {"ring": 5.0, "offset": 0.25, "oval": 0.5}
+
+
 def test_the_verdict_is_that_of_the_worst_body_of_every_scene() -> None:
     rows = ((0.001, -0.03), (0.002, 0.02))
     second = AssumptionCell("fig3-II", Variation(), rows, ((0.0, 1e-3),) * 2, ("ok",) * 2)

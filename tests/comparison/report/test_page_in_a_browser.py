@@ -156,6 +156,19 @@ def test_the_bars_of_rest_stand_beside_the_number_of_their_model(visit: Visit) -
         assert abs(bar["y"] + 0.5 * bar["height"] - text["y"] - 0.5 * text["height"]) < 4.0
 
 
+def test_cells_without_a_number_stand_beside_the_numbers_of_a_sorted_table(visit: Visit) -> None:
+    rows = "".join(f"<tr><td>{text}</td></tr>" for text in ("3", "", "-2", "x", "10"))
+    read = "[...table.tBodies[0].rows].map(row => row.cells[0].textContent)"
+    sort = f"""() => {{
+        const table = document.createElement("table");
+        table.innerHTML = "<thead><tr><th>a</th></tr></thead><tbody>{rows}</tbody>";
+        const [heading] = table.tHead.rows[0].cells, seen = [];
+        for (const _ of [0, 1]) {{ sortBy(table, heading, 0); seen.push({read}); }}
+        return seen;
+    }}"""
+    assert visit.page.evaluate(sort) == [["", "-2", "3", "10", "x"], ["x", "10", "3", "-2", ""]]
+
+
 def test_keys_alone_reach_motions_tips_and_tables(visit: Visit) -> None:
     page = visit.page
     page.locator("canvas.surface").first.focus()
