@@ -45,6 +45,11 @@ def _make_type_adapter(kind: Any) -> TypeAdapter[Any]:
     return TypeAdapter(kind)  # Made once: making it takes a hundred times as long as reading a small file.
 
 
+def word_how_to_make(command: str) -> str:
+    """Return a sentence that a command, and no study, makes what a report would show."""
+    return f"{command} makes it, next to the report; the next run of the study shows it"
+
+
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
     """JSON file of results that one command writes and the next report in the folder shows; what: its name in words."""
@@ -60,7 +65,7 @@ class StoredFile(Generic[T]):
 
     def word_how_to_make(self, argument: str = "") -> str:
         """Return a sentence with the command that writes this file; argument: argument of the command, in words."""
-        return f"{self.command}{argument} makes it, next to the report; the next run of the study shows it"
+        return word_how_to_make(f"{self.command}{argument}")
 
     def as_json(self, results: T) -> bytes:
         """Return results as the JSON content of the file, which `load` reads."""

@@ -13,7 +13,7 @@ from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import refuse_foreign_report, resolve_destination
 from comparison.study.models import Model
-from comparison.study.selection import Selection, make_selection, refuse_commands, refuse_unknown
+from comparison.study.selection import Selection, make_selection, refuse_unknown
 from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
@@ -172,8 +172,7 @@ def _read_analyses(option: str, text: str | None) -> list[str] | None:
         return None
     names = [name.strip() for name in text.split(",")]
     try:
-        refuse_unknown(names, SELECTABLE)
-        refuse_commands(names if option == "--also" else (), SELECTABLE)
+        refuse_unknown(names, SELECTABLE, added=option == "--also")
         return names
     except ValueError as error:
         raise SceneError("command line", option, text, str(error)) from None

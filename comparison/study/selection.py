@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from typing import NamedTuple
 
+from comparison.json_file import word_how_to_make
 from reference.problem import Scene, SceneError, builtin_scenes
 
 
@@ -70,29 +71,27 @@ class Selection:
         )
 
 
-def refuse_unknown(names: Iterable[str], analyses: Sequence[Selectable]) -> None:
-    """Raise ValueError, with the nearest name, where one of the names is no analysis."""
-    known = [each.name for each in analyses]
+def refuse_unknown(names: Iterable[str], analyses: Sequence[Selectable], added: bool = False) -> None:
+    """
+    Raise ValueError, with the nearest name, where one of the names is no analysis.
+
+    added: whether they are asked for besides the usual ones; then none may be what only a command makes.
+    """
+    known = {each.name: each for each in analyses}
     for name in names:
         if name not in known:
             nearest = get_close_matches(name, known, n=1, cutoff=0.5)
             suggestion = f"did you mean {nearest[0]}?" if nearest else f"the analyses are {', '.join(known)}"
             raise ValueError(f"{name!r} is no analysis; {suggestion}")
-
-
-def refuse_commands(names: Iterable[str], analyses: Sequence[Selectable]) -> None:
-    """Raise ValueError where a study is asked for an analysis that only a command makes."""
-    for name in names:
-        if any(each.by_command for each in analyses if each.name == name):
-            raise ValueError(f"phase-resonance {name} makes it, next to the report; the next run of the study shows it")
+        if added and known[name].by_command:
+            raise ValueError(word_how_to_make(f"phase-resonance {name}"))
 
 
 def _refuse_unknown_in_scene(scene: Scene, analyses: Sequence[Selectable]) -> None:
     """Raise SceneError where a scene names an unknown analysis."""
     for key, listed in scene.analyses:
         try:
-            refuse_unknown(listed or (), analyses)
-            refuse_commands((listed or ()) if key == "also" else (), analyses)
+            refuse_unknown(listed or (), analyses, added=key == "also")
         except ValueError as error:
             raise SceneError(scene.name, f"analyses.{key}", listed, str(error)) from None
 
@@ -139,7 +138,7 @@ def make_selection(
         else:
             by_scene[scene.name] = names
             unnamed.clear()
-        unnamed -= {*(asked[1] or ())}
+        unnamed -= set(asked[1] or ())
     return Selection(
         tuple(analyses), by_scene, of_the_paper=tuple(sorted(unnamed)), on_request=tuple(sorted(on_request))
     )

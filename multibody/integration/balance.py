@@ -34,8 +34,8 @@ Mask = NDArray[np.bool_]
 # Largest number of iterations of Newton's method: after them the equilibrium counts as not found.
 MAX_ITERATIONS = 50
 
-# Largest residual of the forces, in weights, at which Newton's iteration may end. Added to it is the rounding error
-# of the forces times SAFETY_OF_FORCE_ROUNDING.
+# Largest residual of the forces, in weights, at which Newton's iteration may end. The rounding error of the forces
+# times SAFETY_OF_FORCE_ROUNDING is added to it.
 MAX_RESIDUAL = 1e-9
 SAFETY_OF_FORCE_ROUNDING = 100.0  # factor on the rounding error of forces, for many contacts and stiff links
 

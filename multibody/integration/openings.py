@@ -130,8 +130,7 @@ class Openings:
         # same state until the smallest gap of the event's contacts is zero (Brent's method). There are two special
         # cases. A contact that touches within the tolerance at the start has no later change of sign, unless the
         # platform leaves it and comes back within the step; such a flight is searched for in shorter and shorter steps.
-        # And because of rounding the gap may still be positive after the whole step; then the event lies at the end
-        # of the step.
+        # And because of rounding the gap may still be positive after the whole step; then the event lies at its end.
         sign = 1.0 if event.closes else -1.0
         done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}

@@ -80,23 +80,23 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Phrases by varied quantity: mu beyond the limit at the first size; at zero only; up to {holds}; not at {fails}; at all
+# Phrases by varied quantity: mu beyond the limit at the first size; at zero only; up to {holds}; at {fails}; at all
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
-             "no longer at {fails:g} m", "every smaller one tried too"),
+             "at {fails:g} m", "every smaller one tried too"),
     "height": ("with heights of {fails:g} times the stated ones", "at zero heights",
-               "with heights up to {holds:g} times the stated ones", "no longer at {fails:g} times",
+               "with heights up to {holds:g} times the stated ones", "at {fails:g} times",
                "the largest tried"),
     "oval": ("with the ring narrowed by {fails:.2g} of its radius along {direction:.0f} degrees",
              "with the ring as stated",
              "with the ring narrowed by up to {holds:.2g} of its radius along {direction:.0f} degrees",
-             "no longer by {fails:.2g}", "the most tried"),
+             "by {fails:.2g}", "the most tried"),
     "offset": ("with centers of mass moved by {fails:.2g} m towards {direction:.0f} degrees",
                "with centers of mass as stated",
                "with centers of mass moved by up to {holds:.2g} m towards {direction:.0f} degrees",
-               "no longer by {fails:.2g} m", "the largest tried"),
+               "by {fails:.2g} m", "the largest tried"),
     "yaw": ("with bodies and links turned by {fails:.2g} rad {sense}", "with bodies and links as stated",
-            "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
+            "with bodies and links turned by up to {holds:.2g} rad {sense}", "by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
 # `describe_range` fills in the sizes {holds} and {fails}, the direction and the sense of rotation.
@@ -111,7 +111,9 @@ def describe_range(validity: ValidityRange) -> str:
     if validity.no_value:
         if validity.holds is None:
             return f"{name} over {VARIED[validity.key]}: not compared, a phase pair has no value that tells"
-        fails = fails.replace("longer by", "longer at").replace("no longer", "not known")
+        fails = f"not known at {fails.partition(' ')[2]}"
+    else:
+        fails = f"no longer {fails}"
     if validity.holds is None:
         verb, where = "leaves", f"already {zero if validity.fails == 0.0 else none}"
     else:

@@ -215,7 +215,7 @@ ASSUMPTIONS = (
 
 @result
 class Validity:
-    """How far the paper's assumptions hold: what was varied, the changes of mu, and the ranges that hold."""
+    """Extent to which the paper's assumptions hold: what was varied, the changes of mu, and the ranges that hold."""
 
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]

@@ -145,7 +145,7 @@ class Question(NamedTuple):
 # Keyword arguments of the models: equations by the reference, and the multibody engine with and without rotation
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
 EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # for reference.amplification
-YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # of friction that yields
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # where friction yields
 TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
 SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
 OVER_YIELDS = Question(  # amplification mu over the yield displacement of elastic friction

@@ -3,7 +3,6 @@
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 
@@ -162,15 +161,13 @@ class TradeOff:
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
         limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}
-        limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
-        more: dict[str, Any] = {"about": scene, "group": engine}
-        return [
-            Task(
-                measure_setting, Measurement(scene, function, chunk), STAGE, rough := each * len(chunk),
-                timeout=limit * size if limit else TIME_LIMIT_RATIO * rough + SPARE_SECONDS, **more,
-            )
-            for chunk in chunks
-        ]  # fmt: skip
+        limit, tasks = limits.get(engine), []
+        for first in range(0, count, size):
+            measurement = Measurement(scene, function, phases[first : first + size])
+            rough = each * len(measurement.phases)
+            timeout = limit * size if limit else TIME_LIMIT_RATIO * rough + SPARE_SECONDS
+            tasks.append(Task(measure_setting, measurement, STAGE, rough, about=scene, timeout=timeout, group=engine))
+        return tasks
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
         """Return error over cost of every setting for one scene."""
