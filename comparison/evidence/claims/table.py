@@ -89,7 +89,8 @@ def word_claims(table: ClaimTable) -> str:
     """
     return (
         f"Of the paper's {len(table.statements)} statements about its figures, with the parameters as printed, "
-        f"{count_met(table)}; its plots were not available, and the text at hand names no authors and no year."
+        f"on {table.grid} x {table.grid} phase pairs, {count_met(table)}; its plots were not available, and the text "
+        "at hand names no authors and no year."
     )
 
 

@@ -192,8 +192,9 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
 
     Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
     """
-    error = np.abs(measured.mu / reference_solution - 1.0)
-    error_estimate = measured.error_estimate / np.abs(measured.mu)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
+        error = np.abs(measured.mu / reference_solution - 1.0)
+        error_estimate = measured.error_estimate / np.abs(measured.mu)
     median, most, estimate = (
         [trade.find_error_quantile(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
@@ -215,14 +216,16 @@ def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
 ) -> trade.SolvedQuestion:
     """Return a question with its reference solution, and with the error and the checks of that solution."""
-    error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
+        error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = trade.find_error_quantile(error_estimate.ravel(), 1.0)
     tolerance = question.reference_solution[1]["tolerance"]
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)
     solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
     points, answered = len(reference_solution.mu), int(np.isfinite(reference_solution.mu).all(axis=1).sum())
-    own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
+    unknown = "no amplification has a relative error" if answered else "it answers at none of them"
+    own = unknown if error is None else f"its own error estimate is {error:.0e} at most"
     own = f"it answers at {answered} of them, {own}" if 0 < answered < points else own
     own = f"{own}, its tolerance is not met: no smaller error can be told" if (error or 0.0) > tolerance else own
     checks = [own, *_word_agreements(question, entries)]

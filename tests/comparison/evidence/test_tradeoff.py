@@ -97,6 +97,10 @@ def test_phase_pairs_without_a_reference_solution_take_no_setting_off_the_front(
     ]  # fmt: skip
     found = analysis._make_solved_question(QUESTIONS[0], SettingResult(solution, 0.01 * solution, 6.0, np.nan), [gap])
     assert found.checks[0].startswith("it answers at 2 of them, its own error estimate is 1e-02 at most")
+    for unknown, line in ((0.0, "no amplification has a relative error"), (np.nan, "it answers at none of them")):
+        none = SettingResult(np.full((3, 2), unknown), np.full((3, 2), unknown), 6.0, np.nan)
+        assert analysis._make_solved_question(QUESTIONS[0], none, [gap]).checks[0] == line
+        assert make_entry(SETTING, none, solution).error_estimate == [None, None]
 
 
 def test_a_motion_shorter_than_the_warming_one_is_not_lengthened(monkeypatch: pytest.MonkeyPatch) -> None:
