@@ -204,7 +204,8 @@ KNOWN = _table("+++++++---------", "+++++++++-------")
 def test_the_line_counts_each_reading_by_its_name() -> None:
     assert word_claims(KNOWN) == (
         "Of the paper's 16 statements about its figures, with the parameters as printed, on 24 x 24 phase "
-        "pairs, 7 are met as integrated and 9 as literal supremum; its plots were not available, and the text at hand names no authors and no year."
+        "pairs, 7 are met as integrated and 9 as literal supremum; "
+        "its plots were not available, and the text at hand names no authors and no year."
     )
     assert "9 are met as integrated and 7 as literal supremum;" in word_claims(
         _table(*("+" * k + "-" * (16 - k) for k in (9, 7)))
