@@ -71,6 +71,30 @@ class Unshowable:
 MASKED = np.ma.masked_array([0.0, 1.0], mask=[True, False])
 WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "max_work as text": (lambda: multibody.refusal(SCENE, max_work="1"), "max_work = '1': must be finite and positive"),
+    "steps": (
+        lambda: multibody.refusal(SCENE, max_work=2e12),
+        "max_work = 2000000000000.0: must be finite and positive, from 1 to 1e+12 steps",
+    ),
+    "penetration": (
+        lambda: multibody.single_run(SCENE, (0.0, 0.0), step=1e-3, penetration=0.2),
+        "penetration = 0.2: must be finite and positive, from 1e-14 to 0.1 of rho",
+    ),
+    "iteration": (
+        lambda: multibody.single_run(SCENE, (0.0, 0.0), step=1e-3, newton=2.0),
+        "newton = 2.0: must be finite and positive, from 1e-14 to 1",
+    ),
+    "regularization": (
+        lambda: multibody.trajectory(SCENE, (0.0, 0.0), regularization=2e6),
+        "regularization = 2000000.0: must be finite and positive, from 1e-12 to 1e+06 m/s",
+    ),
+    "cutoff": (
+        lambda: reference.amplification(SCENE, (0.0, 0.0), cutoff=1e-16),
+        "cutoff = 1e-16: must be finite and positive, from 1e-15 to 1e+06 m/s",
+    ),
+    "phase": (
+        lambda: reference.amplification(SCENE, (0.0, -2e6)),
+        "phases: -2e+06: must be finite, from -1e+06 to 1e+06 rad: reduce it modulo 2 pi",
+    ),
     "grid as text": (lambda: reference.phase_grid("x"), "points = 'x': must be a whole number from 1 to 10000"),
     "no phase": (lambda: reference.phase_grid(0), "points = 0: must be a whole number"),
     "grid as bool": (lambda: reference.phase_grid(True), "points = True: must be a whole number"),

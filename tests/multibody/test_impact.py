@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from multibody.integration.level import PHYSICAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import BEARING_SETTLING_TIME, Event, Openings
 from multibody.integration.peak import PeakReader
-from multibody.integration.termination import _compute_tilt
+from multibody.integration.termination import _compute_tilt, _find_end_of_validity
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
 from multibody.models.impact import ImpactLaw
@@ -330,6 +331,15 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     np.testing.assert_array_equal(found["yaw"], [0.9] * 5)
     np.testing.assert_array_equal(found["turns"][3], angles)
     np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])
+    motion.time = np.arange(5)
+    for beyond, near, limit, expected in (
+        (3, False, 0.4, (Outcome.OVERTURNED, 3)), (3, False, 0.6, (Outcome.RIM_REACHED, 3)),
+        (5, False, 0.4, (Outcome.OK, 4)), (3, True, 0.4, (Outcome.OK, 4)),
+    ):  # fmt: skip
+        model.depressions = Mock(**{"is_near_rest.return_value": near})
+        model.depressions.rows_beyond_rim.return_value = np.arange(5) >= beyond
+        model.critical_tilt = limit
+        assert _find_end_of_validity(motion, model) == expected, "tilted by 0.49 rad"
 
 
 def test_a_tower_that_overturns_ends_under_that_name() -> None:
