@@ -22,7 +22,7 @@ from multibody.integration.chunk import (
     smallest_loaded_slip,
     vector_lengths,
 )
-from multibody.integration.engine_run import Budget, EngineRun
+from multibody.integration.engine_run import Budget, EngineRun, record_steps
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _choose_early_stop, _compute_work_until, _confirms_early_stop
 from multibody.integration.one_run import PhasePair
@@ -160,6 +160,21 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
     assert len(ends) == 4, "to the first quiet, ahead to the second burst, over it, ahead to the end"
     assert early.finest.peaks.instant.max() * units_of(scene).time > 5.0
     np.testing.assert_allclose(early.peaks, whole.peaks, rtol=1e-12)
+
+
+def test_a_run_keeps_the_largest_values_and_the_smallest_load_of_all_its_parts() -> None:
+    """Two parts; in the second one all is a percent smaller, but for the load, which is a percent larger."""
+    run, still = EngineRun(PeakReader(1, math.inf), math.inf), np.zeros((5, 3))
+    model: Any = SimpleNamespace(bodies=np.array([[0, 1, 2]]), warping_displacement=None, allows_liftoff=False)
+    level, time = SimpleNamespace(penetration=0.01), np.arange(5.0)
+    for begin, size in ((0.0, 1.0), (4.0, 0.99)):
+        place, vertical = still + size * np.array([0.3, 0.4, 0.0]), still - size * np.array([0.0, 0.0, 0.2])
+        parts = {"coordinates": place, "velocities": still, "accelerations": vertical, "slip": np.ones((5, 1))}
+        motion: Any = SimpleNamespace(time=begin + time, gap=np.full((5, 1), -0.02 / size), **parts)
+        record_steps(run, motion, np.full((5, 1), 3.0 * size), model, level)  # type: ignore[arg-type]
+    assert (run.max_displacement, run.max_vertical, run.min_load) == pytest.approx((0.5, 0.2, 2.0))
+    assert (run.peaks.value.tolist(), run.last_large_at) == ([3.0], 8.0)
+    assert not run.has_opened
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ import reference
 from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
+from reference.measures.story_forces import story_forces
 from reference.problem import State, load_scene
 from reference.solver.contact import stop_arc
 from reference.solver.phases import follow, stopping
@@ -59,6 +60,9 @@ def test_a_support_moves_with_the_turning_platform() -> None:
     expected = max(np.linalg.norm(center + moved + turn @ (at - center) - at) for at in scene.support_places)
     assert answer.support_displacement.value == pytest.approx(expected, rel=1e-12)
     assert answer.uplift.value == 0.01
+    uplift = story_forces(made_up(scene, np.linspace(0.0, 1.0, 11), position=place, extra=extra)).uplift
+    assert uplift is not None
+    assert [each.value for each in uplift] == [0.0, 0.01, 0.0]
 
 
 def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:
