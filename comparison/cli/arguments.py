@@ -22,11 +22,11 @@ from reference.problem import SceneError
 from reference.problem.families import BOUND_FACTOR
 from reference.support.command import OneLineParser, UsageError
 
-Parameters = ParamSpec("Parameters")
-Value = TypeVar("Value", int, float)
+Parameters = ParamSpec("Parameters")  # parameters of a command's main function after `argv`
+Value = TypeVar("Value", int, float)  # type of the number that an option states
 
-BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest  # smallest and largest factor on friction in --bounds
-# help text of --out for commands that write only stored results
+BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest  # smallest and largest factor on friction that --bounds takes
+# help text of --out for commands that write no report, only stored results
 STORED_RESULTS_HELP = "report whose stored results, in DIR.tiles, are used and added to"
 
 
@@ -40,25 +40,25 @@ class EndedEarlyError(RuntimeError):
 
 
 class CommandParser(OneLineParser):
-    """Parser of a command with the options that commands share."""
+    """Parser of a command line; its methods add options that several commands share."""
 
     def __init__(self, command: str, description: str) -> None:
         """Make the parser of `command`; description: what the command does, for its help text."""
         super().__init__(" ".join(list_starting_words(command)), description)
 
     def add_scenes(self, default: str) -> None:
-        """Add the names of scenes; default: scenes used if none is given, in words."""
+        """Add the argument for names of scenes; default: words for the scenes that are used without it."""
         help_text = f"TOML files or built-in names (default: {default})"
         self.add_argument("scenes", nargs="*", metavar="SCENE", help=help_text)
 
     def add_out(self, content: str, default: str = "report") -> None:
-        """Add the folder that the command writes into; content: the files in it, in words."""
+        """Add the option --out, the folder that the command writes into; content: words for the files in it."""
         self.add_argument(
             "--out", default=Path(default), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
         )
 
     def add_bounds(self) -> None:
-        """Add the option that computes each scene at both bounds of friction."""
+        """Add the option --bounds, which computes each scene at a lower and an upper bound of friction."""
         self.add_argument(
             "--bounds",
             nargs=2,
@@ -68,7 +68,7 @@ class CommandParser(OneLineParser):
         )
 
     def add_computing(self) -> None:
-        """Add the options for workers, cluster and recomputation."""
+        """Add the options --jobs (workers), --scheduler (cluster) and --fresh (compute everything anew)."""
         self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {count_cores()})")
         self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
         self.add_argument(
@@ -87,7 +87,7 @@ def read_number_of_jobs(options: argparse.Namespace) -> int:
 
 
 def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
-    """Return the smaller and the larger factor on friction of `--bounds`; None without it. Raises SceneError."""
+    """Return the two factors by which `--bounds` scales friction, smaller first; None without it. Raises SceneError."""
     if options.bounds is None:
         return None
     low, high = (read_number("--bounds", text, *BOUND_FACTORS, "factors of friction") for text in options.bounds)
@@ -107,19 +107,19 @@ def read_number(option: str, text: str, least: float, most: float, unit: str) ->
 
 
 def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most: Value, rule: str) -> Value:
-    """Return the number that an option states; raise SceneError outside [least, most]."""
+    """Return the number that the text of an option states; raise SceneError if none or outside [least, most]."""
     try:
         value = kind(text)
     except ValueError:
         raise SceneError("command line", option, text, rule) from None
-    if not least <= value <= most:  # NaN fails this comparison, too
+    if not least <= value <= most:  # true for NaN, too
         raise SceneError("command line", option, value, rule)
     return value
 
 
 @contextmanager
 def report_write_errors(folder: Path, option: str = "--out") -> Iterator[None]:
-    """End the command with code 3 and one line where the block cannot write into the folder that `option` names."""
+    """Turn a write error of the `with` block into an early end with code 3; option: that names the folder."""
     try:
         yield
     except OSError as error:
@@ -141,11 +141,11 @@ def write_and_show(folder: Path, write: Callable[[], list[Path]], show: Callable
 
 
 def command(main: Callable[Concatenate[Sequence[str], Parameters], int]) -> Callable[..., int]:
-    """Wrap the main function of a command: errors become exit codes, and the words default to those typed."""
+    """Wrap a command's main function: errors become exit codes, and `argv` defaults to the words typed."""
 
     @wraps(main)
     def run_to_exit_code(argv: Sequence[str] | None = None, *args: Parameters.args, **kwargs: Parameters.kwargs) -> int:
-        """Run the command and return its exit code; an error of input or an early end is one line on standard error."""
+        """Run the command; return its exit code. Wrong input or an early end prints one line on standard error."""
         try:
             return main(sys.argv[1:] if argv is None else list(argv), *args, **kwargs)
         except (SceneError, UsageError) as error:
@@ -159,14 +159,14 @@ def command(main: Callable[Concatenate[Sequence[str], Parameters], int]) -> Call
 
 
 def list_starting_words(command: str) -> list[str]:
-    """Return the words that start a command; `run` starts with `python -m` unless the console script started it."""
+    """Return the first words of a command line; "python -m" and module for `run` if no console script started it."""
     script = ["phase-resonance", command]
     by_script = command != "run" or sys.argv[0] == " ".join(script)
     return script if by_script else ["python", "-m", f"comparison.{command}"]
 
 
 def format_command_line(words: Sequence[str], command: str = "run") -> str:
-    """Return a command as a user types it: its name, and the words after it."""
+    """Return a whole command line as a user types it. words: those after the name of the command."""
     return shlex.join([*list_starting_words(command), *words])
 
 
@@ -174,9 +174,9 @@ def edit_command_line(
     words: Sequence[str], added: Sequence[str] = (), flags: Collection[str] = (), options: Collection[str] = ()
 ) -> list[str]:
     """
-    Return the words of a command line with options left out and others added; words after "--" stay.
+    Return the words of a command line with some options left out and `added` inserted before any "--".
 
-    flags, options: names to leave out, of options without a value and with one.
+    flags: options without a value to leave out. options: options with a value to leave out.
 
     Examples
     --------
@@ -195,7 +195,7 @@ def edit_command_line(
 
 
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return a line that says where finished results are kept and how to compute the rest; batches: number of all."""
+    """Return a line: where finished results are kept and how to compute the rest. batches: number of all batches."""
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT_KIND]
     if batches is None:

@@ -20,9 +20,9 @@ from comparison.wording import percent, signed
 from reference.problem import Scene, builtin_scenes, example_scenes
 from reference.support.arguments import name_some
 
-FIRST_SENTENCES = 8  # largest number of sentences that the terminal shows after a level
+FIRST_SENTENCES = 8  # largest number of headlines that the terminal shows after an intermediate level of a run
 FILMED_MODELS = ("translational", "spatial")  # keys of the models that multibody.animate can film
-ALERT_LABELS = {  # word before an alert on the terminal, by kind of alert
+ALERT_LABELS = {  # first words of an alert's line on the terminal, by kind
     "refused": "No answer",
     "limit": "Limit broken",
     "lacking": "Values missing",
@@ -33,13 +33,13 @@ ALERT_LABELS = {  # word before an alert on the terminal, by kind of alert
 
 
 def print_solver_messages(results: Results) -> None:
-    """Print on standard error what the solvers reported."""
+    """Print on standard error the messages that solvers reported in this run."""
     for line in results.faults:
         print(f"{ALERT_LABELS['fault']}: {line}", file=sys.stderr)
 
 
 def print_check(results: Results, scenes: Sequence[Scene]) -> None:
-    """Print on standard error, as the last lines of a run with --check, broken limits and comparisons without one."""
+    """Print on standard error, as last lines of a run with --check, broken limits and comparisons without a limit."""
     lines = [f"--check: {line}" for line in word_demands_elsewhere(scenes)]
     lines += [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
     rest = word_unchecked(results.unchecked)
@@ -47,13 +47,13 @@ def print_check(results: Results, scenes: Sequence[Scene]) -> None:
         lines.append("--check: no scene states [acceptance] limits: nothing was checked")
     elif rest:
         lines.append(f"--check: {rest}")
-    sys.stdout.flush()  # In a file that takes both outputs these lines come last, too.
+    sys.stdout.flush()  # so that these lines are the last, too, if both outputs go to one file
     for line in lines:
         print(line, file=sys.stderr)
 
 
 def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
-    """Return a line that names the command that checks limits on demands; no line if no scene has such limits."""
+    """Return a line: limits on demands are checked by another command, with its name; none without such limits."""
     stated = [scene.name for scene in scenes if scene.acceptance.demands is not None]
     if not stated:
         return []
@@ -81,7 +81,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
 
 
 def print_level(console: Console, results: Results, before: Results | None, level: StudyLevel, report: Path) -> None:
-    """Print the place of the report of a level that is not the last, and its first new sentences."""
+    """Print where the report of an intermediate level (grid of phases) is, and its first headlines that are new."""
     console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
     known = set(_headline_sentences(before)) if before else set()
     sentences = [sentence for sentence in _headline_sentences(results) if sentence not in known]
@@ -92,12 +92,12 @@ def print_level(console: Console, results: Results, before: Results | None, leve
 
 
 def _headline_sentences(results: Results) -> list[str]:
-    """Return the headline sentence of every body of every scene."""
+    """Return the main sentence on each body of each scene."""
     return [headline.sentence for scene in results.scenes for headline in scene.headlines]
 
 
 def word_next_commands(results: Results, words: Sequence[str]) -> list[str]:
-    """Return the next commands: a film of the largest difference, and a finer grid with its cost."""
+    """Return lines with commands to go on with: for a film of the largest difference, for the cost of a finer grid."""
     lines = []
     filmed = [
         (headline, source)
@@ -118,7 +118,7 @@ def word_next_commands(results: Results, words: Sequence[str]) -> list[str]:
 
 
 def _film_command(headline: Headline, source: str) -> str:
-    """Return the command that makes a film of the motion with the largest amplification mu."""
+    """Return the command that films the motion with the largest difference of engine and equations."""
     phases = " ".join(f"{phase:.4f}" for phase in headline.maximum_phases)
     source = f"./{source}" if source.startswith("-") else source  # A leading hyphen would make it an option.
     return f"python -m multibody.animate {shlex.quote(source)} --phases {phases} --model {headline.maximum_model}"
@@ -126,7 +126,7 @@ def _film_command(headline: Headline, source: str) -> str:
 
 def _find_source(scene: SceneResult, words: Sequence[str]) -> str:
     """
-    Return the scene's name on a command line, "" for a member of a family or a loading changed by the command.
+    Return the word by which a command line names the scene; "" if it is one of a family, or its loading was changed.
     """
     if any(word.startswith("--amplitude") for word in words):
         return ""
@@ -136,7 +136,7 @@ def _find_source(scene: SceneResult, words: Sequence[str]) -> str:
 
 
 def _print_differences(console: Console, results: Results) -> None:
-    """Print a table of the differences between models: mean, standard deviation, maximum, and points not ok."""
+    """Print a table of relative differences of models: mean, standard deviation, maximum, number of failed points."""
     rows = [row for scene in results.scenes_with("differences") for row in scene.differences]
     if not rows:
         return

@@ -35,7 +35,7 @@ from comparison.runner.task_results import TaskResults
 
 
 def collect_run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
-    """Return the facts of a run that ends now, for a JSON file: command, start, duration, workers, provenance."""
+    """Return facts of a run that ends now, for its JSON file: command, start, duration, workers, software versions."""
     seconds = time.monotonic() - begin
     return {
         "command": format_command_line(words, command),
@@ -59,7 +59,7 @@ def compute_tasks(
     """
     Return the results of all tasks of a command, stored or computed. Raises SceneError, EndedEarlyError.
 
-    add_tasks: returns the tasks that follow from the results of the others.
+    add_tasks: function that returns further tasks, chosen by the results of the first ones.
     """
     width = read_number_of_jobs(options)
     out = resolve_destination(options.out)
@@ -93,7 +93,7 @@ def open_workers(
     hint: Callable[[Sequence[str]], str],
 ) -> Iterator[tuple[int, Pool]]:
     """
-    Open the workers that a command uses in the block; yield their number and pool. Raises SceneError.
+    Open worker processes or a cluster for a `with` block; yield their number and pool. Raises SceneError.
 
     Whatever ends the block early is an EndedEarlyError that says what is kept and, by `hint`, how to go on.
     """

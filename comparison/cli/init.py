@@ -19,7 +19,7 @@ from reference.support.command import OneLineParser
 from reference.support.files import NEW_FILES_FOLDER, staging_directory
 
 DIRECTORY_ARGUMENT = "DIRECTORY"  # name of the command's argument in its help and its error messages
-FILES_OF_TEMPLATE = {  # path of each file in a new study: name of the template file that it is copied from
+FILES_OF_TEMPLATE = {  # by path in a new study: template file to copy
     ".github/workflows/study.yml": "github.yml",
     ".gitignore": "gitignore",
     ".gitlab-ci.yml": "gitlab.yml",
@@ -33,7 +33,7 @@ FILES_OF_TEMPLATE = {  # path of each file in a new study: name of the template 
 
 @command
 def main(argv: Sequence[str]) -> int:
-    """Write the study; return the exit code: 0, 2 for a directory that cannot be used, 3 if writing failed."""
+    """Write a directory with a study to start from; return 0, 2 if it cannot be used, 3 if writing failed."""
     parser = OneLineParser("phase-resonance init", "A directory with a study to start from.")
     parser.add_argument(
         "directory", metavar=DIRECTORY_ARGUMENT, type=Path, help="a new one, or one that holds nothing but .git"
@@ -50,7 +50,7 @@ def main(argv: Sequence[str]) -> int:
 
 
 def make_study_files(name: str) -> dict[str, bytes]:
-    """Return the files of a new study by their path in its directory."""
+    """Return the contents of the files of a new study by path in its directory. name: of the study."""
     folder = files("comparison.cli") / "study_template"
     texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in FILES_OF_TEMPLATE.items()}
     source = make_requirement_line()
@@ -60,8 +60,8 @@ def make_study_files(name: str) -> dict[str, bytes]:
 
 
 def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files, by path, into a new or empty directory: all of them or none. Raises OSError."""
-    inside = place.is_dir()  # An existing directory is kept: the user may have typed the command in it.
+    """Write files into a new or empty directory: all or none. contents: bytes by path in it. Raises OSError."""
+    inside = place.is_dir()  # Do not replace an existing directory: it may be the user's current one.
     made = make_parents(place.parent)
     try:
         with staging_directory(place / NEW_FILES_FOLDER if inside else place) as staging_folder:
@@ -96,7 +96,7 @@ def _move_entries(source: Path, target: Path) -> None:
 
 
 def _find_free_directory(path: Path) -> Path:
-    """Return the directory of the new study. Raises SceneError, one line, if it cannot be made or is not empty."""
+    """Return the directory for a new study. Raises SceneError if it cannot be made or is not empty."""
     refusal = partial(SceneError, "command line", DIRECTORY_ARGUMENT, str(path))
     if not str(path).isprintable():
         raise refusal("must be a name of printable characters")

@@ -18,13 +18,13 @@ from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 
-MIN_TOLERANCE = 1e-8  # smallest relative error of the amplification mu that --tolerance may ask for
-DEFAULT_GRID = 48  # phases per axis without --grid; a model with `Model.most` computes at most so many
+MIN_TOLERANCE = 1e-8  # smallest relative error of the amplification that --tolerance may ask for
+DEFAULT_GRID = 48  # number of phases per axis if --grid is not given
 
 
 @dataclass(frozen=True)
 class Options:
-    """Checked options of the command line."""
+    """Checked options of the command line of `python -m comparison.run`."""
 
     families: tuple[Family, ...]
     grid: int
@@ -39,11 +39,11 @@ class Options:
     full: bool = False
     max_work: float | None = None
     selection: Selection = EVERYTHING
-    models: tuple[Model, ...] = ()  # engines of the user
+    models: tuple[Model, ...] = ()  # user's engines
 
     @property
     def scenes(self) -> tuple[Scene, ...]:
-        """Return every scene of every family, in order."""
+        """Return every scene of every scene file, in order."""
         return tuple(scene for family in self.families for scene in family.scenes)
 
 
@@ -76,7 +76,7 @@ def parse_options(argv: Sequence[str]) -> Options:
 
 
 def _refuse_contradictions(options: Options, sources: Sequence[str]) -> None:
-    """Refuse options that contradict each other, the system or the folder of the report. Raises SceneError."""
+    """Raise SceneError if options contradict each other, or the system or the report's folder does not allow them."""
     if options.check:
         _refuse_limits_of_no_engine(options.scenes, [model.key for model in options.models])
     loaded = list(zip(sources, options.families))
@@ -89,7 +89,7 @@ def _refuse_contradictions(options: Options, sources: Sequence[str]) -> None:
 
 
 def _refuse_unusable_folder(out: Path) -> None:
-    """Refuse a folder in which the report cannot be written or shown. Raises SceneError."""
+    """Raise SceneError if the folder holds foreign files, or stored results that the report cannot read."""
     try:
         for field in (field for feature in FEATURES for field in feature.stored):
             assert field.load is not None
@@ -101,7 +101,7 @@ def _refuse_unusable_folder(out: Path) -> None:
 
 
 def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str]) -> None:
-    """Refuse limits of an engine that this study does not have. Raises SceneError."""
+    """Raise SceneError if a scene states limits on a user's engine that `--model` does not enter."""
     for scene in scenes:
         for name, limits in scene.acceptance.user_engine_limits.items():
             if name not in engines:
@@ -159,7 +159,7 @@ def _parser() -> CommandParser:
 
 
 def _read_selection(words: argparse.Namespace, families: Sequence[Family]) -> Selection:
-    """Return the analyses that --only, --skip and --also select for every scene. Raises SceneError."""
+    """Return which analyses --only, --skip and --also select. Raises SceneError."""
     only, skip, also = (_read_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
@@ -167,7 +167,7 @@ def _read_selection(words: argparse.Namespace, families: Sequence[Family]) -> Se
 
 
 def _read_analyses(option: str, text: str | None) -> list[str] | None:
-    """Return the analyses that an option lists, separated by commas."""
+    """Return the names of analyses in the comma-separated text of an option. Raises SceneError."""
     if text is None:
         return None
     names = [name.strip() for name in text.split(",")]

@@ -29,21 +29,21 @@ from comparison.surfaces.alerts import Alert
 from comparison.surfaces.missing_values import leave_out_empty_models
 from comparison.surfaces.surfaces import collect_batch_results, label_surfaces, make_surface_tasks
 
-MIN_REPORT_INTERVAL = 3.0  # s, shortest time between two reports; the last level always gets one
+MIN_REPORT_INTERVAL = 3.0  # s, shortest time from one report of a run to the next; the last level's is always written
 
 
 @dataclass(frozen=True)
 class CompleteLevel:
-    """A completely computed level: its surfaces, their tasks, and its study without models that have no values."""
+    """Level (grid of phases) of a run whose results are all computed; study: without models that have no values."""
 
     level: StudyLevel
     study: Study
-    tasks: Sequence[Task]  # tasks of the surfaces
+    tasks: Sequence[Task]  # tasks that computed `surfaces`
     surfaces: xr.Dataset
 
 
 def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
-    """Compute what a level lacks: surfaces and the analyses that do not need them, then those that need them."""
+    """Compute a level: surfaces of amplification, analyses without need of them, then those that need them."""
     analyses = select_analyses(level.study)
     tasks = make_surface_tasks(level.study)
     runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
@@ -57,7 +57,7 @@ def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
 
 class ReportWriter:
     """
-    Writer of the reports of a run.
+    Writer of the report of each level of a run.
 
     jobs: workers. began: when the run began. place: where the reports are: next to the folder of the options if that
     holds something else. results: what the last one says; None before the first. level: whose report it is. seconds:
@@ -65,7 +65,7 @@ class ReportWriter:
     """
 
     def __init__(self, options: Options, jobs: int, words: Sequence[str], began: Clock) -> None:
-        """Prepare reports of the command line `words`; no report is written yet."""
+        """Prepare the writer; no report is written yet. words: command line."""
         self._options, self._jobs, self._words, self._began = options, jobs, words, began
         self._last = began.wall
         self.place = options.out
@@ -75,14 +75,14 @@ class ReportWriter:
 
     def is_due(self, complete: CompleteLevel, runner: Runner) -> bool:
         """
-        Return whether a level before the last gets a report: not if an earlier run has computed it completely.
+        Return whether to write the report of an intermediate level: if it has new results and no report is recent.
         """
         new = any(task.key not in runner.results.stored for task in complete.tasks)
         return new and time.monotonic() - self._last >= MIN_REPORT_INTERVAL
 
     def write(self, complete: CompleteLevel, runner: Runner) -> Results:
-        """Write the report of a level."""
-        from comparison.report.writing import write_report  # Plotting libraries are not needed to refuse or to plan.
+        """Write the report of a level and return its results."""
+        from comparison.report.writing import write_report  # late: plotting libraries are not needed to refuse or plan
 
         begin = time.monotonic()
         report = self._report(complete, runner)
@@ -95,7 +95,7 @@ class ReportWriter:
         return results
 
     def write_stopped(self, complete: CompleteLevel | None, runner: Runner) -> None:
-        """Write the report of the last complete level of a run that was ended, with the analyses that are finished."""
+        """Write the report of an interrupted run: its last complete level, if any, with the finished analyses."""
         if complete is None:
             return
         later = complete.study.selection.later
@@ -111,7 +111,7 @@ class ReportWriter:
             self.write(replace(complete, study=study), runner)
 
     def _report(self, complete: CompleteLevel, runner: Runner) -> Report:
-        """Return everything that the report of a level is made from, with the facts of the run."""
+        """Return the content of a level's report: study, surfaces, results of analyses, and facts of the run."""
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {
@@ -144,7 +144,7 @@ class ReportWriter:
 
 
 def _list_solver_messages(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
-    """Return what solvers reported, once for each scene, model and message."""
+    """Return the messages that solvers reported as alerts, once for each scene, model and text."""
     texts = {
         (task.argument.scene.name, f"{task.stage}: {result.error_message}")
         for task, result in zip(tasks, collect_batch_results(tasks, results))
@@ -154,7 +154,7 @@ def _list_solver_messages(tasks: Sequence[Task], results: TaskResults) -> list[A
 
 
 def _load_stored(field: ResultField[Any], out: Path) -> Any:
-    """Return what another command stored next to the report; None if the file has become unreadable since."""
+    """Return the result that another command stored in the report's folder; None if its file is unreadable."""
     assert field.load is not None
     try:
         return field.load(out)

@@ -14,12 +14,12 @@ from reference.support.version import __version__
 
 PACKAGE_NAME = "phase-resonance"  # name under which pip installs this project
 CHECKOUT_FOLDER = Path(__file__).resolve().parents[2]  # folder of this project if it runs from a checkout
-SSH_ADDRESS = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # address as git writes it: user@host:path
-REMOTE_SCHEMES = ("https", "http", "ssh", "git")  # schemes of addresses from which others can fetch a commit
+SSH_ADDRESS = re.compile(r"([\w.-]+@[\w.-]+):/?(.+)")  # SSH address in the short form of git: user@host:path
+REMOTE_SCHEMES = ("https", "http", "ssh", "git")  # schemes of addresses that others can fetch from
 
 
 def make_requirement_line() -> str:
-    """Return a line of requirements.txt: recorded address, commit that others can fetch, folder or version."""
+    """Return the line of requirements.txt that installs this package: from its address, commit, folder or index."""
     about = _read_pip_record()
     url = str(about.get("url", ""))
     if "vcs_info" in about:
@@ -35,7 +35,7 @@ def make_requirement_line() -> str:
 
 
 def _read_pip_record() -> dict[str, Any]:
-    """Return pip's record of the address from which it installed the package (PEP 610); empty for an index."""
+    """Return pip's record of the address that the package was installed from (PEP 610); {} if from an index."""
     try:
         about: dict[str, Any] = json.loads(distribution(PACKAGE_NAME).read_text("direct_url.json") or "{}")
     except PackageNotFoundError:
@@ -44,7 +44,7 @@ def _read_pip_record() -> dict[str, Any]:
 
 
 def _find_published_commit(folder: Path) -> str:
-    """Return the address where others can fetch the commit of a checkout; "" if nobody can."""
+    """Return the address from which others can fetch the commit checked out in a folder; "" if it is not published."""
     try:
         commit = ask_git(folder, "rev-parse", "HEAD")
         if not ask_git(folder, "branch", "--remotes", "--contains", commit):
@@ -58,7 +58,7 @@ def _find_published_commit(folder: Path) -> str:
 
 
 def _remove_password(url: str) -> str:
-    """Return the address without password, and without user unless it is an SSH address."""
+    """Return an address without its password, and without the user's name unless it is an SSH address."""
     parts = urlsplit(url)
     user, at, host = parts.netloc.rpartition("@")
     kept = f"{user.partition(':')[0]}@{host}" if at and parts.scheme == "ssh" else host

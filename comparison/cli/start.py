@@ -23,33 +23,33 @@ from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 SCRIPT_NAME = "phase-resonance"  # name of the console script
-# Thresholds of the garbage collector: imported objects stay, and checking them again takes a tenth of a command
-# that only reads stored results.
+# Thresholds of Python's garbage collector, high so that it runs rarely: checking imported objects, which stay anyway,
+# would take a tenth of the time of a command that only reads stored results.
 COLLECTOR_THRESHOLDS = 50_000, 20, 100
 
-# Environment variables that Numba, NumPy and Matplotlib read as whole numbers, each with its smallest and largest value
+# Environment variables that libraries (Numba, NumPy, Matplotlib) read as whole numbers: smallest and largest allowed
 ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402_300_799)}
 
-# Variables that Numba hands to its compiler, which knows their values alone, by the argument that takes them
+# Environment variables that Numba hands to its compiler (LLVM), by the compiler's argument; it alone can check them
 COMPILER_VARIABLES = {"cpu": "NUMBA_CPU_NAME", "features": "NUMBA_CPU_FEATURES"}
-# Program that asks the compiler about them: it complains on standard error
+# Program that makes the compiler check one of them: the compiler reports a wrong value on standard error
 COMPILER_QUESTION = """
 import os, llvmlite.binding as binding
 binding.initialize_native_target()
 binding.Target.from_default_triple().create_target_machine({argument}=os.environ["{name}"])
 """
 
-PACKAGE_FOLDER = Path(__file__).parents[1]  # the folder comparison/
+PACKAGE_FOLDER = Path(__file__).parents[1]  # folder of the package `comparison`
 
 
 class Command(NamedTuple):
-    """A command: the module that has its `main`, and its purpose."""
+    """Command of the program: module with its function `main`, and purpose in words."""
 
     module: str
     purpose: str
 
 
-COMMANDS = {  # commands that belong to no feature
+COMMANDS = {  # commands whose module is not a `command.py` in a folder of the package
     "run": Command("comparison.run", "compare the equations with Exudyn and write the report"),
     "init": Command("comparison.cli.init", "a directory with a study to start from"),
     "animate": Command("multibody.animate", "a film of the motion"),
@@ -57,7 +57,7 @@ COMMANDS = {  # commands that belong to no feature
 
 
 def list_commands() -> dict[str, Command]:
-    """Return all commands by name: those of no feature, then each `command.py` in the folder of a feature."""
+    """Return all commands by name: COMMANDS, then one for each `command.py` in a folder of the package."""
     found = dict(COMMANDS)
     for file in sorted(PACKAGE_FOLDER.glob("*/*/command.py"), key=lambda file: file.parent.name):
         folder = ".".join(file.parent.relative_to(PACKAGE_FOLDER.parent).parts)
@@ -66,29 +66,29 @@ def list_commands() -> dict[str, Command]:
 
 
 def _read_purpose(package: str) -> str:
-    """Return the first sentence of a package's docstring in the form that the help lists."""
+    """Return a package's docstring as the help lists it: small first letter, no final period."""
     text = import_module(package).__doc__ or ""
     return f"{text[:1].lower()}{text[1:].strip().rstrip('.')}"
 
 
 class Clock(NamedTuple):
-    """Wall time and processor time, s, of this process and its children; running children count only on Linux."""
+    """Wall time and processor time, s, of this process and its workers (running ones: on Linux only)."""
 
     wall: float
     processor: float
 
     @classmethod
     def now(cls) -> Clock:
-        """Return the times at this instant."""
+        """Return wall time and processor time of this moment."""
         return cls(time.monotonic(), sum(os.times()[:4]) + _read_processor_time_of_children())
 
     def since(self, earlier: Clock) -> Clock:
-        """Return the times that have passed since another instant."""
+        """Return the wall time and processor time that passed since an earlier reading."""
         return Clock(self.wall - earlier.wall, self.processor - earlier.processor)
 
 
 def _read_processor_time_of_children() -> float:
-    """Return the processor time of running worker processes, s; 0 if the system does not report it."""
+    """Return the processor time so far of worker processes still running, s; 0 if the system does not report it."""
     seconds = 0.0
     for child in sys.modules["multiprocessing"].active_children() if "multiprocessing" in sys.modules else ():
         with suppress(OSError):
@@ -97,11 +97,11 @@ def _read_processor_time_of_children() -> float:
     return seconds
 
 
-_started: list[Clock] = []  # start of the command that this process runs; empty if a program calls it
+_started: list[Clock] = []  # times at which this process's command started; else empty
 
 
 def find_command_start() -> Clock:
-    """Return when this process's command started, before its modules were loaded; now if a program calls it."""
+    """Return the times when the command of this process started; those of now if a program calls the function."""
     return _started.pop() if _started else Clock.now()
 
 
@@ -110,15 +110,15 @@ def run_command(module: str) -> NoReturn:
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTOR_THRESHOLDS)
     _refuse_environment()
-    if not sys.warnoptions:  # Hide warnings of libraries: this program reports what a user must know itself.
+    if not sys.warnoptions:  # Hide warnings of libraries: the commands report themselves what a user must know.
         warnings.simplefilter("ignore")
         os.environ.setdefault("PYTHONWARNINGS", "ignore")  # hide them in worker processes as well
-    sys.modules["__main__"].__spec__ = __spec__  # Worker processes import this module again instead of the command.
+    sys.modules["__main__"].__spec__ = __spec__  # makes worker processes import this module, not the command's
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         main = import_module(module).main
-    except Exception as error:  # A library may fail in any way while it loads.
+    except Exception as error:  # any error: a library may raise any while it loads
         what = "" if isinstance(error, ImportError) else f"{type(error).__name__}: "
         print(f"{SCRIPT_NAME} cannot start: {what}{' '.join(str(error).split())}", file=sys.stderr)
         raise SystemExit(3) from None
@@ -127,7 +127,7 @@ def run_command(module: str) -> NoReturn:
 
 
 def _refuse_environment() -> None:
-    """End the process with a line for each variable whose value keeps a library or its compiler from working."""
+    """End the process, with a line for each, if environment variables have values that libraries cannot use."""
     wrong = {}
     for name, (least, most) in ENVIRONMENT.items():
         text = os.environ.get(name)
@@ -147,7 +147,7 @@ def _refuse_environment() -> None:
 
 
 def main() -> NoReturn:
-    """Run the console script: its first word is the command, the others are for the command."""
+    """Run the console script `phase-resonance`: its first argument names the command, the others are passed on."""
     name = sys.argv[1] if len(sys.argv) > 1 else "help"
     known = list_commands()
     if name in ("-h", "--help", "help"):

@@ -24,13 +24,13 @@ from reference.plausibility import implausible_suite, implausible_values
 from reference.problem import Family, Scene
 from reference.support.arguments import name_some
 
-MAX_LISTED_NAMES = 4  # largest number of names of a list that the terminal shows
-# Columns whose cells list a number of every body or several words, and are folded between them
+MAX_LISTED_NAMES = 4  # largest number of names that a line on the terminal lists
+# Headings of columns whose cells hold one number per body or several words, and may be broken between them
 LISTING_COLUMNS = "change, %", "u_D, %", "median error", "95 %", "uneven", "outcomes"
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
-    """Print what would be computed, and roughly how long it would take."""
+    """Print what the run would compute (option --plan), and roughly how long it would take."""
     for reason, of in _list_refusals(study).items():
         console.print(f"{name_some(of, MAX_LISTED_NAMES)}: {reason}.", soft_wrap=True)
     _print_models(console, study, options.families)
@@ -52,7 +52,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
 
 
 def _print_models(console: Console, study: Study, families: Sequence[Family]) -> None:
-    """Print a table of the models of every file, with their phase pairs."""
+    """Print a table with a row for each scene file and model: number of phase pairs, of those computed, tolerance."""
     table = make_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
     for family in families:
         for model in study.hierarchy:
@@ -66,7 +66,7 @@ def _print_models(console: Console, study: Study, families: Sequence[Family]) ->
 
 
 def _print_analyses(console: Console, study: Study) -> list[Task]:
-    """Print the number of tasks of every analysis, where it is known before the surfaces are; return those tasks."""
+    """Print the number of tasks of every analysis; return the tasks that do not depend on the surfaces."""
     first, counts = [], {}
     for each in select_analyses(study):
         tasks = [] if each.needs_surfaces else each.tasks(study.restrict_to(each.key))
@@ -77,7 +77,7 @@ def _print_analyses(console: Console, study: Study) -> list[Task]:
 
 
 def _print_levels(console: Console, study: Study) -> None:
-    """Print the grids of phases of every level; a study without phases has none."""
+    """Print the number of phases in the grid of each level, level by level; nothing for a study without phases."""
     for level in make_study_levels(study) if study.phased else ():
         models = level.study.hierarchy
         kinds = {"equations" if m.side == "reference" else m.title: len(level.study.phase_indices(m)) for m in models}
@@ -86,7 +86,7 @@ def _print_levels(console: Console, study: Study) -> None:
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
-    """Print how many results of an earlier run are stored."""
+    """Print how many results are stored by an earlier run. batches: tasks of surfaces. others: tasks of analyses."""
     stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
     if results.cache is not None and stored + analyses:
         rest = f", {analyses} of {len(others)} analyses" if others else ""
@@ -95,7 +95,7 @@ def print_stored(console: Console, results: TaskResults, batches: Sequence[Task]
 
 
 def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> None:
-    """Print the properties read of the buildings; then one line for each kind of implausible value."""
+    """Print the properties of the buildings as read from their scenes, then warnings of implausible values."""
     buildings = [replace(describe_building(scene), name=name) for name, scene in named]
     for line in word_buildings(buildings):
         console.print(line, soft_wrap=True, markup=False, highlight=False)
@@ -112,7 +112,7 @@ def print_records(
     console: Console, named: Sequence[tuple[str, Scene]], short: bool = False, is_suite: bool = False
 ) -> None:
     """
-    Print what was read of every recorded motion, once each; short: in one line; named: name and scene of each motion.
+    Print what was read of every recorded motion. named: name and scene of each. short: one line for each.
 
     is_suite: the motions are of one suite, and a line names those that are implausible beside the others.
     """
@@ -124,7 +124,7 @@ def print_records(
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """Print the properties read and implausible values, and the scenes that state only part of what a model needs."""
+    """Print motions and buildings as read, with warnings, and which scenes lack data for the spatial model."""
     print_records(console, [("", scene) for scene in study.scenes])
     print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
@@ -133,7 +133,7 @@ def print_models_left_out(console: Console, study: Study) -> None:
 
 
 def _list_refusals(study: Study) -> dict[str, list[str]]:
-    """Return the reasons why surfaces would have no value, with the scenes and models."""
+    """Return the reasons why models would refuse scenes, each with the scenes and models concerned."""
     refused: dict[str, list[str]] = {}
     for scene in study.scenes:
         for model in models_of(scene, study.hierarchy):
@@ -157,7 +157,7 @@ def _print_reductions(console: Console, study: Study) -> None:
 
 
 def make_table(*headings: str) -> Table:
-    """Return an empty table: words to the left, numbers to the right; if it is too wide, words are folded."""
+    """Return an empty table for the terminal: words align left, numbers right; words are broken if it is too wide."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")

@@ -33,19 +33,20 @@ from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
 
 MODEL_OPTION, LIMIT_OPTION = "--model", "--model-limit"  # options for a user's engine and for its time limit
-MODEL_FORM = "NAME=module:function[@KEY]"  # form of a value of --model in help and messages
+MODEL_FORM = "NAME=module:function[@KEY]"  # form of the value of --model, as help and error messages show it
 DOTTED_NAME = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"  # pattern of Python names joined by dots
+# Pattern of a value of --model, by its parts
 MODEL_SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED_NAME}:{DOTTED_NAME})(?:@(?P<like>.*))?")
-# Names that a user's engine may not have, because they are keys of models or of [acceptance]
+# Names that a user may not give an engine: keys of models, or of the table [acceptance] in scene files
 TAKEN_NAMES = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
-MAX_IMPORT_SECONDS = 60.0  # s of processor time that importing an engine may take
+MAX_IMPORT_SECONDS = 60.0  # s, largest processor time to import a user's engine
 
 Engines = Mapping[str, str | Callable[..., Any]]  # functions of the user, or their import paths, by name
-_make_refusal = partial(SceneError, "command line", MODEL_OPTION)  # makes the error of --model from value and rule
+_make_refusal = partial(SceneError, "command line", MODEL_OPTION)  # makes a SceneError on --model from value, rule
 
 
 def add_models(parser: CommandParser) -> None:
-    """Add the options that enter engines of the user."""
+    """Add the options --model and --model-limit, which enter a user's own engines."""
     parser.add_argument(
         MODEL_OPTION,
         action="append",
@@ -63,7 +64,7 @@ def add_models(parser: CommandParser) -> None:
 
 
 def load_user_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
-    """Return the models that `--model` enters, none on a cluster, which cannot import them. Raises SceneError."""
+    """Return the models of the user's engines that `specs`, the values of --model, state. Raises SceneError."""
     seconds = TIME_LIMIT if limit is None else read_number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
         raise _make_refusal(
@@ -77,7 +78,7 @@ def load_user_models(specs: Sequence[str], limit: str | None = None, scheduler: 
         if names.count(name) > 1:
             raise _make_refusal(spec, f"{name} is there twice: every engine needs a name")
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
-        sys.path.append(folder)  # last in the path, so that a user's file hides no module of the project
+        sys.path.append(folder)  # at the end of Python's path: a user's file then hides no module of the project
     return tuple(
         make_user_model(name, _inspect_function(spec, function), like, seconds)
         for spec, (name, function, like) in zip(specs, parts)
@@ -85,7 +86,7 @@ def load_user_models(specs: Sequence[str], limit: str | None = None, scheduler: 
 
 
 def word_engine_options(engines: Engines) -> list[str]:
-    """Return engines given in Python as words of the command line. Raises SceneError if no worker could import one."""
+    """Return engines given as Python functions as words of --model. Raises SceneError if a worker cannot import one."""
     words = []
     for name, function in engines.items():
         path = function
@@ -100,7 +101,7 @@ def word_engine_options(engines: Engines) -> list[str]:
 
 
 def _split_spec(spec: str) -> tuple[str, str, str]:
-    """Return name, import path of the function, and key of the reference's model that a value of --model states."""
+    """Split a value of --model; return name, import path of the function, and key of the model it is compared with."""
     match = MODEL_SPEC.fullmatch(spec)
     if match is None:
         raise _make_refusal(spec, f"must be {MODEL_FORM}, as mine=my_engine:amplification")
@@ -113,7 +114,7 @@ def _split_spec(spec: str) -> tuple[str, str, str]:
 
 
 def _inspect_function(spec: str, path: str) -> dict[str, Any]:
-    """Return path, argument names and versions of the user's function at `path`; raise SceneError if unusable."""
+    """Import a user's function on trial; return facts about it. Raises SceneError if it is unusable."""
     workers = Workers(1)
     try:
         fault, about = workers.start(partial(inspect_in_worker, path), MAX_IMPORT_SECONDS).result()
@@ -129,7 +130,7 @@ def _inspect_function(spec: str, path: str) -> dict[str, Any]:
 
 
 def inspect_in_worker(path: str) -> tuple[str, dict[str, str]]:
-    """Return why a function cannot be used, or "", and what its numbers depend on. Runs inside a worker process."""
+    """Import a user's function in a worker process; return why it cannot be used, or "", and facts such as versions."""
     module, name = path.split(":")
     with silence_output():
         try:

@@ -239,7 +239,7 @@ MISTAKES = (
             (SEEN + "a_name_of_a_stored_ensemble_does_not_reach_the_terminal_as_it_is",)),
     Mistake("comparison/analyses/ensemble/result.py", "0.0 <= self.error < math.inf", "self.error < math.inf",
             "A negative error of a stored ensemble is believed.", (SEEN + "a_stored_number_that_is_none_is_refused",)),
-    Mistake("comparison/analyses/ensemble/sentences.py", "        if not parts:\n            continue  # No motion has a value of this force.\n", "",
+    Mistake("comparison/analyses/ensemble/sentences.py", "        if not parts:\n            continue", "        if not parts:\n            pass",
             "Supports of which no motion has a value have a sentence without one.",
             (SEEN + "supports_of_which_no_motion_has_a_value_are_not_spoken_of",)),
     Mistake("reference/support/command.py", 'if value == "--":', 'if value == "-":',

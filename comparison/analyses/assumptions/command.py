@@ -34,7 +34,7 @@ ENGINE = "multibody:amplification"  # import path of the engine function that th
 
 @command
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
-    """Vary the scenes of the command line and print the changes of the amplification mu; return the exit code."""
+    """Print how the amplification changes when supports and bodies of each scene are varied; return the exit code."""
     parser = CommandParser(
         "assumptions",
         "How far mu_i of the spatial model is from the translational one, over rings, heights, ovals, offsets, angles.",
@@ -43,7 +43,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     parser.add_out(STORED_RESULTS_HELP)
     parser.add_computing()
     options = parser.parse_args(argv)
-    read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    read_number_of_jobs(options)  # only to refuse a wrong --jobs before scenes are read
     names = options.scenes or builtin_scenes()
     scenes = [_load_spatial_scene(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
@@ -63,7 +63,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def _load_spatial_scene(name: str) -> Scene:
-    """Return a scene that the spatial model can compute, with phases; raise SceneError for any other."""
+    """Return a scene with phases and the data that the spatial model needs; raise SceneError for any other."""
     scene = load_scene(name)
     if scene.recorded:
         rule = "rings and heights are varied at phases, which a record has not: give a scene of two frequencies"
@@ -75,7 +75,7 @@ def _load_spatial_scene(name: str) -> Scene:
 
 
 def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
-    """Print for each variation of a scene the change of every mu_i, in percent, and its uncertainty u_D."""
+    """Print for each variation of a scene the change of each body's amplification, percent, and its uncertainty u_D."""
     cells = [cell for cell in found.cells if cell.scene == scene.name]
     about = f"largest change of mu_i, {found.reading}, against the translational model, per body"
     console.print(f"{scene.title} ({scene.name}): {about}")
@@ -102,7 +102,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
 
 
 def _word_uneven_variation(variation: Variation, radius: float) -> str:
-    """Return in words how a variation narrows the ring, moves bodies or turns them. radius: of the ring, m."""
+    """Return in words how a variation narrows the ring of supports, moves or rotates bodies. radius: of the ring, m."""
     towards = f"at {math.degrees(variation.direction):.0f}°"
     parts = [f"oval {variation.oval:.2g} {towards}"] if variation.oval else []
     parts += [f"{variation.offset * radius:.2g} m {towards}"] if variation.offset else []

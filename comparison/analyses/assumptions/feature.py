@@ -19,7 +19,7 @@ from comparison.report.results import Results
 from comparison.report.section import Report, Section
 from reference.problem import Scene
 
-# Labels of the plots' horizontal axes, by what is varied
+# Label of a plot's horizontal axis by the quantity of the building that is varied
 AXES: dict[Axis, str] = {
     "ring": "radius of the ring of supports, m",
     "height": "heights of the bodies, times the stated ones",
@@ -27,14 +27,14 @@ AXES: dict[Axis, str] = {
     "offset": "offset of bodies in the worst direction, m",
     "yaw": "angle of bodies and links in the worse sense, rad",
 }
-# Bands of a plot within which a change of the amplification mu, in percent, is small
+# Shaded bands of a plot, percent: changes of the amplification inside a band are within the limit of that band
 BANDS = [
     {"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in CHANGE_LIMITS
 ]
 
 
 def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
-    """Return a plot of the largest change of every amplification mu_i over each varied quantity that has an effect."""
+    """Return plots of each body's largest change of amplification, one for each varied quantity with an effect."""
     told = {each.key for each in found.ranges if each.scene == scene.name and not each.no_effect}
     panels = []
     for key in (key for key in AXES if key in told):
@@ -59,7 +59,7 @@ FOUND = ResultField(Assumptions.key, Validity, "how far the paper's assumptions 
 
 
 def section_context(report: Report) -> Mapping[str, Any]:
-    """Return the variables that the section's template reads: plots and lines of every scene that was varied."""
+    """Return the template variables of the report section on assumptions: plots and text of every varied scene."""
     found = FOUND.read_from(report.results)
     shown = []
     for scene in report.study.scenes:
@@ -78,7 +78,7 @@ def section_context(report: Report) -> Mapping[str, Any]:
 
 
 def assumption_verdict(results: Results) -> str:
-    """Return the verdict in the section's title: how much the amplification mu changes when bodies may turn."""
+    """Return the verdict in the section's title: how much the amplification changes when bodies may rotate."""
     return describe_verdict(FOUND.read_from(results))
 
 

@@ -19,16 +19,16 @@ from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UND
 from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
-NO_EFFECT = "no effect by symmetry"  # text in place of a change of the amplification mu that a symmetry makes zero
-Base = Literal["the translational model", "the stated spatial model"]  # model from whose mu a change is taken
+NO_EFFECT = "no effect by symmetry"  # text in place of a change of amplification that a symmetry makes zero
+Base = Literal["the translational model", "the stated spatial model"]  # model that a change is relative to
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
-SHARE = CHANGE_LIMITS[0]  # relative change of mu_i above which an assumption counts as false
+SHARE = CHANGE_LIMITS[0]  # largest relative change of a body's amplification with which an assumption holds
 
 
 @dataclass(frozen=True)
 class Change:
-    """Largest change of mu of one body over the phase pairs: signed size, error, reading of (5.1), base model."""
+    """Largest change of one body's amplification over the phase pairs, with sign and error, and its base model."""
 
     scene: str
     body: int
@@ -41,7 +41,7 @@ class Change:
 
     @property
     def verdict(self) -> str:
-        """Return "met", "not met (by ...)" or "not compared": whether the change, error included, is at most SHARE."""
+        """Return "met" if the change plus its error is at most SHARE, else "not met (by ...)" or "not compared"."""
         if self.no_effect or not math.isfinite(self.size + self.error):
             return "not compared"
         if hides_limit(abs(self.size), self.error, SHARE):
@@ -51,16 +51,16 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return the largest change of mu_i over the phase pairs relative to `stated`, or to the translational model."""
+    """Return a body's largest change of amplification over the phase pairs; base: `stated`, or translational model."""
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
         before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
-        if len(before) < len(sizes):  # by symmetry the change is the same at all phase pairs: one was computed
+        if len(before) < len(sizes):  # by symmetry equal at all phase pairs: only the first was computed
             before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
         sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
         base = STATED
-    place = int(np.argmax(np.abs(sizes)))  # argmax returns the place of a NaN, so that nothing is claimed
+    place = int(np.argmax(np.abs(sizes)))  # index of a NaN, if there is one: then the change is unknown
     return Change(
         cell.scene, body, float(sizes[place]), float(errors[place]), found.phases[place], found.reading, base,
         cell.no_effect,
@@ -68,7 +68,7 @@ def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: Ass
 
 
 def describe_change(change: Change) -> str:
-    """Return a phrase: by how much the amplification mu_i changes, with error, reading, base model and phase pair."""
+    """Return a phrase: by how much a body's amplification changes, relative to which model and at which phase pair."""
     if change.no_effect:
         return f"mu_{change.body}: {NO_EFFECT}"
     if not math.isfinite(change.size):
@@ -80,7 +80,8 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Phrases by varied quantity: mu beyond the limit at the first size; at zero only; up to {holds}; at {fails}; at all
+# Five phrases by varied quantity: the amplification is off its limits at the first size; is within them at zero only;
+# is within them up to {holds}; is off them at {fails}; is within them at all sizes tried
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
              "at {fails:g} m", "every smaller one tried too"),
@@ -103,7 +104,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
 
 
 def describe_range(validity: ValidityRange) -> str:
-    """Return a phrase: up to which size of a variation mu_i stays within a share of the translational result."""
+    """Return a phrase: up to which size of a variation a body's amplification changes by at most `validity.share`."""
     none, zero, holds, fails, every = WORDS[validity.key]
     name = f"mu_{validity.body}"
     if validity.no_effect:
@@ -125,14 +126,14 @@ def describe_range(validity: ValidityRange) -> str:
     return f"{name} {verb} {100.0 * validity.share:g} % {where.format(**values)}"
 
 
-VARIED: dict[Axis, str] = {  # what varies along each axis, in words
+VARIED: dict[Axis, str] = {  # name of each varied quantity in a phrase
     "ring": "the radius of the ring", "height": "the heights", "oval": "an oval ring", "offset": "offsets of bodies",
     "yaw": "turned bodies and links",
 }  # fmt: skip
 
 
 def range_cell(validity: ValidityRange) -> str:
-    """Return the table text of a validity range: last size within the share, first beyond it, or NO_EFFECT."""
+    """Return a table cell: last size of a variation within the limit on the change, first size beyond; or NO_EFFECT."""
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
@@ -144,7 +145,7 @@ def range_cell(validity: ValidityRange) -> str:
 
 
 def describe_variation(scene: Scene, variation: Variation) -> str:
-    """Return in words how a variation narrows the ring, moves bodies or turns them."""
+    """Return in words how a variation narrows the ring of supports, moves bodies or rotates them."""
     radius, towards = scene.support_radius or 0.0, f"{math.degrees(variation.direction):.0f} degrees"
     parts = [f"ring narrowed by {variation.oval:.2g} of its radius along {towards}"] if variation.oval else []
     if variation.offset:
@@ -155,7 +156,7 @@ def describe_variation(scene: Scene, variation: Variation) -> str:
 
 
 def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
-    """Return in words by how much a trial in one direction changed every amplification mu_i, or NO_EFFECT."""
+    """Return in words how a variation in one direction changed each body's amplification, or NO_EFFECT."""
     what = describe_variation(scene, trial.variation)
     if trial.no_effect:
         return f"{what}: {NO_EFFECT}"
@@ -167,12 +168,12 @@ def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
 
 
 def _word_worst(trial: DirectionTrial) -> str:
-    """Return that a direction is the worst; one without a value is only taken for it."""
+    """Return "the worst" for a direction, or "taken for the worst" if its change of amplification is not known."""
     return "the worst" if np.isfinite(trial.change).all() else "taken for the worst"
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
-    """Return a line each for oval, offset and yaw: how the first size tried changes mu in the worst direction."""
+    """Return a line each for oval, offset and yaw: the amplification's change at the first size, worst direction."""
     lines = []
     for key in DIRECTED:
         trials = [each for each in found.directions if (each.scene, each.key) == (scene.name, key)]
@@ -189,7 +190,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
-    """Return a line on assumption (iv): how shortening of bars changes mu; none unless both UNDER_LOAD were tried."""
+    """Return a line: how shortening of bars changes the amplification; none unless both UNDER_LOAD were computed."""
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
@@ -203,7 +204,7 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
 
 
 def assumption_lines(found: Validity, scene: Scene) -> list[str]:
-    """Return the lines below the plots: no effect by symmetry, worst directions, bars under load, lost trials."""
+    """Return the text lines below the plots: worst directions, bars under load, variations without effect or value."""
     blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
     lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
     cells = [cell for cell in found.cells if cell.scene == scene.name]
@@ -213,13 +214,13 @@ def assumption_lines(found: Validity, scene: Scene) -> list[str]:
 
 
 def list_turning_changes(found: Validity, scene: str) -> list[Change]:
-    """Return how much turning of the bodies changes each mu in the scene as stated; empty if it was not computed."""
+    """Return how rotation of bodies changes each amplification in the scene as stated; empty if it was not computed."""
     stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
     return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
 
 
 def describe_verdict(found: Validity) -> str:
-    """Return one line: how bodies that turn, excluded by assumption (vi), change mu in every scene as stated."""
+    """Return one line: how rotation of bodies, excluded by assumption (vi), changes the amplification, by scene."""
     parts = []
     for scene in dict.fromkeys(cell.scene for cell in found.cells):
         changes = list_turning_changes(found, scene)

@@ -26,18 +26,18 @@ from comparison.study.models import Model
 from reference.problem import Scene, SceneError
 from reference.problem.reductions import body_cannot_tilt
 
-DURATION = 6.0  # s, duration of motion: the loading is strongest in its first seconds
-CHANGE_LIMITS = (0.01, 0.05)  # limits on the relative change of mu_i within which an assumption holds
-SUFFICIENT_ERROR = 0.2 * CHANGE_LIMITS[0]  # relative error of mu_i that suffices to compare it with these limits
-DIRECTION_PHASES = ((2.0, 0.7),)  # rad, phase pair at which the directions are compared
-DIRECTION_V_REG = 1e-2  # m/s, ten times that of the study at a third of its cost: the worst direction is the same
-# The search stops when the smallest failing size is within this factor of the largest passing one.
+DURATION = 6.0  # s, longest duration of motion computed: the loading is strongest in the first seconds
+CHANGE_LIMITS = (0.01, 0.05)  # relative changes of amplification up to which an assumption holds, strict and loose
+SUFFICIENT_ERROR = 0.2 * CHANGE_LIMITS[0]  # relative error of the amplification small enough for these limits
+DIRECTION_PHASES = ((2.0, 0.7),)  # rad, phase pair at which the directions of a variation are compared
+DIRECTION_V_REG = 1e-2  # m/s, ten times the study's v_reg: a third of its cost, the same worst direction is found
+# The search for the size at which a limit is exceeded ends once its bounds differ by less than this factor.
 BISECTION_RATIO = 1.25
 
 
 @dataclass(frozen=True)
 class Trial:
-    """mu of N bodies at M phase pairs (M, N) under a variation (None: translational model), errors, cost in s."""
+    """Amplification mu and error, (M, N), of N bodies at M phase pairs, scene varied (None: as stated); cost in s."""
 
     variation: Variation | None
     mu: Array
@@ -47,14 +47,14 @@ class Trial:
     cost: float
 
     def __post_init__(self) -> None:
-        """Refuse arrays and statuses whose sizes disagree."""
+        """Raise ValueError if the sizes of mu, error and status disagree."""
         if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
             raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
 
 
 @result
 class DirectionTrial:
-    """Change of mu by a variation in one direction, at one phase pair with a larger v_reg: to find the worst one."""
+    """Change of amplification by a variation in one direction, to find the worst: at one phase pair, a large v_reg."""
 
     scene: Annotated[Text, "name of the scene"]
     key: Annotated[Axis, "what varies"]
@@ -67,26 +67,26 @@ class DirectionTrial:
 
 @dataclass(frozen=True)
 class TaskTrials:
-    """Findings of one task: variations tried, the worst directions sought first, and an error message, or ""."""
+    """Results of one task: a trial of each variation, the directions compared before, and an error message or ""."""
 
     trials: tuple[Trial, ...]
     directions: tuple[DirectionTrial, ...] = ()
     error_message: str = ""
 
 
-# Arguments of a task: scene, both models, what is tried, relative tolerance, phase pairs, largest number of sizes tried
+# Arguments of a task: scene, both engine models, variation or varied axes, tolerance, phase pairs, most sizes tried
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
-    """Compute mu under one variation, or under several sizes along the worst directions, in a worker process."""
+    """Compute (in a worker process) amplifications for one variation, or several sizes in each worst direction."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
-    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # results go by name
+    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # keep its name as key
     pairs = np.array(phases)
     if what is None:
         return TaskTrials((amplification_of(short, translational, None, tolerance, pairs),))
     if isinstance(what, Variation):
-        # One phase pair verifies that symmetry leaves the amplification mu unchanged.
+        # One phase pair suffices to verify that the amplification is unchanged where symmetry says so.
         checked = pairs[:1] if blind_by_symmetry(short, what) else pairs
         return TaskTrials((amplification_of(short, spatial, what, tolerance, checked),))
     plain = amplification_of(short, translational, None, tolerance, pairs)
@@ -103,7 +103,7 @@ def amplification_of(
     scene: Scene, model: Model, variation: Variation | None, tolerance: float, phases: Array, **settings: object
 ) -> Trial:
     """
-    Return mu of a model for a scene with a variation, or as stated for None; settings replace the model's own.
+    Return the amplification by a model of the varied scene (None: as stated); settings replace the model's own.
 
     A variation that makes no valid scene, such as one whose support would carry nothing, has the status "refused".
     """
@@ -112,7 +112,7 @@ def amplification_of(
     except SceneError as error:
         nothing = np.full((len(phases), len(scene.bodies)), np.nan)
         return Trial(variation, nothing, nothing, ("refused",) * len(phases), str(error), 0.0)
-    whole = {"full": True} if body_cannot_tilt(varied) else {}  # no reduction: it would presume assumption (vi)
+    whole = {"full": True} if body_cannot_tilt(varied) else {}  # a reduced model would presume assumption (vi)
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
@@ -120,7 +120,7 @@ def amplification_of(
 
 def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
     """
-    Return a trial of mu for every direction of each varied quantity; the one with the largest change is marked worst.
+    Compute each quantity's variation in every direction; return the changes, the largest of a quantity marked worst.
 
     A direction without effect by symmetry is listed and not computed.
     """
@@ -148,14 +148,14 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
 def follow_direction(
     scene: Scene, spatial: Model, key: Axis, worst: Variation, plain: Trial, tolerance: float, phases: Array, sizes: int
 ) -> Iterator[Trial]:
-    """Yield trials of growing or shrinking sizes in one direction until each limit on the change of mu is bracketed."""
+    """Yield trials of several sizes in one direction until each limit on the change of amplification is bracketed."""
     tried: list[tuple[float, Array]] = []
     size: float | None = FIRST_SIZE[key]
     while size is not None and len(tried) < sizes:
         variation = with_size(worst, key, size)
         trial = amplification_of(scene, spatial, variation, tolerance, phases)
         if trial.error_message and tried:
-            return  # At a larger size a support would carry nothing.
+            return  # At this larger size a support would carry no load.
         change, uncertainty = compute_relative_change(trial, plain)
         tried.append((size, (np.abs(change) + uncertainty).max(axis=0)))
         yield trial
@@ -164,9 +164,9 @@ def follow_direction(
 
 def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
     """
-    Return the next size of a variation to try: smaller until a limit on mu is met, then between, then larger; or None.
+    Return the next size of a variation to try in bracketing the sizes at which CHANGE_LIMITS are exceeded; or None.
 
-    tried: sizes, each with the largest change of mu of every body, uncertainty included, NaN for no value.
+    tried: sizes, each with the largest change of amplification of every body plus its uncertainty, NaN for no value.
     """
     between, smaller, larger = [], [], []
     for body, share in product(range(len(tried[0][1])), CHANGE_LIMITS):
@@ -186,13 +186,13 @@ def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: fl
 
 
 def compute_relative_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
-    """Return the relative change (M, N) of mu from the trial `plain`, at its first M phase pairs, and the error."""
+    """Return the relative change of amplification from `plain` (first M pairs) to `trial`, and its error, (M, N)."""
     base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base
 
 
 def without_answer(task: Arguments, failed: TaskResult) -> TaskTrials:
-    """Return trials of NaN for a task that failed, with its outcome and message."""
+    """Return trials with amplification NaN for a task that failed, with its outcome and error message."""
     scene, _, what, _, phases, _ = task
     tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
     nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)

@@ -37,15 +37,15 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
-# rad; rotation changes the amplification mu most at the first phase pair in fig3-I, at the second in fig3-II
+# rad, phase pairs computed; rotation changes the amplification most at the first in fig3-I, at the second in fig3-II
 PHASES = ((0.0, 0.0), (2.0, 0.7))
 MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
-SIZES, MORE_SIZES = 2, 8  # number of sizes along the worst direction of an assumption: in a study, in the command
+SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation tried in its worst direction: by a study, by the command
 
 
 @result
 class AssumptionCell:
-    """Change of mu from translational to spatial model under a variation, as integrated (v_reg = 1 mm/s)."""
+    """Change of amplification from the translational model to the spatial model of a varied scene; v_reg is 1 mm/s."""
 
     scene: Annotated[Text, "name of the scene"]
     variation: Annotated[Variation, "what is varied"]
@@ -58,21 +58,21 @@ class AssumptionCell:
     """why symmetry leaves the variation without effect: computed at the first phase pair as a control, no evidence"""
 
     def largest(self, body: int) -> float:
-        """Return the largest |change| of the amplification mu_i over the phase pairs; NaN if one has no value."""
+        """Return the largest |change| of a body's amplification over the phase pairs; NaN if a pair has no value."""
         return float(np.abs([row[body - 1] for row in self.change]).max())
 
     def error_estimate(self, body: int) -> float:
-        """Return the largest uncertainty of the amplification mu_i over the phase pairs; NaN if one has no value."""
+        """Return the largest uncertainty of a body's change of amplification over the phase pairs, or NaN."""
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:
-        """Return whether mu_i changes by at most `share` at every phase pair, uncertainty included."""
+        """Return whether a body's amplification changes by at most `share`, with uncertainty, at every phase pair."""
         return self.largest(body) + self.error_estimate(body) <= share
 
 
 @result
 class ValidityRange:
-    """Range of one varied quantity in which mu of one body stays within a share of the translational result."""
+    """Range of a varied quantity in which a body's amplification stays within a share of the translational result."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -92,7 +92,7 @@ def find_validity_ranges(
     scene: Scene, cells: Sequence[AssumptionCell], directions: Sequence[DirectionTrial] = ()
 ) -> list[ValidityRange]:
     """
-    Return where every mu_i stays within each of CHANGE_LIMITS, over rings, heights, ovals, offsets and angles.
+    Return, by body and limit of CHANGE_LIMITS, the range of each quantity in which the amplification stays within it.
 
     All else is as stated, and directions are the worst. cells, directions: those of other scenes are left out. A trial
     that symmetry makes blind counts for nothing. Ovals, offsets and angles are there only where one was tried.
@@ -116,7 +116,7 @@ def find_validity_ranges(
 
 
 def list_cells_by_size(scene: Scene, cells: Sequence[AssumptionCell], key: Axis) -> list[tuple[float, AssumptionCell]]:
-    """Return size and result of every trial in which `key` alone varies, by rising size; rings by falling size."""
+    """Return size and result of each variation of `key` alone, sorted by rising size, rings by falling radius."""
     as_stated = {key: getattr(Variation(), key), "direction": 0.0}
     alone = [c for c in cells if c.scene == scene.name and replace(c.variation, **as_stated) == Variation()]
     line = [(abs(getattr(cell.variation, key)), cell) for cell in alone]
@@ -124,14 +124,14 @@ def list_cells_by_size(scene: Scene, cells: Sequence[AssumptionCell], key: Axis)
 
 
 def direction_of(variation: Variation, key: Axis) -> float | None:
-    """Return the direction of an oval or an offset, rad, the sign of a yaw, or None for what has no direction."""
+    """Return the direction of an oval ring or an offset, rad; the sign of a yaw; None for rings and heights."""
     if key not in DIRECTED:
         return None
     return float(np.sign(variation.yaw)) if key == "yaw" else variation.direction
 
 
 def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any, bool]:
-    """Return the last size up to which mu changes by at most `share`, the first that fails, and if nothing tells."""
+    """Return the last size whose change is within `share`, the first that is not, and whether that one is unknown."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     fails, cell = line[len(held)] if len(held) < len(line) else (None, None)
     untold = cell is not None and hides_limit(cell.largest(body), cell.error_estimate(body), share)
@@ -139,13 +139,13 @@ def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, shar
 
 
 def hides_limit(size: float, error: float, limit: float) -> bool:
-    """Return whether a size is not known, or within an error larger than the limit of being at most the limit."""
+    """Return whether a change is unknown, or has an error so large that one cannot tell if it exceeds the limit."""
     return not math.isfinite(size + error) or (error > limit and size - error <= limit)
 
 
 @result
 class Assumption:
-    """One of the paper's assumptions (i) to (vi), and how far the engine's models drop it."""
+    """One of the paper's assumptions (i) to (vi), and whether the engine's models do without it."""
 
     number: Annotated[str, "of the paper"]
     statement: Annotated[str, "what the paper assumes"]
@@ -215,7 +215,7 @@ ASSUMPTIONS = (
 
 @result
 class Validity:
-    """Extent to which the paper's assumptions hold: what was varied, the changes of mu, and the ranges that hold."""
+    """Extent to which the paper's assumptions hold: variations tried, changes of amplification, ranges of validity."""
 
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]
@@ -228,7 +228,7 @@ class Validity:
 
 @dataclass(frozen=True)
 class Assumptions(MappedAnalysis[Validity]):
-    """Analysis that tries the paper's assumptions: it varies each scene and computes by how much mu changes."""
+    """Analysis of the paper's assumptions: it varies each scene and computes how the amplification changes."""
 
     key, stage, needs_compiled_reference = "assumptions", "assumptions", False
     function, without_value = staticmethod(answer_trials), staticmethod(without_answer)
@@ -239,7 +239,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
-        Yield the arguments of a task for each trial, in every scene with phases that has both models of the engine.
+        Yield the arguments of every task, in scenes with phases that both engine models apply to: one per variation.
 
         First None, the translational model of the scene itself, then the variations of the spatial one, then groups of
         axes along whose worst direction sizes are tried: one task each. UNDER_LOAD is added where bars give way.
@@ -257,12 +257,12 @@ class Assumptions(MappedAnalysis[Validity]):
                 yield scene, (translational, spatial), what, tolerance, self.phases, self.sizes
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
-        """Return by how much every variation changes mu, and the ranges that hold; None without both engine models."""
+        """Return every variation's change of amplification and the validity ranges; None without both engine models."""
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)
         for (scene, _, what, *_), answer in zip(self.task_arguments(study), answers):
-            if what is None:  # This task comes before the variations of its scene.
+            if what is None:  # translational model of the scene as stated; comes before the variations of this scene
                 (plain,) = answer.trials
                 continue
             cells += [_make_cell(scene, trial, plain) for trial in answer.trials]
@@ -277,7 +277,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
-    """Return the change of mu by a variation, from `plain` without it, with the symmetry that makes it zero, if any."""
+    """Return the change of amplification from `plain`, the translational model, to `trial`; symmetry named if zero."""
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""

@@ -16,16 +16,16 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-ROUNDING = 1e-9  # tolerance of a plane of symmetry, as a share of the ring's radius or of a right angle
-# Reason why turning the links about the vertical changes nothing
+ROUNDING = 1e-9  # tolerance in tests of symmetry: share of the ring's radius (offsets) or of 90 degrees (angles)
+# Reason why rotation of the links about the vertical has no effect, as users read it
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
-# Reason why no body turns about the vertical
+# Reason why no body rotates about the vertical, as users read it
 ONE_PLANE = "loading and bodies are their own mirror images about the plane of the motion: nothing turns out of it"
 
 
 @result
 class Variation:
-    """Change of a scene: another ring of supports, other heights, unevenness, or loaded bars."""
+    """Change of a scene: ring and number of supports, heights, offset and yaw of bodies, effect of load on bars."""
 
     ring: Annotated[float, "radius of the ring, as a multiple of the stated one"] = 1.0
     height: Annotated[float, "heights of the bodies, as multiples of the stated ones"] = 1.0
@@ -60,41 +60,41 @@ class Variation:
         return scene.with_values(values)
 
 
-FEW = (  # variations that a study tries in each scene
+FEW = (  # variations of ring and height that a study computes in each scene
     *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
     Variation(height=0.0),
 )
-MANY = (  # variations that `phase-resonance assumptions` tries in each scene
+MANY = (  # variations that the command `phase-resonance assumptions` computes in each scene
     *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
-    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring the scenes would overturn.
+    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring (0.5) buildings overturn.
     Variation(supports=3),
 )
-UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # variations of scenes with compliant bars
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # load effects tried if bars are compliant
 
-Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # quantity of the building that a variation changes
-DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # variations that are first tried in several directions
-# First size tried of each variation, in several directions
+Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # quantity of the building that is varied
+DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # varied in several directions to find the worst one
+# First size of each variation, at which its directions are compared (an angle also at half of it)
 FIRST_SIZE = {
     "oval": 0.5,  # share of the ring's radius
-    "offset": 0.1,  # share of the ring's radius, a twentieth of the width: codes assume it as accidental
+    "offset": 0.1,  # share of the ring's radius: about the accidental eccentricity of design codes, width / 20
     "yaw": 0.2,  # rad
 }
-# Smallest size tried of each variation, even if no assumption holds there
+# Smallest size of each variation; smaller ones are not tried, even if the assumption fails at this one
 SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}
-# Largest size tried of each variation: beyond it the building is another one, or supports lift off
+# Largest size of each variation; with larger ones supports lift off, or the building is a different one
 LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}
-DIRECTIONS = 4  # number of directions tried in half a turn, or in a quarter of a turn where symmetry makes that enough
+DIRECTIONS = 4  # number of directions compared in 180 degrees, or in 90 degrees where symmetry makes these enough
 
 
 def with_size(variation: Variation, key: Axis, size: float) -> Variation:
-    """Return the variation with another size in the same direction; an angle keeps its sign."""
+    """Return the variation with the size of its quantity `key` replaced; direction and sign stay."""
     changes: dict[str, Any] = {key: math.copysign(size, getattr(variation, key))}
     return replace(variation, **changes)
 
 
 def trials_of(scene: Scene, key: Axis) -> list[Variation]:
     """
-    Return variations of one quantity in several directions, no two of which a symmetry of the scene makes equivalent.
+    Return variations of one quantity (oval, offset or yaw) in several directions, no two equivalent by symmetry.
 
     An offset has a full turn of directions and an oval half a one. A half turn of the loading makes opposite offsets
     equivalent, mirror images about both axes or about the plane of the motion make a quarter of a turn enough. An angle
@@ -104,7 +104,7 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
     if key == "yaw":
         return [Variation(yaw=part * size) for part in (1.0, -1.0, 0.5, -0.5)]
     plane = plane_of_symmetry(scene)
-    if plane is not None:  # An offset along the plane has no effect by symmetry.
+    if plane is not None:  # one direction more: an offset in the plane has no effect
         start, turn, count = plane, math.pi / 2.0, DIRECTIONS + 1
     elif has_one_axis_per_harmonic(scene) and is_mirror_symmetric(scene):
         start, turn, count = 0.0, math.pi / 2.0, DIRECTIONS
@@ -118,28 +118,28 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
 
 
 def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
-    """Return why symmetry makes mu of both engine models equal, spatial and translational; "" where it does not."""
+    """Return why symmetry makes the amplifications by both engine models equal, spatial and translational; else ""."""
     if variation.bars is not None or any(link is not None for link in scene.bar_links):
-        return ""  # Bars that bend tilt what stands on them, even in a plane.
+        return ""  # Bars that bend tilt the body on them, even in plane motion: no symmetry.
     if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):
         return TURNED_LINK
     if scene.isolator.support_stiffness is not None or scene.dry_friction.depends_on_load:
-        return ""  # Unequal loads of the supports tilt the platform or change the friction.
+        return ""  # no symmetry: unequal loads of the supports tilt the platform or change friction
     try:
         varied = variation.of(scene)
-    except SceneError:  # no valid scene, of which the trial says more
+    except SceneError:  # the varied scene is invalid: computing it will give the reason
         return ""
     return "" if plane_of_symmetry(varied) is None else ONE_PLANE
 
 
 def are_turned_links_the_same(scene: Scene) -> bool:
-    """Return whether links and boxes above the platform look the same at every angle about the vertical."""
+    """Return whether links are as stiff and damped along x as along y, and the boxes above the platform square."""
     links = itertools.chain(scene.stiffness, scene.damping)
     return all(x == y for x, y in links) and all(body.size is None or is_square(body.size) for body in scene.bodies[1:])
 
 
 def is_square(size: Any) -> bool:
-    """Return whether a box is as long as it is wide."""
+    """Return whether a box of that size is square in plan."""
     return bool(size[0] == size[1])
 
 
@@ -170,5 +170,5 @@ def plane_of_symmetry(scene: Scene) -> float | None:
 
 
 def is_multiple(angle: float, unit: float) -> bool:
-    """Return whether an angle is a whole number of units, to rounding."""
+    """Return whether an angle is an integer multiple of `unit`, within ROUNDING."""
     return abs(angle / unit - round(angle / unit)) <= ROUNDING

@@ -38,20 +38,20 @@ from reference.problem import Outcome, Scene, phase_grid
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 from reference.problem.symmetry import distinct_pairs
 
-MAX_GRID = 16  # largest number of phases per axis for the small equations
-SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # m/s, values of v_c
-REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, values of v_reg
+MAX_GRID = 16  # largest number of phases alpha1, and as many alpha2, for the small-displacement equations
+SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # m/s, cutoff speeds
+REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, regularization speeds of the friction law
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
-MAX_YIELDING_GRID = 8  # largest number of phases per axis for the exact equations with friction that yields
-OTHER_DAMPING = 0.05  # damping ratio of the links in a second curve over u_y; 0 where the scene's links are damped
-# rad, phase pairs of the engine: no two related by a symmetry
+MAX_YIELDING_GRID = 8  # as MAX_GRID, for exact equations with elastic-plastic friction
+OTHER_DAMPING = 0.05  # damping ratio of all links in a second curve over u_y of undamped scenes; 0 for damped ones
+# rad, phase pairs for the engine and the exact equations; no symmetry makes two of them equivalent
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
-ENGINE_PERIODS = 3.0  # duration in periods of the slower harmonic: the loading is strongest in them
+ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harmonic: in these the loading is strongest
 
 
 @result
 class ConditioningCurve:
-    """Statistics of mu of one body by one model over falling v_c, v_reg or u_y, or of its literal supremum, at 0."""
+    """Statistics over phases of one body's amplification, at falling v_c, v_reg or u_y; at 0: of the supremum."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -82,25 +82,25 @@ class ConditioningCurve:
 
 
 def moves_in_space(scene: Scene) -> bool:
-    """Return whether a scene has rigid dry friction and the data of bodies that can turn."""
+    """Return whether a scene has rigid dry friction and the data that the spatial model needs."""
     return has_dry_friction(scene) and has_spatial_data(scene)
 
 
 def has_yielding_friction_below_links(scene: Scene) -> bool:
-    """Return whether friction yields elastically below at least one link, whose damping can then be varied."""
+    """Return whether friction is elastic before it slides and there is a link, whose damping can be varied."""
     return has_yielding_friction(scene) and len(scene.bodies) > 1
 
 
 class Question(NamedTuple):
     """
-    Model whose mu is computed at ever smaller v_c, v_reg or u_y, and the keyword argument that sets these.
+    Model whose amplification is computed at ever smaller v_c, v_reg or u_y, and the keyword that sets these.
 
     max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a grid. otherwise: whether the links
     are damped by another ratio than the scene's.
     """
 
     model: str
-    base: Mapping[str, Any]  # settings of the equations whose literal supremum is the curve's reference
+    base: Mapping[str, Any]  # settings of the equations whose literal supremum the curve is compared with
     side: ModuleType
     settings: Mapping[str, Any]
     argument: Literal["cutoff", "regularization", "yield_displacement"]
@@ -110,7 +110,7 @@ class Question(NamedTuple):
     otherwise: bool = False
 
     def speeds_of(self, scene: Scene) -> tuple[float, ...]:
-        """Return the speeds, m/s, or the yield displacements, m, the scene's own among these."""
+        """Return the speeds, m/s, or yield displacements, m (with the scene's own), at which the model is computed."""
         own = self.own_yield(scene)
         return self.speeds if own is None else tuple(sorted({*self.speeds, own}, reverse=True))
 
@@ -119,11 +119,11 @@ class Question(NamedTuple):
         return float(f"{scene.yield_displacement:.9g}") if self.argument == "yield_displacement" else None
 
     def damping_of(self, scene: Scene) -> float | None:
-        """Return the damping ratio that replaces the scene's in every link; None where the scene's stays."""
+        """Return the damping ratio of every link that replaces the scene's in this question; None if none does."""
         return (0.0 if scene.damping.any() else OTHER_DAMPING) if self.otherwise else None
 
     def with_damping(self, scene: Scene) -> Scene:
-        """Return the scene, of the same name, with the ratio of `damping_of` in every link, or unchanged for None."""
+        """Return the scene with the damping ratio of `damping_of` in every link; unchanged if that is None."""
         damping = self.damping_of(scene)
         if damping is None:
             return scene
@@ -131,27 +131,27 @@ class Question(NamedTuple):
         return scene.with_values(links | {"name": scene.name})
 
     def choose_grid(self, study: Study) -> int:
-        """Return the phases per axis: the study's largest nested grid up to `max_grid`; 0 stands for ENGINE_PHASES."""
+        """Return the number of phases per axis: of the study's largest nested grid within `max_grid`, or `max_grid`."""
         affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
         return max(affordable, default=self.max_grid)
 
     def answer(self, scene: Scene, phases: Array, speed: float) -> Any:
-        """Return the model's mu of a scene at phases, (P, 2) in rad, with the varied argument set to one speed."""
+        """Return the model's amplification at phases (P, 2), rad, and one speed, m/s, or yield displacement, m."""
         if self.argument == "yield_displacement":
             return self.side.amplification(scene.with_yield_displacement(speed), phases, **self.settings)
         return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
 
 
-# Keyword arguments of the models: equations by the reference, and the multibody engine with and without rotation
+# Keyword arguments for amplification() by model; those with "equations" are for the reference's function
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
 EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # for reference.amplification
-YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # where friction yields
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # elastic-plastic friction
 TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
 SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
-OVER_YIELDS = Question(  # amplification mu over the yield displacement of elastic friction
+OVER_YIELDS = Question(  # how the amplification depends on the yield displacement of friction
     "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
 )
-# Models whose mu is computed at several v_c, v_reg or u_y, with the literal supremum that it is compared with
+# Models whose amplification is computed at several v_c, v_reg or u_y and compared with the literal supremum
 QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, MAX_GRID),
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, MAX_GRID),
@@ -161,14 +161,14 @@ QUESTIONS = (
     OVER_YIELDS,
     OVER_YIELDS._replace(applies=has_yielding_friction_below_links, otherwise=True),
 )
-# Symbol of the speed, m/s, or displacement, m, that a keyword argument sets
+# For each keyword argument of amplification(): symbol of the speed, m/s, or displacement, m, that it sets
 SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
     "cutoff": "v_c",
     "regularization": "v_reg",
     "yield_displacement": "u_y",
 }
 
-Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases per axis (0 for ENGINE_PHASES)
+Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases per axis (0: ENGINE_PHASES)
 
 
 class _Answers(NamedTuple):
@@ -188,7 +188,7 @@ class _Answers(NamedTuple):
 
 
 class _SpeedStatistics(NamedTuple):
-    """Statistics of one body at one speed, as `ConditioningCurve` lists them; NaN without an answer."""
+    """Statistics of one body's amplification at one speed, as `ConditioningCurve` lists them; NaN if unknown."""
 
     mean: float = np.nan
     mean_error: float = np.nan
@@ -200,7 +200,7 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return curves of mu of every body over v_c, v_reg or u_y; for v_c and u_y also of the literal supremum, at 0."""
+    """Return each body's curve of amplification over v_c, v_reg or u_y; for v_c and u_y also of its supremum, at 0."""
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
@@ -213,12 +213,12 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
-    """Return mu at every speed and the equations' literal supremum; NaN at phase pairs where either is missing."""
+    """Return amplifications at every speed and their literal supremum; NaN at phase pairs where one is missing."""
     phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
     mu, error = (np.stack([getattr(each, part) for each in listed]) for part in ("mu", "error"))
-    known = np.isfinite(mu).all(axis=-1)  # (S, P); a speed without any value excludes no phase pair
+    known = np.isfinite(mu).all(axis=-1)  # (S, P); ignore, below, speeds at which all pairs lack a value
     complete = known[known.any(axis=1)].all(axis=0) & np.isfinite(supremum.mu).all(axis=-1)
     mu[:, ~complete], supremum.mu[~complete] = np.nan, np.nan
     statuses = [str(status) for each in (supremum, *listed) for status in each.status]
@@ -231,7 +231,7 @@ def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], g
 
 
 def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
-    """Return the statistics of mu of one body over the phases at every speed, also relative to the literal supremum."""
+    """Return the curve of one body: statistics over phases of its amplification, also relative to the supremum."""
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     over_supremum = mu / supremum - 1.0
@@ -246,7 +246,7 @@ def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: 
 def _statistics_at_speed(
     mu: Array, error: Array, over_supremum: Array, over_supremum_error: Array, answers: _Answers, grid: int
 ) -> _SpeedStatistics:
-    """Return the statistics over P phase pairs of mu and of mu / supremum - 1, both (P,) and with errors."""
+    """Return statistics over P phase pairs of the amplification mu and of over_supremum, mu / supremum - 1, (P,)."""
     known = np.isfinite(mu)
     if not known.any():
         return _SpeedStatistics()
@@ -265,7 +265,7 @@ def _statistics_at_speed(
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:
-    """Return curves of NaN for every body of a task that failed, with the reason."""
+    """Return a curve with NaN in place of statistics for every body of a task that failed, with the reason."""
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds_of(scene)
     rows = [_SpeedStatistics()] * len(speeds)
@@ -275,7 +275,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
 def _fill_curve(
     task: Arguments, body: int, speeds: tuple[float, ...], rows: Sequence[_SpeedStatistics], pairs: int, reason: str
 ) -> ConditioningCurve:
-    """Return the curve of a body from its statistics by speed. reason: why phase pairs have no value."""
+    """Return the curve of a body from its statistics by speed. rows: one per speed. reason: why there is no value."""
     scene, number, grid = task
     question = QUESTIONS[number]
     columns: dict[str, Any] = dict(zip(_SpeedStatistics._fields, zip(*rows)))
@@ -298,14 +298,14 @@ def _fill_curve(
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Analysis of how mu depends on the smallest speed resolved, in scenes with phases and dry friction."""
+    """Analysis of how the amplification depends on the smallest speed resolved; scenes with phases and dry friction."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return for each task the scene, the index in QUESTIONS of a question for it, and the phases per axis."""
+        """Return for each task the scene, the index in QUESTIONS of the model, and the number of phases per axis."""
         return [
             (scene, number, question.choose_grid(study))
             for scene in study.phased

@@ -17,14 +17,15 @@ NAMES = {  # names of the models in plots and tables
     "translational": "Exudyn in translation",
     "spatial": "Exudyn, bodies that turn",
 }
-# Number of the color of a model's curve
+# Index, in the palette of plots, of the color of a model's curve
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
-UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of each speed, in the order of the tables
-QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}  # stats of mu
+UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of what is varied; tables in this order
+# Statistics over phases of the amplification, in the rows of the tables: key and name
+QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
 
 
 def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
-    """Return up to three plots of mu_1 per scene: small equations, engine and exact equations, friction that yields."""
+    """Return plots of the platform's amplification per scene: small equations, engine, elastic-plastic friction."""
     panels = []
     for scene in dict.fromkeys(curve.scene for curve in curves):
         every = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
@@ -47,7 +48,7 @@ def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
 
 
 def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Panel:
-    """Return a plot of a quantity over v_c or v_reg, m/s, on a logarithmic axis."""
+    """Return a plot of a statistic of the amplification over v_c or v_reg, m/s, on a logarithmic axis."""
     label = f"{title}: {quantity} over the smallest resolved speed; " + "; ".join(line["name"] for line in series)
     return make_panel(
         title, label, {"title": "v_c or v_reg, m/s", "log": True}, {"title": quantity}, series, height=280
@@ -55,7 +56,7 @@ def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Pan
 
 
 def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
-    """Plot mean and largest amplification mu_1 over the yield displacement; the literal suprema are level lines."""
+    """Plot mean and largest amplification mu_1 over the yield displacement; literal suprema are horizontal lines."""
     dampings = [*dict.fromkeys(curve.damping for curve in curves)]
     series: list[dict[str, Any]] = []
     ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]
@@ -74,7 +75,7 @@ def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
 
 
 def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) -> dict[str, Any]:
-    """Return the plot line of a statistic of mu over the speeds; the literal supremum is a dashed level line."""
+    """Return the plot line of a statistic of the amplification over speed; a supremum is a dashed horizontal line."""
     values = replace_nan(getattr(curve, quantity))
     named = {"name": f"{name}, {_name_reading(curve)}", "color": color}
     if curve.reading == LITERAL_SUPREMUM:
@@ -83,12 +84,12 @@ def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) 
 
 
 def _name_reading(curve: ConditioningCurve) -> str:
-    """Return the reading of (5.1) in which a curve takes mu, with the symbol of its speed unless it has none."""
+    """Return the name of the peak that a curve is of: "literal supremum", or "as integrated at" v_c, v_reg or u_y."""
     return curve.reading if curve.reading == LITERAL_SUPREMUM else f"{curve.reading} at {curve.speed}"
 
 
 def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, Any]]:
-    """Return a table per list of speeds: a row per curve and statistic, the literal supremum in the last column."""
+    """Return tables of amplification statistics by speed, one table for curves at the same speeds; supremum last."""
     suprema = {_owner_of_curve(curve): curve for curve in curves if curve.reading == LITERAL_SUPREMUM}
     tables = []
     integrated = [curve for curve in curves if curve.reading != LITERAL_SUPREMUM]
@@ -104,17 +105,17 @@ def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, A
 
 
 def _place_of_table(table: tuple[str, tuple[float, ...]]) -> int:
-    """Return the rank of a table in the order v_c, v_reg, u_y."""
+    """Return the place of a table in the order v_c, v_reg, u_y of its varied speed or displacement."""
     return [*UNITS].index(table[0])
 
 
 def _owner_of_curve(curve: ConditioningCurve, model: str = "") -> tuple[str, int, str, int, float | None]:
-    """Return the key that curves of one body and model at different speeds share: scene, body, model, grid, damping."""
+    """Return the key (scene, body, model, grid, damping) that pairs a curve with that of its literal supremum."""
     return curve.scene, curve.body, model or curve.model, curve.grid, curve.damping
 
 
 def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | None) -> dict[str, Any]:
-    """Return a table row of a curve: one statistic of mu at every speed and, where known, of the literal supremum."""
+    """Return a table row: a statistic of the amplification at each speed and, if known, of the literal supremum."""
     write = signed if quantity == "relative_mean" else significant
     values = [*getattr(curve, quantity), *([] if supremum is None else getattr(supremum, quantity))]
     errors = getattr(curve, quantity.removesuffix("_mean") + "_error")
@@ -136,7 +137,7 @@ FOUND = ResultField(
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
-    """Return the variables that the template of this section reads."""
+    """Return the template variables of the report section on conditioning: its plots and tables."""
     curves = FOUND.read_from(report.results)
     return {
         "conditioning_panels": conditioning_panels(curves),

@@ -7,15 +7,15 @@ from comparison.analyses.conditioning.analysis import ConditioningCurve
 from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
-# m/s, values of v_c below which no instrument (first) and no computation (second) resolves sliding
+# m/s, sliding speeds below which no instrument (first) and no computation (second) resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
-ILL_CONDITIONED_CHANGE = 1e-3  # relative change of the amplification mu below LOW_V_C from which mu is ill-conditioned
+ILL_CONDITIONED_CHANGE = 1e-3  # relative difference at LOW_V_C from which the supremum is called ill-conditioned
 MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
 
 
 def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return a sentence for the page's top on the scene and body whose mu at LOW_V_C is farthest from its supremum.
+    Return a sentence on the scene and body whose amplification at LOW_V_C is farthest from the literal supremum.
 
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
@@ -41,7 +41,7 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return sentences: mu_1 at the yield displacement of every scene that has one, and its range over other values.
+    Return sentences on scenes with a yield displacement: amplification mu_1 at it, and range over other values.
 
     Empty without such a scene. Sizes of the mean are relative to the literal supremum of rigid friction at the same
     phases.
@@ -57,7 +57,7 @@ def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 
 def _word_yielding(curve: ConditioningCurve) -> str:
-    """Return mean and largest mu_1 at the scene's own yield displacement u_y, and the range over other values of it."""
+    """Return a sentence: amplification mu_1 at the scene's own yield displacement, and its range over other values."""
     assert curve.own is not None
     place = curve.v.index(curve.own)
     mean, largest = (
@@ -73,12 +73,12 @@ def _word_yielding(curve: ConditioningCurve) -> str:
 
 
 def _word_other_damping(curve: ConditioningCurve) -> str:
-    """Return a sentence: range of the mean mu_1 over the yield displacements with another damping of the links."""
+    """Return a sentence: range of the mean amplification over yield displacements with another damping of the links."""
     return f"With {name_damping(curve)}, {_word_range(curve)}."
 
 
 def _word_range(curve: ConditioningCurve) -> str:
-    """Return the smallest and largest mean relative to the literal supremum over all yield displacements, in words."""
+    """Return in words, over yield displacements, the range of the mean amplification relative to the supremum."""
     low, high = (f(range(len(curve.v)), key=lambda place: curve.relative_mean[place]) for f in (min, max))
     least, most = (_write_size(curve.relative_mean[place], curve.relative_error[place]) for place in (low, high))
     return (
@@ -89,7 +89,7 @@ def _word_range(curve: ConditioningCurve) -> str:
 
 def name_damping(curve: ConditioningCurve) -> str:
     """
-    Name the damping of the links of a curve.
+    Return in words how the links are damped in the computation of a curve.
 
     >>> from types import SimpleNamespace
     >>> name_damping(SimpleNamespace(damping=0.05)), name_damping(SimpleNamespace(damping=None))
@@ -100,7 +100,7 @@ def name_damping(curve: ConditioningCurve) -> str:
 
 def speed_text(speed: float) -> str:
     """
-    Return a speed as text, without a leading zero in its exponent.
+    Return a speed (or displacement) as text such as "1e-6".
 
     >>> speed_text(1e-6), speed_text(0.0003)
     ('1e-6', '3e-4')
@@ -109,20 +109,20 @@ def speed_text(speed: float) -> str:
 
 
 def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
-    """Return whether the mean is known at each of the three speeds v_c that `conditioning_line` states."""
+    """Return whether the mean amplification is known at all three cutoff speeds that `conditioning_line` names."""
     return curve.reading == AS_INTEGRATED and all(
         math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, LOW_V_C, LOWEST_V_C)
     )
 
 
 def _relative_mean_at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
-    """Return mean amplification mu relative to the literal supremum at a speed, and its error."""
+    """Return the relative difference of the mean amplification at a speed from the literal supremum, and its error."""
     place = curve.v.index(speed)
     return curve.relative_mean[place], curve.relative_error[place]
 
 
 def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) -> str:
-    """Say how much the engine's mean changes over the last step of v_reg, without and with bodies that turn."""
+    """Say how much the engine's mean amplification changes from the last but one v_reg to the smallest, by model."""
     engines = [
         each
         for each in result
@@ -141,7 +141,7 @@ def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningC
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
-    """Return the relative change of the mean from the last but one speed to the last, and its numerical error."""
+    """Return the mean amplification's relative change from the last but one speed to the last, and its error."""
     (before, after), errors = curve.mean[-2:], curve.mean_error[-2:]
     return after / before - 1.0, sum(errors) / before
 

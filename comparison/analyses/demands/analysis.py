@@ -27,12 +27,12 @@ from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_mot
 from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
 
-MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # number of motions that a code computes in about two seconds
+MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # motions per task: what a code computes in 2 s
 VARIABLE_PREFIX = "demand_"  # prefix of the variables of demands in surfaces.nc
 
-# arguments of a task: scene, model, asked relative error, phase pairs (M, 2) in rad
+# arguments of a task: scene, model, relative error that is aimed at, phase pairs (M, 2) in rad
 DemandTaskArguments = tuple[Scene, Model, float, Array]
-TaskDemands = tuple[dict[str, Estimates], list[str]]  # demands of a task's motions by name, and their statuses
+TaskDemands = tuple[dict[str, Estimates], list[str]]  # demands by name, and outcome of each motion
 
 
 @result
@@ -46,7 +46,7 @@ class PhaseExtreme:
 
 @result
 class DemandStatistics:
-    """Statistics of one demand by one model over independent uniform phases; under a record its one value."""
+    """Statistics of a demand by one model over independent uniform phases; under a recorded motion a single value."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands`, with the unit stated there"]
@@ -65,21 +65,21 @@ class DemandStatistics:
 
 
 def compute_demands(task: DemandTaskArguments) -> TaskDemands:
-    """Return the demands and statuses of the motions of one task. Runs inside a worker process."""
+    """Compute, in a worker process, the demands of the motions of one task by name, and how each motion ended."""
     scene, model, tolerance, phases = task
     demands = demands_of_motions(scene, phases, lambda phase: compute_motion(scene, model, phase, tolerance=tolerance))
     return dict(demands), [str(status) for status in demands.status]
 
 
 class DemandSurfaces(MappedAnalysis[xr.Dataset]):
-    """Analysis that computes the demands at every phase pair of every model's surface."""
+    """Analysis that computes the demands (peak responses) at every phase pair of each model's surface."""
 
     key, stage, level = "demands", "demands", 2
     function = staticmethod(compute_demands)
     without_value = staticmethod(lambda task, failed: ({}, [failed.outcome.value] * len(task[3])))
 
     def estimate_seconds(self, study: Study) -> float:
-        """Return the rough processor time of all motions, s."""
+        """Return the rough processor time, s, that the motions of all scenes and models take."""
         return sum(
             estimate_motion_seconds(scene, model) * len(study.solved(scene, model))
             for scene in study.scenes
@@ -87,16 +87,16 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
         )
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[DemandTaskArguments]:
-        """Yield the arguments of every task: motions that take about two seconds together."""
+        """Yield the arguments of every task; the motions of one task take about two seconds together."""
         phases = phase_grid(study.grid)
         for scene, model, places in _list_task_motions(study):
             yield scene, model, model.tolerance(study.tolerance), phases[places]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
         """
-        Return the demands of all tasks on the dimensions scene, model, body, alpha1, alpha2.
+        Return the demands of all tasks, a dataset with the dimensions scene, model, body, alpha1, alpha2.
 
-        By the names of the fields of `Demands`; "_error" behind the name of the estimated absolute errors. `status`
+        Its variables are named by fields of `Demands`; their estimated absolute errors end in "_error". `status`
         names the outcome of each pair.
         """
         names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
@@ -131,13 +131,13 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
 
 def _models_with_own_motions(study: Study, scene: Scene) -> list[Model]:
-    """Return the models whose motions are computed: those that share the motion of another one are left out."""
+    """Return the models whose motions are computed; models that read the same motion as another are left out."""
     models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
     return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 
 
 def _list_task_motions(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
-    """Yield the scene, the model and the indices of the phase pairs on the whole grid for every task."""
+    """Yield the scene, the model and the indices (in the whole grid) of the phase pairs of every task."""
     for scene in study.scenes:
         for model in _models_with_own_motions(study, scene):
             places, size = study.solved(scene, model), MOTIONS_PER_TASK[model.side]
@@ -146,19 +146,19 @@ def _list_task_motions(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:
-    """Return the surfaces with the demands as further variables, in the form in which surfaces.nc holds them."""
+    """Return the dataset `surfaces` with the demands as further variables, as surfaces.nc holds them."""
     if demands is None:
         return surfaces
     renamed = demands.rename({name: f"{VARIABLE_PREFIX}{name}" for name in demands.data_vars})
     empty: dict[Any, Any] = dict.fromkeys(renamed.data_vars, np.nan)
     empty[f"{VARIABLE_PREFIX}status"] = NOT_ASKED
     aligned = renamed.reindex(scene=surfaces["scene"], body=surfaces["body"], fill_value=empty)
-    # The coordinates of the surfaces stay: only these have units.
+    # Keep the coordinates of `surfaces`, which state units; those of `demands` do not.
     return surfaces.assign(aligned.data_vars).assign_coords(surfaces.coords)
 
 
 def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) -> list[DemandStatistics]:
-    """Return the statistics of each demand, body and model with an answer, in the order of QUANTITIES."""
+    """Return the statistics of each demand, body and model that has a value, in the order of QUANTITIES."""
     if demands is None or scene.name not in demands["scene"]:
         return []
     return [
@@ -185,7 +185,7 @@ def _statistics_of_demand(
     error_of_mean = taken.mean.error
 
     def extreme(index: int) -> PhaseExtreme:
-        """Return the value at a flat index of the grid, with its error and phase pair, rad."""
+        """Return the value at an index of the flattened grid of phases, with its error and phase pair, rad."""
         row, column = np.unravel_index(index, value.shape)
         phases = phase_axis(study.grid)[axis]
         pair = (np.nan, np.nan) if scene.recorded else (float(phases[row]), float(phases[column]))

@@ -33,7 +33,7 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
 
 
 def demand_lines(results: Results) -> list[dict[str, Any]]:
-    """Return the rows of the table of demands, each with the names of its scene, demand and model."""
+    """Return a row of the table of demand statistics for each scene, demand and model, with their names."""
     lines = []
     for scene in results.scenes:
         for row in STATISTICS.read_from(scene):
@@ -45,7 +45,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
-    """Return the variables that the template of this section reads."""
+    """Return the template variables of the report section on demands: its plots and table."""
     results = report.results
     return {
         "demand_panels": [panel for scene in results.scenes for panel in demand_panels(scene, results)],

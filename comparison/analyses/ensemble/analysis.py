@@ -25,18 +25,18 @@ from comparison.study.models import (
 from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, demands, floor_spectra, story_forces
 from reference.problem import Outcome, Scene, ground_peak
 
-STAGE = "ensemble"  # name of the stage of these tasks on the terminal
-NO_PHASES = (0.0, 0.0)  # phases passed to a model under a record, which has none
-SPECTRA_COST_RATIO = 1.7  # Processor time of a motion with floor spectra over the time without them.
-MOTION_TIME_LIMIT = 900.0  # s, largest processor time of one motion
+STAGE = "ensemble"  # name under which the terminal shows the progress of these tasks
+NO_PHASES = (0.0, 0.0)  # rad, phases passed to a model under a recorded motion, which has no phases
+SPECTRA_COST_RATIO = 1.7  # processor time of a motion with floor spectra, divided by the time without
+MOTION_TIME_LIMIT = 900.0  # s, processor time after which the computation of a motion is ended
 ENGINE_TOLERANCE = (
-    1e-2  # relative error asked of the engine's largest accelerations: between motions they differ by far more
+    1e-2  # relative error asked of the engine's largest accelerations: much less than motions differ from each other
 )
 
 
 @dataclass(frozen=True)
 class MotionDemandsAtScale:
-    """Demands of one motion at one scale by one model. values: NaN if it ended early; empty if nothing was computed."""
+    """Demands of one motion at one scale by one model. values: NaN or empty if the run ended early or failed."""
 
     member: EnsembleMember
     model: str  # key of the model
@@ -44,17 +44,17 @@ class MotionDemandsAtScale:
     values: Mapping[Quantity, Estimate] = field(default_factory=dict)
     spectra: FloorSpectra | None = None
     forces: StoryForces | None = None
-    instant: float = math.nan  # s, time at which the status arose
+    instant: float = math.nan  # s, time of the motion at which the run ended with this status
 
     def estimate(self, quantity: Quantity) -> Estimate:
-        """Return a demand with its error; NaN where there is none."""
+        """Return a demand, by its name and body, with its error; NaN if it was not computed."""
         return self.values.get(quantity, Estimate(math.nan, math.nan))
 
 
 @dataclass(frozen=True)
 class EnsemblePoints:
     """
-    Demands of every motion of an ensemble, by the exact equations and by the models compared with them.
+    Demands of each motion of an ensemble, by the exact equations and, for chosen motions, by other models.
 
     equations: in the order of the members. chosen: motions that the engine computes. compared: those motions by every
     other model, by key of the model.
@@ -70,8 +70,8 @@ class EnsemblePoints:
         return [*self.equations, *(point for points in self.compared.values() for point in points)]
 
 
-MotionTaskArguments = tuple[Scene, Model, float]  # the scene under its motion, the model, and the relative error asked
-# demands, story forces, floor spectra, accelerations as integrated where the demands hold suprema, time of the end, s
+MotionTaskArguments = tuple[Scene, Model, float]  # scene with its motion, model, relative error to aim at
+# demands, story forces, floor spectra, accelerations as integrated if demands has suprema, end of the motion, s
 MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
@@ -90,7 +90,7 @@ def list_comparison_models(member: EnsembleMember, spatial: bool) -> list[Model]
 @dataclass(frozen=True)
 class Ensemble:
     """
-    Task list of an ensemble: every motion by the exact equations, chosen motions by the other models.
+    Ensemble of scenes and the tasks that compute it: all motions by the exact equations, chosen ones by others.
 
     members: every scene has a recorded motion. spatial: whether the spatial model is among those of the engine.
     tolerance: relative error asked of the largest accelerations by the engine; the equations take theirs.
@@ -105,11 +105,11 @@ class Ensemble:
         return _drop_repeated_tasks(self._task(member, EXACT) for member in self.members)
 
     def make_engine_tasks(self, chosen: Sequence[ChosenMember]) -> list[Task]:
-        """Return the tasks of all other models at the chosen motions."""
+        """Return tasks that compute the chosen motions by all models but the exact equations."""
         return _drop_repeated_tasks(self._task(each.member, model) for each in chosen for model in self._models(each))
 
     def collect_points(self, results: TaskResults, chosen: Sequence[ChosenMember] = ()) -> EnsemblePoints:
-        """Return the demands of every motion by every model that was asked for it."""
+        """Return the demands of all motions by the exact equations and of `chosen` by other models, from `results`."""
         compared: dict[str, list[MotionDemandsAtScale]] = {}
         for each in chosen:
             for model in self._models(each):
@@ -121,13 +121,13 @@ class Ensemble:
         return list_comparison_models(choice.member, self.spatial)
 
     def _point(self, member: EnsembleMember, model: Model, results: TaskResults) -> MotionDemandsAtScale:
-        """Return the demands of one motion at one scale by a model; a status without values where it failed."""
+        """Return the demands of one motion at one scale by a model, read from `results`; only a status if it failed."""
         found: MotionAnswer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
         if isinstance(found, str):
             return MotionDemandsAtScale(member, model.key, found)
         numbers, forces, spectra, resolved, instant = found
         if model != EXACT and numbers.status != Outcome.OK:
-            # A status other than ok means that there is no value.
+            # What another model computed up to an early end is not used.
             return MotionDemandsAtScale(member, model.key, numbers.status, instant=instant)
         values = collect_demand_values(member.scene, numbers, forces, resolved)
         return MotionDemandsAtScale(member, model.key, numbers.status, values, spectra, forces, instant)
@@ -143,12 +143,12 @@ class Ensemble:
 
 
 def _drop_repeated_tasks(tasks: Iterable[Task]) -> list[Task]:
-    """Return the tasks without repetitions."""
+    """Return the tasks with those of equal key only once."""
     return list({task.key: task for task in tasks}.values())
 
 
 def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
-    """Return the demands of one motion by one model, with floor spectra if it is the exact equations."""
+    """Compute one motion by one model; return its demands and, by the exact equations, its floor spectra."""
     scene, model, tolerance = task
     motion = import_function(model.trajectory)(scene, NO_PHASES, tolerance=tolerance, **model.motion_settings)
     spectra = floor_spectra(motion) if model == EXACT else None
@@ -156,7 +156,7 @@ def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
 
 
 def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
-    """Return accelerations as integrated for the exact equations, whose demands are suprema; none for other models."""
+    """Return peak accelerations as integrated by the small or exact equations, whose demands are suprema; else none."""
     scene, model, tolerance = task
     resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: EXACT_AS_INTEGRATED}.get(model.key)
     if resolved is None or not resolved.applies(scene):

@@ -71,7 +71,7 @@ def build_result(
 
 
 def list_engine_motions(points: EnsemblePoints) -> list[result.ChosenMotion]:
-    """Return the motions of the engine with the reasons for their choice and the outcome by every model."""
+    """Return the motions chosen for the engine, each with the reasons and the outcome of every model's run."""
     statuses: dict[tuple[str, str, float], dict[str, str]] = {}
     for point in points.all_points:
         member = point.member
@@ -81,7 +81,7 @@ def list_engine_motions(points: EnsemblePoints) -> list[result.ChosenMotion]:
 
 
 def list_ended_motions(points: EnsemblePoints) -> list[result.EndedMotion]:
-    """Return the motions that the equations did not complete, each with its outcome and the time when it arose."""
+    """Return the motions that the equations did not complete, each with the outcome and the time of its end."""
     return [
         result.EndedMotion(
             at.member.structure, at.member.motion, at.member.scale, at.status, finite_or_none(at.instant)
@@ -92,7 +92,7 @@ def list_ended_motions(points: EnsemblePoints) -> list[result.EndedMotion]:
 
 
 def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:
-    """Return the motions of the suite in their order, each once, with their peaks at scale 1."""
+    """Return the ground motions of the suite in their order, each once, at scale 1. listed: by name, from its list."""
     found = []
     for motion, own in group_rows_by(members, "motion").items():
         member = own[0]
@@ -105,7 +105,7 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
 
 
 def describe_ground(member: EnsembleMember) -> dict[str, Any]:
-    """Return the description of a motion at scale 1, its factor included: files, step, peaks, digest, spectrum."""
+    """Return fields of `GroundMotion` at scale 1, factor included: files, step, peaks, digest, spectrum."""
     samples = member.scene.record / np.array([1.0, *[member.scale] * 3])
     origin = member.scene.excitation.origin if isinstance(member.scene.excitation, Record) else ()
     read, moving = describe_samples(member.motion, origin, samples), samples[:, 1:3][:, samples[:, 1:3].any(axis=0)]
@@ -121,7 +121,7 @@ def describe_ground(member: EnsembleMember) -> dict[str, Any]:
 def describe_structures(
     members: Sequence[EnsembleMember], displacements: Mapping[str, result.DemandAtScale]
 ) -> list[result.Structure]:
-    """Return the structures in their order. displacements: their isolator displacements at the largest scale."""
+    """Return structures with weight, periods and linear isolator. displacements: of isolators at the largest scale."""
     found = []
     for name, own in group_rows_by(members, "structure").items():
         scene, isolator, stripe = own[0].scene, None, displacements.get(name)

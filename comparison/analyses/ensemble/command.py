@@ -85,7 +85,7 @@ from reference.records.samples import RecordError
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
-COMMAND = "comparison.ensemble"  # name of the command in the manifest of its files
+COMMAND = "comparison.ensemble"  # name of the command in the manifest, which lists the files it wrote
 TABLE_FILE = "ensemble.csv"
 PAGE_FILE = "index.html"
 CHECKS_FILE = "junit.xml"
@@ -99,7 +99,7 @@ MAX_SCALES = 100  # largest number of scale factors that a user may ask for
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     """Compute the ensemble that the command line names and write its files; return the exit code."""
     options = _parser().parse_args(argv)
-    jobs = read_number_of_jobs(options)  # a wrong number of jobs is refused before the scenes are read
+    jobs = read_number_of_jobs(options)  # read now to refuse a wrong --jobs before scenes are read
     members = list_members([make_suite_family(options, scene) for scene in options.scenes])
     asked = parse_engine_option(options.engine, members)
     members, target = scale_to_target(options, members)
@@ -126,7 +126,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
-        """Write and print what the equations give; return the tasks of the engine."""
+        """Write and print the equations' results, choose the engine's motions by them; return the engine's tasks."""
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.find_missing(ensemble.make_engine_tasks(chosen))
         if further:
@@ -150,7 +150,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 def scale_to_target(
     options: argparse.Namespace, members: tuple[EnsembleMember, ...]
 ) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum | None]:
-    """Return the members as `--target` scales them, and its spectrum; without it as they are. Raises SceneError."""
+    """Return the members scaled to the spectrum of `--target`, if given, and that spectrum. Raises SceneError."""
     if options.target is not None:
         return match_spectrum(members, options.target, options.periods)
     if options.periods is not None:
@@ -159,7 +159,7 @@ def scale_to_target(
 
 
 def word_engine_work(ensemble: Ensemble, chosen: Sequence[ChosenMember], tasks: Sequence[Task], jobs: int) -> str:
-    """Return how many motions the engine computes next, by which model and in which time."""
+    """Return a sentence: how many motions the engine computes next, by which model and in what time."""
     turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
     engine = SPATIAL if turning else TRANSLATIONAL
     wall = estimate_wall_seconds([task.seconds for task in tasks], jobs) + WRITING_SECONDS
@@ -168,7 +168,7 @@ def word_engine_work(ensemble: Ensemble, chosen: Sequence[ChosenMember], tasks: 
 
 
 def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: EngineRequest, jobs: int) -> None:
-    """Print the numbers of motions, the rough time, and why a structure has no spatial model."""
+    """Print how many motions will be computed, the rough time, and which buildings lack a spatial model, and why."""
     members = ensemble.members
     first = list_expected_choices(members, asked)
     later = ensemble.make_engine_tasks([ChosenMember(member, ()) for member in first])
@@ -188,7 +188,7 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
 def make_demand_check(
     options: argparse.Namespace, members: Sequence[EnsembleMember]
 ) -> Callable[[EnsembleResult], list[DemandCheck]]:
-    """Return the function that checks demands against limits and, if asked, a stored ensemble. Raises SceneError."""
+    """Return a function that checks demands against limits and, if asked, a stored ensemble. Raises SceneError."""
     limits = read_demand_limits({member.structure: member.scene for member in members})
     within = read_number(
         "--within",
@@ -206,7 +206,7 @@ def make_demand_check(
         raise SceneError("command line", "--against", options.against, rule)
 
     def check(result: EnsembleResult) -> list[DemandCheck]:
-        """Return the checks against the limits and, with --against, against a stored ensemble."""
+        """Return the checks of the ensemble's demands against limits and, if there is one, a stored ensemble."""
         compared = [] if stored is None else compare_with_stored(result, stored, within)
         return [*check_limits(result, limits), *compared]
 
@@ -214,8 +214,8 @@ def make_demand_check(
 
 
 def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
-    """Print on standard error, as the last lines, the demands that are not met; return the exit code."""
-    sys.stdout.flush()  # Where standard output and error go to one file, these lines still come last.
+    """Print on standard error the demands that are not met; return the exit code. asked: whether to check them."""
+    sys.stdout.flush()  # so that these lines come last if both outputs go to one file
     lines = word_checks(checks)
     if asked:
         for line in lines or [f"--check: {NO_LIMITS}"]:
@@ -255,7 +255,7 @@ def write_ensemble(
 
 
 def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
-    """Return junit.xml of the demand checks, a suite per structure; a check not met or not compared is a failure."""
+    """Return junit.xml of the checks of demands, a suite per structure; any verdict but "met" is a failure."""
     suites = [
         JUnitSuite(
             bound,
@@ -273,7 +273,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
 
 
 def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineRequest) -> list[EnsembleMember]:
-    """Return members that cost as much as those that the engine will compute, which are not chosen yet."""
+    """Return as many members as the engine is expected to compute, to estimate the cost; none is chosen yet."""
     if asked == MAX_ENGINE_MOTIONS:
         return list(members)
     return [
@@ -284,20 +284,20 @@ def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineReques
 
 
 def bound_engine_motion_count(members: Sequence[EnsembleMember], asked: EngineRequest) -> int:
-    """Return the largest number of motions that the engine may compute."""
+    """Return an upper bound on the number of motions that the engine will compute."""
     if asked == MAX_ENGINE_MOTIONS:
         return len(members)
     return sum(bound_motion_count(asked, own[0].scene, len(own)) for own in _group_largest_scale_by_structure(members))
 
 
 def _group_largest_scale_by_structure(members: Sequence[EnsembleMember]) -> list[list[EnsembleMember]]:
-    """Return the members at the largest scale, grouped by structure."""
+    """Return the members (scenes) at the largest scale factor, one list for each structure."""
     top = max(member.scale for member in members)
     return list(group_rows_by([member for member in members if member.scale == top], "structure").values())
 
 
 def read_listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
-    """Return the motions of the suite folders by name: the folder of `--suite`, or those of the scene files."""
+    """Return by name the motions in suite folders, which `--suite` or else the scene files state."""
     suites = [(Path(), options.suite)]
     if options.suite is None:
         loadings = [(source, scene_tables(scene_text(source), source).get("excitation")) for source in options.scenes]
@@ -312,7 +312,7 @@ def read_listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
 
 
 def print_suite(console: Console, options: argparse.Namespace) -> None:
-    """Print what the folder of the suite contains; with --write-motions write the list into it as motions.csv."""
+    """Print which motions the suite's folder contains; with --write-motions write that list to its motions.csv."""
     listed = list_motions(options.suite, Path(), options.components)
     console.print(listed.sentence, soft_wrap=True)
     if options.write_motions:
@@ -326,7 +326,7 @@ def print_suite(console: Console, options: argparse.Namespace) -> None:
 
 
 def make_suite_family(options: argparse.Namespace, source: str) -> Family:
-    """Return the scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
+    """Return a family: the scene under every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
     if options.suite is not None:

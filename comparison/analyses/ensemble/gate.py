@@ -26,7 +26,7 @@ def check_demands(
     stored: str | Path | None,
     within: float,
 ) -> list[str]:
-    """Return a line for every demand that is not met; limits: in place of those of the file. Raises ValueError."""
+    """Return lines on demands that miss a limit or stored value; limits: replace the file's. Raises ValueError."""
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
     members = list_members([make_family(with_bounds(data, bounds), str(source))])
@@ -47,7 +47,7 @@ def check_demands(
 
 
 def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
-    """Return the ensemble computed in this process, by the engine at the motions that govern where it is asked for."""
+    """Compute the ensemble in this process; engine: whether the engine also computes the motions that govern."""
     results = TaskResults()
     _compute_tasks(results, ensemble.make_equation_tasks())
     chosen = choose_motions(ensemble.collect_points(results).equations, None) if engine else []
@@ -56,6 +56,6 @@ def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
 
 
 def _compute_tasks(results: TaskResults, tasks: Sequence[Task]) -> None:
-    """Compute those tasks in this process that have no result yet."""
+    """Compute in this process the tasks without a result, and add their results to `results`."""
     for task in results.find_missing(tasks):
         results.put(task, execute_task(task))

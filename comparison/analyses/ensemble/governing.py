@@ -19,24 +19,24 @@ if TYPE_CHECKING:
     from comparison.analyses.ensemble.analysis import MotionDemandsAtScale
     from comparison.analyses.ensemble.result import EnsembleResult
 
-ALL_MOTIONS = "all"  # word of an option that selects every motion for the engine
-GOVERNING = {  # demands whose worst value chooses a motion (over bodies, if they have it), and the reason in words
+ALL_MOTIONS = "all"  # value of the option --engine that selects every motion
+GOVERNING = {  # the engine computes the motion with the worst of each of these demands; reason in words
     "displacement": "largest displacement",
     "base_shear": "largest base shear",
     "drift": "largest drift",
     "support_force_max": "largest support force",
     "support_force_min": "smallest support force",
 }
-GOVERNING_OF_LIMITS = {  # by demand that only the engine computes: demands in GOVERNING that stand in for it
+GOVERNING_OF_LIMITS = {  # by demand that only the engine has: demands of the equations that tell which motions govern
     "uplift": ("support_force_max", "support_force_min"),
     "support_displacement": ("displacement",),
 }
 MEDIAN_REASON = "nearest the median displacement"  # reason for the choice of a motion
-ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # reasons for the choice of a motion
+ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # reasons why the engine computes a motion
 MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
-EXPECTED_GOVERNING_COUNT = 3  # governing motions of a structure as assumed before the equations have found them
+EXPECTED_GOVERNING_COUNT = 3  # assumed number of governing motions per structure while the equations are not solved
 
-# Motions asked of the engine: their number per structure, their names, or None for the governing ones
+# Motions that the engine is asked to compute: number per structure, names, or None for those that govern
 EngineRequest = int | tuple[str, ...] | None
 
 
@@ -49,7 +49,7 @@ class ChosenMember:
 
 
 def parse_engine_option(words: Sequence[str] | None, members: Sequence[EnsembleMember]) -> EngineRequest:
-    """Return which motions `--engine all | N | NAME ...` asks for; without it the governing ones. Raises SceneError."""
+    """Return which motions `--engine all | N | NAME` asks for; None: those that govern. Raises SceneError."""
     if words is None:
         return None
     names = list(dict.fromkeys(member.motion for member in members))
@@ -71,16 +71,16 @@ def estimate_engine_motion_count(asked: EngineRequest, motions: int) -> int:
 
 
 def bound_motion_count(asked: EngineRequest, scene: Scene, motions: int) -> int:
-    """Return the most motions of a structure that the engine may compute: every demand may choose another one."""
+    """Return an upper bound on a structure's motions for the engine: each demand may be governed by another motion."""
     if asked is not None:
         return estimate_engine_motion_count(asked, motions)
-    # A single body has no drift, a scene without supports neither of the support forces
+    # number of demands in GOVERNING that the scene lacks: drift of a single body, both forces without supports
     absent = (len(scene.bodies) == 1) + 2 * (scene.support_places is None)
     return min(len(GOVERNING) + 1 - absent, motions)
 
 
 def choose_motions(points: Sequence[MotionDemandsAtScale], asked: EngineRequest) -> list[ChosenMember]:
-    """Return the engine's motions by the demands of the equations; with `all` at every scale, else at the largest."""
+    """Choose the engine's motions by the equations' demands: at every scale if all are asked, else at the largest."""
     if asked == MAX_ENGINE_MOTIONS:
         return [ChosenMember(point.member, (ASKED_REASON,)) for point in points]
     top = max((point.member.scale for point in points), default=0.0)
@@ -101,7 +101,7 @@ def choose_motions(points: Sequence[MotionDemandsAtScale], asked: EngineRequest)
 
 
 def _find_governing(points: Sequence[MotionDemandsAtScale]) -> Iterator[tuple[int, str]]:
-    """Yield the index of each motion that governs, with the reason."""
+    """Yield the index in `points` of each motion with a worst or the median demand, and the reason in words."""
     for quantity, reason in GOVERNING.items():
         values = [_largest_demand(point, quantity) for point in points]
         if max(values, default=-math.inf) > -math.inf:
@@ -113,7 +113,7 @@ def _find_governing(points: Sequence[MotionDemandsAtScale]) -> Iterator[tuple[in
 
 
 def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: str) -> dict[str, str]:
-    """Return the motions that govern a limited demand by the equations at the largest scale, each with its reasons."""
+    """Return the motions that govern the demand `limited` by the equations at the largest scale, with their reasons."""
     worst: dict[str, str] = {}
     for quantity in GOVERNING:
         values = [
@@ -137,6 +137,6 @@ def _sign_of_worst(quantity: str) -> float:
 
 
 def _largest_demand(point: MotionDemandsAtScale, quantity: str) -> float:
-    """Return the worst demand over the bodies under a motion, negated if small is worse; minus infinity if unknown."""
+    """Return a motion's worst value of a demand over the bodies, negated if small is worse; -inf if unknown."""
     values = [_sign_of_worst(quantity) * number.value for (name, _), number in point.values.items() if name == quantity]
     return max((value for value in values if math.isfinite(value)), default=-math.inf)

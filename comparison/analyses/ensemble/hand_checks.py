@@ -14,7 +14,7 @@ from reference.problem import GRAVITY
 
 @dataclass(frozen=True)
 class HandCheck:
-    """A number computed by hand, or its admissible range, compared with the number in the report, in `unit`."""
+    """Comparison of a number in the report with one from a hand formula, or with a range; both in `unit`."""
 
     what: str
     formula: str
@@ -25,18 +25,18 @@ class HandCheck:
 
     @property
     def by_hand(self) -> str:
-        """Return the number computed by hand, or its range, in words."""
+        """Return as text the number from the hand formula, or the range."""
         ends = _word_number(self.low), _word_number(self.high)
         return f"{ends[0] if ends[0] == ends[1] else ' to '.join(ends)} {self.unit}"
 
     @property
     def in_report(self) -> str:
-        """Return the number of the report in words."""
+        """Return the number of the report as text."""
         return f"{_word_number(self.found)} {self.unit}"
 
     @property
     def verdict(self) -> str:
-        """Return the deviation of the report from the number by hand, or whether it is inside the range."""
+        """Return in words the deviation of the report from the hand formula, or whether it is inside the range."""
         if self.low == self.high:
             return f"{in_percent(self.found / self.low - 1.0)} %"
         if self.low <= self.found <= self.high:
@@ -45,12 +45,12 @@ class HandCheck:
 
 
 def _word_number(value: float) -> str:
-    """Return a number to four digits, from 10000 on as a whole number."""
+    """Return a number as text with four digits; from 10000 on as a whole number."""
     return f"{value:.4g}" if value < 9999.5 else f"{value:.0f}"
 
 
 def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
-    """Yield the checks that the numbers of a structure allow."""
+    """Yield the hand checks of a structure: weight, dead loads, first period, base shear, top drift, if known."""
     read = structure.building
     if read is None or not read.masses:
         return
@@ -70,7 +70,7 @@ def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator
 
 
 def _check_base_shear(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
-    """Yield the check that base shear is restoring force plus friction in the motion of largest displacement."""
+    """Yield the check that base shear is restoring force plus friction, for the motion of largest displacement."""
     read = structure.building
     assert read is not None
     moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
@@ -101,7 +101,7 @@ def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator
     if not read.stiffness or not shear:
         return
     soft, stiff = sorted(read.stiffness[-1])
-    ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # damping of the third mode
+    ratio = max((axis[:3][-1] for axis in read.modal_damping if axis), default=0.0)  # damping ratio of mode 3
     low, high = 1e3 * shear / (stiff * math.hypot(1.0, 2.0 * ratio)), 1e3 * shear / soft
     both = " to ".join(dict.fromkeys(f"{each / 1e6:.4g}" for each in (stiff, soft)))
     formula = f"V / (k √(1 + (2 ζ)²)) to V / k, V = {_word_number(shear / 1e3)} kN, k = {both} MN/m, ζ = {ratio:.3g}"

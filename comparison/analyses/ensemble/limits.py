@@ -33,17 +33,17 @@ from reference.support.arguments import Range
 from reference.support.scene_error import printable
 
 LIMIT_KEY_PREFIX = "acceptance.demands."  # beginning of the key of a limit in a scene file
-MEAN_STATISTIC, LARGEST_STATISTIC = "mean", "largest"  # statistics over the motions that a limit can be on
+MEAN_STATISTIC, LARGEST_STATISTIC = "mean", "largest"  # a limit can be on the mean or the largest over motions
 WEIGHT_SHARE_KEY = "base_shear"  # demand whose limit is a share of the weight
-MAX_NAMED_MOTIONS = 3  # largest number of motions that a reason names
-EVENT_COUNT_KEY = "stops"  # demand that counts events, to which a relative tolerance does not apply
+MAX_NAMED_MOTIONS = 3  # above so many, a text states the number of motions in place of their names
+EVENT_COUNT_KEY = "stops"  # demand that counts events: not compared with stored values, whose tolerance is relative
 STORED_TOLERANCE_RANGE = Range(0.0, 10.0)  # admissible relative tolerances of a comparison with a stored ensemble
 WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)  # verdicts from the worst to the best
-# Reason why a limit on a demand is not compared
+# Reason, as users read it, why a demand is not compared with its limit
 NOT_COMPUTED = (
     "no model that was computed has it; the spatial engine has it, and needs supports, heights and sizes of bodies"
 )
-NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"  # printed without limits
+NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"  # printed if --check finds no limits
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,19 @@ class DemandCheck:
 
     @property
     def verdict(self) -> Verdict:
-        """Return "met", "not met" or "not compared"."""
+        """Return whether the demand is within the stated number: "met", "not met" or "not compared"."""
         if self.is_least and not self.reason:
             return NOT_MET
         return NOT_COMPARED if self.reason else judge_error(self.excess, self.allowed)
 
     @property
     def title(self) -> str:
-        """Return the demand with its statistic and motions."""
+        """Return in words the demand, which statistic of it is checked, and over which motions."""
         return f"{self.what}, {self.on}"
 
 
 def word_check(check: DemandCheck) -> str:
-    """Return the verdict on a demand in words: structure, demand, motion, both numbers, how much it is not met by."""
+    """Return the verdict on a demand in words: structure, demand, motion, computed and stated number, excess."""
     found, stated = (_word_number(value, check.unit) for value in (check.found, check.stated))
     under = f" ({check.motion})" if check.motion else ""
     least = "at least " if check.is_least else ""
@@ -95,13 +95,13 @@ def word_check(check: DemandCheck) -> str:
 
 
 def _word_number(value: float | None, unit: str) -> str:
-    """Return a value in its display unit; only "none" where it is not known."""
+    """Return a value as text in its display unit; "none" if it is not known. unit: SI."""
     read, factor = unit_of_check(unit)
     return word_value(value, None, factor) + (f" {read}" if value is not None else "")
 
 
 def _word_check_verdict(check: DemandCheck) -> str:
-    """Return the verdict with the excess over the limit; "more than" where the value is a lower bound."""
+    """Return the verdict in words, with the excess over the limit; "more than" if the demand is a lower bound."""
     unit, factor = unit_of_check(check.unit)
     excess, stated = (None if value is None else factor * value for value in (check.excess, check.stated))
     verdict = word_verdict(check.verdict, excess, stated, unit, is_least=check.is_least)
@@ -127,13 +127,13 @@ def _word_stated(check: DemandCheck) -> str:
 
 
 def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
-    """Return how many demands are met, then a line for every one that is not, the worst last."""
+    """Return a line that counts the verdicts, then a line for every demand that is not met, the worst last."""
     lines = [word_check(check) for check in sorted(checks, key=_rank_of_check, reverse=True) if check.verdict != MET]
     return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
 
 
 def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
-    """Return the verdicts as file and page show them, in the order of the checks."""
+    """Return the verdict of each check in the form of the file summary.json and the page."""
     return [
         LimitVerdict(
             check.key, check.bound, check.verdict, word_check(check), check.what, check.on, check.found, check.stated,
@@ -144,7 +144,7 @@ def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
 
 
 def _rank_of_check(check: DemandCheck) -> tuple[int, float, float]:
-    """Return the sort key of a check, worst first: verdict, then excess as a share of the stated number."""
+    """Return the key that sorts checks, worst first: by verdict, then by excess relative to the stated number."""
     share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
     return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
 
@@ -160,7 +160,7 @@ def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -
 
 
 def read_demand_limits(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
-    """Return the limits that scenes state, by name of the structure."""
+    """Return the limits on demands that scenes state. scenes, result: by name of the structure."""
     stated = {name: scene.acceptance.demands for name, scene in scenes.items()}
     return {name: limits for name, limits in stated.items() if limits is not None}
 
@@ -168,7 +168,7 @@ def read_demand_limits(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
 def _check_bodies(
     ensemble: EnsembleResult, structure: Structure, key: str, limit: float, statistic: str
 ) -> list[DemandCheck]:
-    """Return the checks of a limit: one, or one for every story if it is on the drift ratio."""
+    """Return the checks of one limit: one for every body that has the demand, or a single one."""
     asked = structure.name, key
     bodies = list(dict.fromkeys(c.body for c in ensemble.curves if (c.structure, c.quantity) == asked))
     return [_check_body(ensemble, structure, key, body, limit, statistic) for body in bodies or [None]]
@@ -177,7 +177,7 @@ def _check_bodies(
 def _check_body(
     ensemble: EnsembleResult, structure: Structure, key: str, body: int | None, limit: float, statistic: str
 ) -> DemandCheck:
-    """Return the check of a limit on one demand, over all motions that have it."""
+    """Return the check of a demand of a body (None: of the isolator) against its limit, over all motions."""
     values, model = _values_at_largest_scale(ensemble, structure.name, key, body)
     known = [
         (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
@@ -211,21 +211,21 @@ def _check_body(
     value, error, motion = _compute_mean(known) if taken == MEAN_STATISTIC else max(known)
     found, error = value / per, error / per
     excess = max(found - limit, 0.0)
-    if excess > error and statistic == LARGEST_STATISTIC:  # The other motions can only make the largest value larger.
+    if excess > error and statistic == LARGEST_STATISTIC:  # Motions without a value can only raise the largest.
         reason = ""
-    elif excess > error and governing and not reason:  # The motions that are missing could make the mean smaller.
+    elif excess > error and governing and not reason:  # Missing motions could lower the mean.
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
     return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
 
 
 def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
-    """Say above which value the unknown demands would break a limit on the mean; "" where every value would."""
+    """Say above which value, `needed`, `ended` unknown demands break a limit on the mean; "" if every value does."""
     theirs = "a value there" if ended == 1 else "a mean of theirs"
     return f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
 
 
 def _explain_lacking_demand(ensemble: EnsembleResult, key: str) -> str:
-    """Return why no model has computed a demand that has a limit."""
+    """Return in words why no computed model has a demand on which a scene states a limit."""
     if key == "drift_ratio":
         return "heights of the bodies are needed"
     if ensemble.engine.pending:
@@ -241,7 +241,7 @@ def _word_demand(structure: Structure, key: str, body: int | None) -> str:
 
 
 def _compute_mean(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
-    """Return the mean value, the mean error, and "" in place of a motion, since a mean has none."""
+    """Return the mean over motions of the demands and of their errors, and "" for the motion, which a mean lacks."""
     values, errors, _ = zip(*known)
     return sum(values) / len(known), sum(errors) / len(known), ""
 
@@ -250,7 +250,7 @@ def _word_statistic(
     ensemble: EnsembleResult, statistic: str, known: int, model: str, part: bool, governing: bool
 ) -> str:
     """
-    Return in words the statistic that has a limit and the motions that it is taken over.
+    Return in words the statistic that is checked, and over which motions it is taken.
 
     model: of the engine, where it alone has the demand. part: whether it computed a part of the motions; governing:
     those that govern among them.
@@ -265,7 +265,7 @@ def _word_statistic(
 
 
 def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, key: str, computed: set[str]) -> str:
-    """Return why the engine may have missed a demand's governing motions; "" if it computed all of them."""
+    """Return why motions that govern a demand may lack an engine result; "" if the engine computed all of them."""
     moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     if ended := [motion for motion, number in moved.items() if number.value is None]:
         return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
@@ -284,7 +284,7 @@ def _name_motions(motions: Sequence[str]) -> str:
 def _bound_displacement_by_travel(
     ensemble: EnsembleResult, structure: Structure, key: str, statistic: str, values: Mapping[str, Statistic]
 ) -> tuple[float, str]:
-    """Return a lower bound on a displacement from the motions that reach the travel, or -inf, and their names."""
+    """Return a lower bound on the displacement, as motions reached the limit of travel, and their names; else -inf."""
     travel = structure.building.travel if structure.building else None
     stripe = ensemble.find_demand(structure.name, "displacement")
     ended = [motion for motion, number in values.items() if number.value is None]
@@ -301,7 +301,7 @@ def _bound_displacement_by_travel(
 def _values_at_largest_scale(
     ensemble: EnsembleResult, structure: str, quantity: str, body: int | None
 ) -> tuple[dict[str, Statistic], str]:
-    """Return a demand by motion at the largest scale, and its model: the equations, or the only one that has it."""
+    """Return a demand by motion at the largest scale, and the model that it is from: the equations, else the engine."""
     for model in (EXACT.key, ensemble.engine.model):
         if values := ensemble.values_at_largest_scale(structure, quantity, body, model):
             return values, model
@@ -324,7 +324,7 @@ DemandKey = tuple[str, str, int | None, float]
 
 
 def _demands_by_key(ensemble: EnsembleResult) -> dict[DemandKey, DemandAtScale]:
-    """Return the demands by the equations, by structure, demand, body and scale."""
+    """Return the demands that the equations computed, by their key; demands that count events are left out."""
     return {
         (each.structure, each.quantity, each.body, each.scale): each
         for each in ensemble.stripes
@@ -335,7 +335,7 @@ def _demands_by_key(ensemble: EnsembleResult) -> dict[DemandKey, DemandAtScale]:
 def _compare_demands(
     named: Mapping[str, str], place: DemandKey, new: DemandAtScale | None, old: DemandAtScale | None, within: float
 ) -> Iterator[DemandCheck]:
-    """Yield the checks of the mean and the largest value of a demand; none where both ensembles lack it."""
+    """Yield checks of a new demand's mean and largest value against the stored (old) ones; none if both are missing."""
     structure, quantity, body, scale = place
     for statistic in (MEAN_STATISTIC, LARGEST_STATISTIC):
         sides = [

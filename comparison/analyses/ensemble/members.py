@@ -12,27 +12,27 @@ from reference.problem.families import BOUNDS_KEY
 from reference.problem.keys import range_of
 from reference.problem.tables import Record
 
-SCALE_KEY = "excitation.scale"  # key of the scale factor of the motion in a scene file
+SCALE_KEY = "excitation.scale"  # key, in a scene file, of the factor that scales the motion
 RECORD_KEY = "excitation.record"  # key of the recorded motion in a scene file
 
-Row = TypeVar("Row")  # any type whose items `group_rows_by` groups
+Row = TypeVar("Row")  # any type of item that `group_rows_by` groups
 
 
 @dataclass(frozen=True)
 class EnsembleMember:
     """One scene of the ensemble: a structure under a motion at a scale."""
 
-    structure: str  # file name, with the values of varied keys other than motion and scale
+    structure: str  # file name and the values of keys that the file varies, but for motion and scale
     motion: str
-    scale: float  # scale of the ensemble, which multiplies the motion's own factor
+    scale: float  # scale factor of the ensemble; multiplies `factor`
     scene: Scene
-    factor: float = 1.0  # factor that fits the motion to a target spectrum
+    factor: float = 1.0  # factor by which the motion fits a target spectrum, if there is one
 
 
 def with_suite(
     data: dict[str, Any], suite: str | Path, components: int | None = None, normalized: bool = False
 ) -> dict[str, Any]:
-    """Return the scene file's tables with every motion of a suite as its loading, each over its full duration."""
+    """Return the content of a scene file with its loading replaced by every motion of a suite, at full duration."""
     name = str(suite) if ":" in str(suite) else str(Path(suite).absolute())
     record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if normalized else {})
     record |= {} if components is None else {"components": components}
@@ -46,13 +46,13 @@ def with_suite(
 
 
 def _is_wrong_duration(value: Any) -> bool:
-    """Return whether a duration is inadmissible; a suite replaces only an admissible one."""
+    """Return whether a duration is inadmissible; `with_suite` keeps such a one, so that it is refused later."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return not (isinstance(value, dict) or (number and value in range_of(Scene, "duration")))
 
 
 def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
-    """Return the members of families. Raises SceneError unless each scene has a record and file names are unique."""
+    """Return all scenes of the families as members. Raises SceneError if one has no record, or if names repeat."""
     names = [family.name for family in families]
     for name in names:
         if names.count(name) > 1:
@@ -73,7 +73,7 @@ def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
 
 
 def _word_varied_value(family: Family, key: str, n: int) -> str:
-    """Return the name and value of one varied key, which distinguishes a structure from others."""
+    """Return the name and value that key `key` of a scene file has in scene `n` of the family."""
     return family.labels[key][n] if key == BOUNDS_KEY else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
@@ -86,7 +86,7 @@ def refuse_scenes_without_model_data(members: Sequence[EnsembleMember], model: M
 
 
 def group_rows_by(rows: Iterable[Row], name: str) -> dict[Any, list[Row]]:
-    """Return the rows grouped by one of their attributes, in the order in which its values occur."""
+    """Group rows by the value of their attribute `name`; groups stand in order of first occurrence."""
     groups: dict[Hashable, list[Row]] = {}
     for row in rows:
         groups.setdefault(attrgetter(name)(row), []).append(row)

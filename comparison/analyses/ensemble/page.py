@@ -48,11 +48,11 @@ from reference.problem import GRAVITY
 from reference.records.samples import AXES
 
 Context = Mapping[str, Any]  # variables of a template by name
-ContextReader = Callable[[EnsembleResult, LostParts], Context]  # returns the variables of a page section's template
+ContextReader = Callable[[EnsembleResult, LostParts], Context]  # function: template variables of a section
 
 
 def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return what the template shows of the building as read from the scene."""
+    """Return the variables of the template that shows the building as read from the scene."""
     return {
         "labels": label_structures(ensemble),
         "warnings": list(map(mark_code, sentences.say_of_all(ensemble, sentences.below_contact_sentence))),
@@ -67,7 +67,7 @@ def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the ground motions of the suite with their spectra, for their template."""
+    """Return the template variables on the ground motions of the suite: peaks, components, response spectra."""
     return {
         "ground_sentence": sentences.ground_sentence(ensemble),
         "target_sentence": sentences.target_sentence,
@@ -80,7 +80,7 @@ def _suite_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the table and the plots of demands at the largest scale, for their template."""
+    """Return the template variables on demands at the largest scale: table, definitions, plots."""
     return {
         **fractile_heads_context(),
         "rows": make_demand_rows(ensemble, ensemble.largest_scale),
@@ -96,7 +96,7 @@ def _demands_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the verdicts on stated limits of demands, for their template."""
+    """Return the template variables on limits: the verdict on every stated limit of a demand."""
     return {
         "limits_sentence": sentences.limits_sentence(ensemble),
         "rows": make_limit_rows(ensemble.limits),
@@ -105,7 +105,7 @@ def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return a table over the height, from the top body down, for every demand of bodies."""
+    """Return, for the template, tables and plots of every demand over the height, from the top body down."""
     weight = ensemble.structures[0].weight
     profiles = {name: make_profile_rows(ensemble, name, ensemble.largest_scale) for name in PROFILE_QUANTITIES}
     differing = {row.name for row in profiles[SUPREMUM] if row not in profiles["acceleration"]}
@@ -128,7 +128,7 @@ def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _directions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the tables of drifts, shears and moments along x and along y, for their template."""
+    """Return the template variables on directions: tables of drifts, shears and moments along x and y."""
     tables = [
         (f"{title}, {DISPLAY_UNITS[unit][0]}", make_direction_rows(ensemble, name))
         for name, (title, unit) in DIRECTED_DEMANDS.items()
@@ -137,7 +137,7 @@ def _directions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the forces and the uplift of every support, by structure and model, beside the static loads."""
+    """Return, for the template, forces and uplift of every support by structure and model, beside static loads."""
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
@@ -157,12 +157,12 @@ def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _motions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the table with one row for each motion, for its template."""
+    """Return the template variables on single motions: a table with a row of demands for each."""
     return {"heads": make_motion_heads(ensemble), "rows": make_motion_rows(ensemble)}
 
 
 def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return what the engine computed and the ratios between models, for their template."""
+    """Return the template variables on the engine: which motions it computed, and ratios of demands between models."""
     return {
         "labels": label_structures(ensemble),
         "engine_sentences": sentences.engine_sentences(ensemble),
@@ -173,7 +173,7 @@ def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return the equations' statistics over all motions, times the ratios of engine to equations, for the template."""
+    """Return, for the template, demands by the equations over all motions, times the ratio of engine to equations."""
     rows = list(extrapolate_ratios(ensemble))
     some = any(ratio.motions >= MIN_SPREAD_MOTIONS for _, ratio, _ in rows)
     return {
@@ -184,7 +184,7 @@ def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> C
 
 
 def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return a table of demands for every scale but the largest."""
+    """Return, for the template, a table of demands for every scale but the largest."""
     others = sorted((scale for scale in ensemble.scales if scale != ensemble.largest_scale), reverse=True)
     return {
         **fractile_heads_context(),
@@ -193,12 +193,12 @@ def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return command, times and file digests of the run, for their template."""
+    """Return command, times and SHA-256 digests of the input files, for the template."""
     return {"run": ensemble.run, "digests": sentences.digest_sentence(ensemble)}
 
 
 class PagePart(NamedTuple):
-    """Section of the page: its name, title, the function that fills its template, and whether an ensemble has it."""
+    """Section of the page: name, title, function that returns its template variables, whether it is shown."""
 
     name: str
     title: str
@@ -240,25 +240,25 @@ PARTS = (
 
 
 def fractile_heads_context() -> Context:
-    """Return the heads of the fractile columns, as templates read them."""
+    """Return, for templates, the headings of the columns of fractiles, such as "16 %"."""
     return {"shares": [f"{100.0 * share:.0f} %" for share in FRACTILES]}
 
 
 def mark_code(text: str) -> Markup:
-    """Return a text with its words between backticks as code."""
+    """Return a text as HTML with its words between backticks marked as code."""
     return Markup("").join(
         Markup("<code>{}</code>").format(part) if place % 2 else part for place, part in enumerate(text.split("`"))
     )
 
 
 def draw_panels(makers: Sequence[Callable[[], Panel]], lost: LostParts) -> list[Panel]:
-    """Return the plots that can be drawn; each of the others becomes a line in `lost`."""
+    """Return the plots that can be drawn; for each plot that raises, `lost` takes a line that says so."""
     found = (lost.attempt(f"plot {number}", make) for number, make in enumerate(makers, start=1))
     return [each for each in found if each is not None]
 
 
 def render_ensemble_page(ensemble: EnsembleResult) -> str:
-    """Return index.html; a section or plot that raises becomes a line at the top of the page and in its place."""
+    """Return index.html; a line at the top and in place says which section or plot raised an error."""
     lost = LostParts()
     parts = []
     for part in PARTS:
@@ -269,7 +269,7 @@ def render_ensemble_page(ensemble: EnsembleResult) -> str:
         section = Section(part.title, folded=False, name=part.name)
         parts.append((section, render_lost_line(lost.last) if body is None else body, ""))
     heading = lost.attempt("heading", partial(sentences.word_heading, ensemble)) or "Demands under many motions"
-    began = str(ensemble.run.get("began", ""))  # date and time in UTC
+    began = str(ensemble.run.get("began", ""))  # date and time, UTC, at which the run began
     context = {
         "heading": heading,
         "running": "; ".join(filter(None, [heading, began[:16].replace("T", " ") + " UTC" if began else ""])),
@@ -282,6 +282,6 @@ def render_ensemble_page(ensemble: EnsembleResult) -> str:
 
 
 def _render_part(part: PagePart, ensemble: EnsembleResult, lost: LostParts) -> Markup:
-    """Return one section of the page as HTML."""
+    """Return a section of the page as HTML. lost: collects the plots that cannot be drawn."""
     context = {"ensemble": ensemble, **part.read(ensemble, lost)}
     return render_template(f"ensemble/sections/{part.name}.html.j2", context)

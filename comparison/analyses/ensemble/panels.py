@@ -21,25 +21,25 @@ from comparison.report.panels import Panel, make_panel
 from reference.problem import GRAVITY
 
 PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")  # demands that are drawn
-PERIOD_TICKS = 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0  # s, numbers at the axis of periods
-STRIP_WIDTH = 0.3  # width of the strip of one structure, as a share of the distance between structures
-# Name of a fractile, its index in FRACTILES, and the dash pattern of its line
+PERIOD_TICKS = 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0  # s, periods with a number at the axis
+STRIP_WIDTH = 0.3  # width of the strip of a structure's dots, as a share of the distance between strips
+# For each fractile: name, index in FRACTILES, dash pattern of its line (SVG)
 FRACTILE_LINES = (("16 %", 0, "2 2"), ("50 %", 1, ""), ("84 %", 2, "7 3"))
-MEDIAN_MARK, MEAN_MARK, ARROW_MARK = 7, 3, 2  # a flat bar, a diamond and an arrow upwards: marks of plot.js
-MAX_STRETCH = 2.0  # A limit within so many times the largest value of a profile stretches its axis.
-HEIGHT_AXIS = "height above the sliding contact, m"  # label of the vertical axis
+MEDIAN_MARK, MEAN_MARK, ARROW_MARK = 7, 3, 2  # numbers of marks that plot.js draws: flat bar, diamond, arrow up
+MAX_STRETCH = 2.0  # An axis is stretched to show a limit, unless the limit is above so many times the largest value.
+HEIGHT_AXIS = "height above the sliding contact, m"  # axis label of profiles
 
 
 def make_isolator_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return functions that draw each demand of the isolator over the scale, or as a strip of one dot per motion."""
-    # A quantity that is zero in every motion is not plotted.
+    """Return functions, one per demand of the isolator, that plot it over the scale or as one dot per motion."""
+    # A demand that is zero in every motion is not plotted.
     moved = {curve.quantity for curve in ensemble.curves if any(curve.values)}
     shown = [quantity for quantity in PLOTTED_QUANTITIES if quantity in moved]
     return [partial(_demand_panel, ensemble, quantity) for quantity in shown]
 
 
 def make_height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return functions that draw fractiles of accelerations, drifts, shears and moments over the height."""
+    """Return functions, one per demand of the bodies, that plot its fractiles over the height."""
     shown = [
         name
         for name in PROFILE_QUANTITIES
@@ -53,19 +53,19 @@ def make_height_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
 
 
 def make_floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return functions that draw the floor spectra of platform and uppermost body: median and band."""
+    """Return functions that plot the floor spectra of platform and top body: median, and 16 to 84 % as a band."""
     tallest = max(ensemble.structures, key=lambda each: each.bodies)
     names = {name_floor(tallest, body): body == PLATFORM_BODY for body in (PLATFORM_BODY, tallest.bodies)}
     return [partial(_floor_spectrum, ensemble, *each) for each in names.items() if ensemble.spectra]
 
 
 def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return functions that draw the motions' response spectra at scale 1, factor included, and the target."""
+    """Return a function (or none) that plots the motions' spectra at scale 1, factor included, and the target."""
     return [partial(_ground_spectra, ensemble)] if ensemble.target or any(m.spectrum for m in ensemble.suite) else []
 
 
 def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
-    """Return a plot of a demand under every motion, with fractiles: by structure, or over several scales."""
+    """Return a plot of a demand under every motion, with fractiles; along x: structures, or scales if several."""
     one = len(ensemble.scales) == 1
     series: list[dict[str, Any]] = []
     by_engine: list[dict[str, Any]] = []
@@ -110,7 +110,7 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
 def _travel_arrows(
     ensemble: EnsembleResult, place: int, curves: Sequence[DemandCurve], factor: float
 ) -> list[dict[str, Any]]:
-    """Return arrows at the travel for the motions of a structure that reach it, each at its smallest such scale."""
+    """Return plot marks, arrows at the limit of travel, for motions that reach it, each at the smallest such scale."""
     structure, one = ensemble.structures[place], len(ensemble.scales) == 1
     travel = structure.building.travel if structure.building else None
     reached = {
@@ -137,8 +137,8 @@ def _travel_arrows(
 
 
 def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]) -> list[dict[str, Any]]:
-    """Return a line across a plot for every travel and every limit that is stated of a demand."""
-    factor = display_unit(quantity, 1.0)[1]  # the limit of a base shear is a share of the weight
+    """Return lines across a plot of a demand, one for every stated limit of travel and limit of the demand."""
+    factor = display_unit(quantity, 1.0)[1]  # weight 1: the limit of a base shear is a share of it
     travels: list[tuple[str, float, dict[str, Any]]] = [
         ("travel", each.building.travel, {"color": "ink", "width": 1.0})
         for each in ensemble.structures
@@ -154,7 +154,7 @@ def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]
 
 
 def is_mean_limited(ensemble: EnsembleResult, quantity: str) -> bool:
-    """Return whether a limit is on the mean of a demand."""
+    """Return whether a scene states a limit on the mean of a demand over the motions."""
     key = f"{LIMIT_KEY_PREFIX}{quantity}"
     return any(each.key == key and each.statistic == MEAN_STATISTIC for each in ensemble.limits)
 
@@ -172,14 +172,14 @@ def plots_note(ensemble: EnsembleResult) -> str:
 
 
 def _strip_place(place: float, number: int, count: int) -> float:
-    """Return the horizontal position of motion `number` of `count` in the strip of dots around `place`."""
+    """Return the horizontal position of the dot of motion `number` of `count`, in the strip of dots around `place`."""
     return place + STRIP_WIDTH * ((number + 0.5) / count - 0.5)
 
 
 def _motion_series(
     curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any
 ) -> list[dict[str, Any]]:
-    """Return the series of the motions, each over its scales or all side by side; dots have error bars."""
+    """Return a plot line of each motion's demand over scale, or dots side by side around `place`, with error bars."""
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [_strip_place(place, number, len(curves))]
@@ -203,7 +203,7 @@ def _median_line(
     factor: float,
     **look: Any,
 ) -> dict[str, Any]:
-    """Return the plot line of a structure's median with its band, from low, median and high value at every x."""
+    """Return the plot line of a structure's median with a band from 16 to 84 %. fractiles: three at every x."""
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scale_value(each.value, factor) for each in column] for key, column in columns}
     name = f"{label_structures(ensemble)[ensemble.structures[place].name]}: median, 16 to 84 %"
@@ -211,7 +211,7 @@ def _median_line(
 
 
 def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
-    """Return a plot of the fractiles of a demand along x over the height along y."""
+    """Return a plot of a demand's fractiles (horizontal) over the height of the building (vertical)."""
     unit = display_unit(quantity, ensemble.structures[0].weight)[0]
     series = [
         line
@@ -237,7 +237,7 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
 def _profiles_of_structure(
     ensemble: EnsembleResult, structure: Structure, place: int, quantity: str
 ) -> list[dict[str, Any]]:
-    """Return the lines of one structure over its height: fractiles that have a value, and the mean if it is limited."""
+    """Return a structure's lines over height: fractiles of a demand, and its mean if a limit is on that."""
     series, name = [], label_structures(ensemble)[structure.name]
     factor = display_unit(quantity, structure.weight)[1]
     rows = ensemble.list_demands_of_bodies(structure.name, quantity)
@@ -262,14 +262,14 @@ def _profiles_of_structure(
 
 
 def _body_heights(structure: Structure) -> tuple[list[float], bool]:
-    """Return the heights of the bodies, m, and True; or the numbers of the bodies, and False."""
+    """Return the heights of the bodies, m, and True; if these are not stated, the numbers of the bodies and False."""
     heights = structure.building.heights if structure.building else None
     return (list(heights), True) if heights else ([float(n) for n in range(1, structure.bodies + 1)], False)
 
 
 def _demand_heights(structure: Structure, quantity: str) -> tuple[list[float], bool]:
     """
-    Return the heights at which a demand of the bodies acts, m, and True; or numbers, and False, as `_body_heights`.
+    Return the heights at which the demand of each body acts, m, and True; without heights, numbers and False.
 
     A moment is at the height about which it is taken, a drift or shear in the middle of its story.
     """
@@ -328,7 +328,7 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
 
 
 def _make_axis_from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return an axis from zero to 6 % above the largest value."""
+    """Return a plot's vertical axis from zero to 6 % above the largest value of its series."""
     values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 

@@ -9,9 +9,9 @@ from reference.problem import GRAVITY, Scene
 
 Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the isolator
 
-# Key of the largest floor acceleration by the literal supremum
+# Key of the demand "floor acceleration, literal supremum": the largest value, of however short duration
 SUPREMUM = "acceleration_supremum"
-DIRECTED_DEMANDS = {  # demands of every story that are read along x and y, too
+DIRECTED_DEMANDS = {  # demands of every story; besides their resultant, those along x and y are shown
     "story_shear": ("story shear", "N"),
     "drift": ("drift", "m"),
     "overturning_moment": ("overturning moment of the forces", "N m"),
@@ -32,7 +32,7 @@ DEMANDS: dict[str, tuple[str, str]] = {
     "overturning_moment": ("overturning moment", "N m"),
     **ALONG,
 }
-BODY_DEMAND_TITLES = {  # titles in which {} stands for the number of the body
+BODY_DEMAND_TITLES = {  # title of each demand of a body; {} stands for the body's number
     "acceleration": "acceleration of body {}, as integrated",
     SUPREMUM: "acceleration of body {}, literal supremum",
     "drift": "drift below body {}",
@@ -42,9 +42,9 @@ BODY_DEMAND_TITLES = {  # titles in which {} stands for the number of the body
     "torsion": "rotation of body {}",
     **{name: f"{title} below body {{}}" for name, (title, _) in ALONG.items()},
 }
-FRACTILES = (0.16, 0.5, 0.84)  # share of the motions whose value lies below the fractile
+FRACTILES = (0.16, 0.5, 0.84)  # fractiles computed, as shares of motions below them
 SMALLEST_IS_WORST = ("contact_force_min", "support_force_min")  # demands whose smallest value is the unfavorable one
-# Unit in which a report shows a number in SI units, and the factor to it
+# By SI unit: the unit in which a report shows a demand, and the factor to it
 DISPLAY_UNITS = {
     "m": ("mm", 1e3),
     "N": ("kN", 1e-3),
@@ -53,7 +53,7 @@ DISPLAY_UNITS = {
     "rad": ("mrad", 1e3),
     "m/s^2": ("g", 1.0 / GRAVITY),
 }
-HIDDEN_IN_FOUR_DIGITS = 5e-5  # An error below this share of its value does not show in four digits.
+HIDDEN_IN_FOUR_DIGITS = 5e-5  # An error below this share of the value is not printed: it is below the fourth digit.
 
 
 def unit_of_demand(quantity: str) -> str:
@@ -68,7 +68,7 @@ def demand_title(quantity: str, body: int | None = None) -> str:
 
 
 def display_unit(quantity: str, weight: float) -> tuple[str, float]:
-    """Return the unit in which a demand is displayed, and its factor; weight: of the structure, N."""
+    """Return the unit in which a demand is displayed, and the factor from SI to it. weight: of the structure, N."""
     if quantity == "base_shear":
         return "% of the weight", 100.0 / weight
     if quantity.endswith("_share") or quantity == "drift_ratio":
@@ -78,12 +78,12 @@ def display_unit(quantity: str, weight: float) -> tuple[str, float]:
 
 
 def unit_of_check(unit: str) -> tuple[str, float]:
-    """Return the display unit of a checked demand with this SI unit, and the factor to it; "%" for a pure number."""
+    """Return the unit in which a checked demand is shown, and the factor to it from SI; "%" if it has no unit."""
     return DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit else ("%", 100.0)
 
 
 def word_value(value: float | None, error: float | None, factor: float) -> str:
-    """Return a value with four digits and no power of ten, with its error where these digits show it."""
+    """Return factor * value as text with four digits; with "± error" if that is not below the last digit."""
     if value is None:
         return "none"
     read = factor * value
@@ -99,7 +99,7 @@ def collect_demand_values(
     scene: Scene, demands: Demands, forces: StoryForces, resolved: Sequence[Estimate] = ()
 ) -> dict[Quantity, Estimate]:
     """
-    Return the demands of one motion by name and body.
+    Return all demands of one motion in one mapping by name and body, story forces and drift ratios included.
 
     Support forces of a model without single supports are those of statics (`story_forces`). resolved: accelerations as
     integrated of a motion whose `demands` have the literal suprema; none of a motion without suprema.

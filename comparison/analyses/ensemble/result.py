@@ -19,20 +19,20 @@ SCHEMA: Literal["phase-resonance/ensemble/4"] = "phase-resonance/ensemble/4"
 
 @result
 class Statistic:
-    """Value of one statistic of a demand over the motions, with its error."""
+    """Value of one statistic (mean, fractile, extreme) of a demand over the motions, with its error."""
 
     value: Annotated[float | None, "in the unit of the demand; null where it rests on a motion without an answer"]
     error: Annotated[float | None, "largest change within the errors of the motions"]
 
     def __post_init__(self) -> None:
-        """Refuse a value that is not finite and an error that is negative or infinite."""
+        """Raise an error if the value is not finite, or its error negative or infinite."""
         require(self.value is None or math.isfinite(self.value), f"value must be finite, not {self.value}")
         require(self.error is None or 0.0 <= self.error < math.inf, f"error must be from 0 on, not {self.error}")
 
 
 @result
 class DemandFractile(Statistic):
-    """A fractile of a demand over the motions."""
+    """Fractile of a demand over the motions, with its share of motions below."""
 
     share: Annotated[float, "part of the motions below it"] = 0.5
 
@@ -76,7 +76,7 @@ class BuildingRead:
 
 @result
 class Structure:
-    """One structure of the ensemble: a file, or a file with values of varied keys other than motion and scale."""
+    """Structure of the ensemble: scene file, with the values of keys that it varies (but motion and scale)."""
 
     name: Annotated[str, "name"]
     title: Annotated[str, "title of its scenes"]
@@ -88,14 +88,14 @@ class Structure:
     """null in a file of which it is not known"""
 
     def __post_init__(self) -> None:
-        """Refuse an inadmissible number of bodies or weight."""
+        """Raise an error if the number of bodies or the weight is inadmissible."""
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
         require(0.0 < self.weight < math.inf, f"weight must be more than 0 N, not {self.weight:g}")
 
 
 @result
 class FloorSpectrumStatistics:
-    """Floor spectrum of a body over all motions at the largest scale, by the equations; the larger of x and y."""
+    """Floor spectrum of a body: statistics over motions at the largest scale, by the equations; larger of x and y."""
 
     structure: Annotated[str, "name"]
     body: Annotated[int, "from 1"]
@@ -107,7 +107,7 @@ class FloorSpectrumStatistics:
     largest: Annotated[Sequence[Statistic], "at every period, m/s^2"]
 
     def __post_init__(self) -> None:
-        """Refuse spectra with another number of values than periods."""
+        """Raise an error if a spectrum has not one value for each period."""
         require_size("fractiles", self.fractiles, FRACTILE_COUNT)
         for values in (self.mean, *self.fractiles, self.largest):
             require_size("mean, every fractile and largest", values, len(self.period))
@@ -115,20 +115,20 @@ class FloorSpectrumStatistics:
 
 @result
 class DemandOfStructure:
-    """Key of a demand: structure, quantity and body."""
+    """Demand of one structure: name of the structure, quantity and body."""
 
     structure: Annotated[str, "name"]
     quantity: Annotated[str, "demand"]
     body: Annotated[int | None, "from 1, counted from the platform; null for the isolator"]
 
     def __post_init__(self) -> None:
-        """Refuse a quantity that is no demand."""
+        """Raise an error if the quantity is not the name of a demand."""
         require(self.quantity in DEMANDS, f"quantity must be a demand, not {self.quantity[:40]!r}")
 
 
 @result
 class DemandAtScale(DemandOfStructure):
-    """Statistics over all motions of a demand at one scale by one model."""
+    """Statistics of a demand over all motions at one scale, as computed by one model."""
 
     model: Annotated[str, "key of the model"]
     unit: Annotated[str, "SI; empty for a pure number"]
@@ -147,7 +147,7 @@ class DemandAtScale(DemandOfStructure):
     known_motion: Annotated[str, "motion of that worst value"] = ""
 
     def __post_init__(self) -> None:
-        """Refuse an unknown demand or a wrong number of fractiles."""
+        """Raise an error if the demand is unknown or the number of fractiles wrong."""
         super().__post_init__()
         require_size("fractiles", self.fractiles, FRACTILE_COUNT)
 
@@ -158,7 +158,7 @@ class DemandAtScale(DemandOfStructure):
 
     @property
     def statistics(self) -> tuple[Statistic, ...]:
-        """Return the mean, the fractiles, the largest and the smallest value."""
+        """Return the statistics of the demand: mean, fractiles, largest and smallest value."""
         return self.mean, *self.fractiles, self.largest, self.smallest
 
 
@@ -173,7 +173,7 @@ class DemandCurve(DemandOfStructure):
     errors: Annotated[Sequence[float | None], "error estimates of the values"]
 
     def __post_init__(self) -> None:
-        """Refuse an unknown demand, and values or errors that are not one for each scale."""
+        """Raise an error if the demand is unknown, or there is not one value and error for each scale."""
         super().__post_init__()
         for what, values in (("values", self.values), ("errors", self.errors)):
             require_size(what, values, len(self.scales))
@@ -181,7 +181,7 @@ class DemandCurve(DemandOfStructure):
 
 @result
 class SupportExtremes:
-    """Extremes of one support over the motions at the largest scale, by one model."""
+    """Smallest and largest force and largest uplift of a support over motions at the largest scale, by one model."""
 
     structure: Annotated[str, "name"]
     support: Annotated[int, "from 1"]
@@ -198,7 +198,7 @@ class SupportExtremes:
 
 @result
 class EndedMotion:
-    """A motion that the equations ended with an outcome other than ok."""
+    """A motion whose computation by the equations ended early, with the outcome and the time."""
 
     structure: Annotated[str, "name"]
     motion: Annotated[str, "name"]
@@ -220,7 +220,7 @@ class ChosenMotion:
 
 @result
 class EngineMotions:
-    """Motions that the engine computed; `curves` have their demands by every model."""
+    """Motions that the engine computed; their demands are in `curves` of the ensemble."""
 
     model: Annotated[str, "key of the model that gives the engine's demands"]
     motions: Annotated[Sequence[ChosenMotion], "by structure"]
@@ -230,7 +230,7 @@ class EngineMotions:
 
 @result
 class GroundComponent:
-    """Peaks of one component of a ground motion at scale 1, its factor included."""
+    """Peak acceleration and velocity of one component of a ground motion at scale 1, times its factor."""
 
     axis: Annotated[str, "x, y or z"]
     peak: Annotated[float, "largest acceleration, m/s^2"]
@@ -255,7 +255,7 @@ class GroundMotion:
 
 @result
 class MatchedMotion:
-    """Ground motion with the factor that scales it to the target spectrum."""
+    """Factor that scales a ground motion to the target spectrum, and its scaled spectrum."""
 
     motion: Annotated[str, "what runs beside the scale"]
     factor: Annotated[float, "of the motion as it was recorded, at scale 1"]
@@ -274,7 +274,7 @@ class TargetSpectrum:
     motions: Annotated[Sequence[MatchedMotion], "in their order"]
 
     def __post_init__(self) -> None:
-        """Refuse a target without motions, and spectra with another number of values than periods."""
+        """Raise an error if the target has no motions, or a spectrum has not one value for each period."""
         require(len(self.motions) > 0, "motions must be at least one")
         for what, values in (
             ("acceleration", self.acceleration),
@@ -285,7 +285,7 @@ class TargetSpectrum:
 
 @result
 class LimitVerdict:
-    """Verdict on a demand: against its limit, or against its value in a stored ensemble."""
+    """Verdict on a demand compared with its limit, or with its value in a stored ensemble."""
 
     key: Annotated[str, "of the limit as in the scene file, or of the demand"]
     bound: Annotated[str, "what tells the structure apart"]
@@ -325,7 +325,7 @@ class EnsembleResult:
     ground_periods: Annotated[Sequence[float], "of the motions' spectra at 5 % damping, s"] = ()
 
     def __post_init__(self) -> None:
-        """Refuse parts of the file that contradict each other."""
+        """Raise an error if parts of the file contradict each other."""
         require(len(self.structures) > 0, "structures must be at least one")
         require(len(self.scales) > 0, "scales must be at least one")
         require(self.motions >= 1, f"motions must be at least 1, not {self.motions}")
@@ -348,35 +348,35 @@ class EnsembleResult:
     def find_demand(
         self, structure: str, quantity: str, body: int | None = None, model: str = EXACT.key
     ) -> DemandAtScale | None:
-        """Return a demand at the largest scale; None where it was not computed."""
+        """Return the statistics of a demand at the largest scale; None where it was not computed."""
         asked = structure, quantity, body, model, self.largest_scale
         return next((s for s in self.stripes if (s.structure, s.quantity, s.body, s.model, s.scale) == asked), None)
 
     def list_demands_over_scales(self, structure: str, quantity: str) -> list[DemandAtScale]:
-        """Return a demand of the isolator at every scale by the equations, or else by the engine."""
+        """Return the statistics of a demand at every scale by the equations, or else by the engine."""
         own = [each for each in self.stripes if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key] or own
 
     def list_demands_of_bodies(self, structure: str, quantity: str, scale: float | None = None) -> list[DemandAtScale]:
-        """Return a demand of every body by the equations, at the largest scale or another."""
+        """Return a demand's statistics for every body by the equations, at `scale` (None: the largest)."""
         asked = structure, quantity, EXACT.key, self.largest_scale if scale is None else scale
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
     def list_demand_curves(self, structure: str, quantity: str, model: str = EXACT.key) -> list[DemandCurve]:
-        """Return the curves of one demand of the isolator by one model."""
+        """Return for every motion the curve of a demand over scale, by one model."""
         asked = structure, quantity, model
         return [each for each in self.curves if (each.structure, each.quantity, each.model) == asked]
 
     def values_at_largest_scale(
         self, structure: str, quantity: str, body: int | None, model: str
     ) -> dict[str, Statistic]:
-        """Return one demand by motion at the largest scale, by one model."""
+        """Return, by name of the motion, a demand at the largest scale by one model."""
         return self.values_by_body(structure, quantity, model, self.largest_scale).get(body, {})
 
     def values_by_body(
         self, structure: str, quantity: str, model: str, scale: float
     ) -> dict[int | None, dict[str, Statistic]]:
-        """Return a demand at a scale by body and motion, by one model."""
+        """Return a demand at one scale by one model, by body and then by name of the motion."""
         asked = structure, quantity, model
         found: dict[int | None, dict[str, Statistic]] = {}
         for curve in self.curves:

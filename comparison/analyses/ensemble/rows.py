@@ -21,26 +21,26 @@ from comparison.study.models import EXACT, SPATIAL
 from reference.measures import Estimate
 from reference.problem import GRAVITY, Outcome
 
-# Name of the row with the worst of all bounds of the bearing properties
+# Name of the table row with the worst values over all bounds (lower, upper) of the bearing properties
 ENVELOPE = "envelope"
-# Reason why a motion has no largest value over the bodies: one of them has no value
+# Reason why a motion has no largest demand over the bodies: for one body it is unknown
 MISSING_AT_A_BODY = "not at every place"
-NOT_OF_ALL_MOTIONS = "–"  # text for a statistic over all motions where some motions lack the demand
+NOT_OF_ALL_MOTIONS = "–"  # text of a cell without a statistic: too few motions, or not all computed
 # Demands that are plotted over the height
 PROFILE_QUANTITIES = "acceleration", SUPREMUM, "drift", "drift_ratio", "story_shear", "overturning_moment"
 PLATFORM_BODY = 1  # number of the body that slides on the isolator
-MAX_BOUND_LETTERS = 8  # longest name of a bound (lower, upper) that a cell of the envelope can hold
-WORST_COLUMN = 4  # index of the column of the worst value, after mean and fractiles
+MAX_BOUND_LETTERS = 8  # longest name of a bound (such as "lower") that fits below a cell of the row ENVELOPE
+WORST_COLUMN = 4  # index of a row's cell with the worst value; before it: mean, three fractiles
 
 
 @dataclass(frozen=True)
 class DemandColumn:
-    """Demand that a table shows: the largest value over `bodies` under every motion, or that of the isolator."""
+    """Demand that a table shows: that of the isolator or platform, or the largest over the floors."""
 
     name: str
     quantity: str
-    bodies: str = ""  # "" for the isolator, "platform", or "floors"
-    unit: str = ""  # display unit, "" for the usual one of the quantity
+    bodies: str = ""  # where: "" (isolator), "platform" or "floors" (largest over the bodies)
+    unit: str = ""  # unit of the numbers shown, "" for the usual one
 
 
 # Demands of the main table in their order
@@ -72,7 +72,7 @@ MOTION_TABLE_QUANTITIES = (
 
 @dataclass(frozen=True)
 class DemandRow:
-    """Row of a table: a demand at one bound of the bearing properties, or its worst over all bounds (envelope)."""
+    """Table row: a demand at one bound of the bearing properties, or its worst value over all bounds (envelope)."""
 
     name: str
     unit: str
@@ -80,20 +80,20 @@ class DemandRow:
     where: str  # body that has the worst value
     cells: tuple[str, ...]  # texts of mean, fractiles and worst value
     motion: str  # motion that has the worst value
-    motions: str  # number of motions that have the demand, and of all motions
+    motions: str  # text such as "5 of 7": motions with a value, of all motions
     is_first: bool = True  # whether this is the first row of its demand
-    bounds: tuple[str, ...] = ()  # bounds that govern the cells of an envelope, if their names are short
+    bounds: tuple[str, ...] = ()  # in an envelope, the bound that governs each cell, if names are short
 
     @property
     def every_bound(self) -> str:
-        """Return the bound of the bearing properties that governs all cells of an envelope; "" where several do."""
+        """Return the one bound of the bearing properties that governs all cells of an envelope; "" if several do."""
         return self.bounds[0] if len({*self.bounds}) == 1 else ""
 
 
 @dataclass(frozen=True)
 class DemandSummary:
     """
-    Mean, fractiles and worst value of a demand of a structure over the motions, each marked where it is only a bound.
+    Mean, fractiles and worst value of a structure's demand over the motions, with "≥ " or "≤ " if only a bound.
 
     marks: of each, "" of what is known, "≥ " or "≤ " before what is a bound of it, " (of 3)" behind a mean of the
     motions that have the demand. motion: of the worst value.
@@ -107,7 +107,7 @@ class DemandSummary:
 
 
 def label_structures(ensemble: EnsembleResult) -> dict[str, str]:
-    """Return the label of each structure by name; for structures of one file it states the values that differ."""
+    """Return a label for each structure by name: its name, or just the values that differ, if all are of one file."""
     names = [each.name for each in ensemble.structures]
     files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
     parts = [re.split(r", |\+(?!\d)", text) for text in values]
@@ -117,7 +117,7 @@ def label_structures(ensemble: EnsembleResult) -> dict[str, str]:
 
 
 def word_bound(ensemble: EnsembleResult, structure: str, form: str = "{}") -> str:
-    """Return the label of a structure in a form such as ", {}"; "" where the ensemble has a single structure."""
+    """Return the label of a structure put into a form such as ", {}"; "" if there is only one structure."""
     return form.format(label_structures(ensemble)[structure]) if len(ensemble.structures) > 1 else ""
 
 
@@ -129,7 +129,7 @@ def name_floor(structure: Structure, body: int) -> str:
 
 
 def locate_demand(structure: Structure, quantity: str, body: int | None) -> str:
-    """Return where a demand of a body acts: at its floor, or in the story below it."""
+    """Return in words where a demand of a body acts: name of its floor, or "below" and that name for a story."""
     if body is None:
         return ""
     if quantity in ("acceleration", SUPREMUM):
@@ -146,7 +146,7 @@ def find_largest_over_bodies_by_motion(
     bodies: Collection[int | None] | None = None,
 ) -> dict[str, tuple[Estimate, int | None]]:
     """
-    Return for every motion by one model the largest value of a demand over bodies, and the body that has it.
+    Return by motion the largest value of a demand over the bodies, by one model, and the body that has it.
 
     NaN where a body has none. bodies: over these; over all without it.
     """
@@ -159,18 +159,18 @@ def find_largest_over_bodies_by_motion(
 
 
 def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
-    """Return the largest number with its body; its error is its largest change within all errors."""
+    """Return the largest number and its body, or NaN if one is unknown; error: how far all errors may raise it."""
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)
-    high = max(each.value + each.error for each, _ in places)  # The largest value falls by no more than it rises.
+    high = max(each.value + each.error for each, _ in places)  # upward error, not less than the downward one
     return Estimate(number.value, high - number.value), body
 
 
 def summarize_over_bodies(
     ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float
 ) -> DemandAtScale | None:
-    """Return the statistics of each motion's largest value over the bodies, with the body of the largest of all."""
+    """Return the statistics over motions of a demand's largest value over the bodies, with the worst body."""
     own = ensemble.list_demands_of_bodies(structure.name, quantity, scale)
     largest = find_largest_over_bodies_by_motion(ensemble, structure.name, quantity, EXACT.key, scale)
     if not own or not largest:
@@ -186,7 +186,7 @@ def summarize_over_bodies(
 
 
 def make_demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
-    """Return the rows of the main table at a scale: each demand by structure, then its worst over the structures."""
+    """Return the main table's rows at a scale: for each demand a row per structure, then an envelope of all."""
     rows: list[DemandRow] = []
     for shown in MAIN_TABLE_COLUMNS:
         rows += _make_rows(ensemble, shown, partial(statistics_of_column, ensemble, shown, scale), scale)
@@ -194,12 +194,12 @@ def make_demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
 
 
 def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[DemandRow]:
-    """Return the rows of a demand by body, from the top body down to the platform."""
+    """Return the table rows of a demand by body, from the top body down to the platform."""
     rows: list[DemandRow] = []
     for body in range(max(each.bodies for each in ensemble.structures), 0, -1):
 
         def read_body(structure: Structure, body: int = body) -> DemandAtScale | None:
-            """Return the statistics of the demand at this body; None where the structure has none."""
+            """Return the statistics of the demand of this body; None where the structure lacks it."""
             own = ensemble.list_demands_of_bodies(structure.name, quantity, scale)
             return next((each for each in own if each.body == body), None)
 
@@ -211,7 +211,7 @@ def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> 
 
 def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[DemandRow, list[tuple[str, str]]]]:
     """
-    Return for each story and structure the table row along x, with mean and largest value along x, then along y.
+    Return for each story and structure the table row along x, and four cells: mean and largest along x, along y.
 
     Each value with the motion of a largest one, and in an envelope its bound.
     """
@@ -223,13 +223,13 @@ def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[Dem
 
 
 def _word_source(row: DemandRow, column: int) -> str:
-    """Return what a table cell stems from: the motion of a worst value and, in an envelope, the structure."""
+    """Return what a table cell is from: the motion of a worst value and, in an envelope, the governing bound."""
     motion = row.motion if column == WORST_COLUMN else ""
     return ", ".join(filter(None, [motion, row.bounds[column] if row.bounds else ""]))
 
 
 def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
-    """Return the demand columns of the table of motions: base shear in kN, of bodies the largest over them."""
+    """Return the demands shown in the table with a row for each motion, each in one form."""
     known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
     return [
         next(each for each in reversed(MAIN_TABLE_COLUMNS) if _is_motion_column(each, name))
@@ -239,18 +239,18 @@ def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
 
 
 def _is_motion_column(shown: DemandColumn, quantity: str) -> bool:
-    """Return whether the table of motions shows a demand in this form: not in percent, nor at the platform alone."""
+    """Return whether `shown` is the form of the demand for the table of motions: not in %, not the platform alone."""
     return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
 
 
 def make_motion_heads(ensemble: EnsembleResult) -> list[str]:
-    """Return the heads of the demand columns of `make_motion_rows`, with their units."""
+    """Return the column headings (demand, unit) of the table that `make_motion_rows` fills."""
     first = ensemble.structures[0]
     return [f"{each.name}, {unit_of_column(each, first)[0]}" for each in _select_motion_columns(ensemble)]
 
 
 def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
-    """Return a row per structure and motion: motion, structure, demands by the equations (largest scale), outcome."""
+    """Return rows by structure and motion at the largest scale: motion, structure, demands (equations), outcome."""
     named, rows = label_structures(ensemble), []
     ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
     for structure in ensemble.structures:
@@ -274,7 +274,7 @@ def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str]
 def _make_rows(
     ensemble: EnsembleResult, shown: DemandColumn, read: Callable[[Structure], DemandAtScale | None], scale: float
 ) -> Iterator[DemandRow]:
-    """Yield the table rows of one demand: one of each structure, then the envelope of several."""
+    """Yield the table rows of a demand: one for each structure, then, if several, their envelope (worst values)."""
     named, found = label_structures(ensemble), []
     for structure in ensemble.structures:
         stripe = read(structure)
@@ -290,7 +290,7 @@ def _make_rows(
 def statistics_of_column(
     ensemble: EnsembleResult, shown: DemandColumn, scale: float, structure: Structure
 ) -> DemandAtScale | None:
-    """Return the statistics of a demand of a structure; over several bodies, of each motion's largest value."""
+    """Return the statistics of a column's demand for a structure; for "floors", of the largest over the bodies."""
     if shown.bodies == "floors":
         return summarize_over_bodies(ensemble, structure, shown.quantity, scale)
     own = ensemble.list_demands_of_bodies(structure.name, shown.quantity, scale)
@@ -304,7 +304,7 @@ def statistics_of_column(
 def read_column_values(
     ensemble: EnsembleResult, structure: Structure, shown: DemandColumn, model: str
 ) -> dict[str, tuple[Estimate, int | None]]:
-    """Return a demand at the largest scale by motion and by one model, with the body that has it."""
+    """Return by motion a column's demand at the largest scale, by one model, with its body."""
     bodies = {"": (None,), "platform": (PLATFORM_BODY,)}.get(shown.bodies)
     return find_largest_over_bodies_by_motion(
         ensemble, structure.name, shown.quantity, model, ensemble.largest_scale, bodies
@@ -312,7 +312,7 @@ def read_column_values(
 
 
 def unit_of_column(shown: DemandColumn, structure: Structure) -> tuple[str, float]:
-    """Return the display unit of a demand and its factor."""
+    """Return the unit in which a demand is shown, and the factor from SI units to it."""
     if shown.unit == "kN":
         return DISPLAY_UNITS["N"]
     if shown.unit == "%":
@@ -321,7 +321,7 @@ def unit_of_column(shown: DemandColumn, structure: Structure) -> tuple[str, floa
 
 
 def find_worst_value_and_motion(stripe: DemandAtScale) -> tuple[Statistic, str]:
-    """Return the worst value over the motions, largest or (for smallest forces) smallest, and its motion."""
+    """Return the worst value of a demand over motions (for smallest forces the smallest) and its motion."""
     if stripe.quantity in SMALLEST_IS_WORST:
         return stripe.smallest, stripe.smallest_motion
     return stripe.largest, stripe.largest_motion
@@ -329,7 +329,7 @@ def find_worst_value_and_motion(stripe: DemandAtScale) -> tuple[Statistic, str]:
 
 def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSummary:
     """
-    Return the statistics of a demand, marked as bounds where motions have no value.
+    Return a demand's statistics, with marks where motions without a value make them only bounds.
 
     The worst value is at least that of the motions that have one. A displacement under a motion that reached the
     travel is at least the travel.
@@ -354,12 +354,12 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """Return `mark` ("≥ " or "≤ ") for mean, worst value and unknown fractiles, which are bounds; "" for the others."""
+    """Return a mark for each of mean, fractiles and worst value: `mark` ("≥ "), but "" for known fractiles."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 
 def add_mark(text: str, mark: str) -> str:
-    """Return the text of a number with its mark; a text without a number stays as it is."""
+    """Return the text of a number with its mark before or behind it; a text such as "none" stays as it is."""
     return (
         text if text in ("none", NOT_OF_ALL_MOTIONS) else f"{text}{mark}" if mark.startswith(" ") else f"{mark}{text}"
     )
@@ -381,7 +381,7 @@ def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: 
 
 def word_cell(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
     """
-    Return the text of a cell (mean, fractile or worst value of so many motions); fractiles have no error.
+    Return a table cell: text of a demand's mean, fractile or worst value (by `column`) over so many motions.
 
     Of few motions a fractile lies beyond the outermost of them, and is left out: 16 % of three, but not of four.
     """
@@ -399,7 +399,7 @@ def word_cell(number: Statistic, factor: float, column: int, motions: int, quant
 
 
 def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: dict[str, str]) -> DemandRow:
-    """Return the row with each statistic's worst value over the structures, marked as a bound where one is unknown."""
+    """Return the envelope row: for each statistic the worst over the structures, marked if one is unknown."""
     sign, bound = (-1.0, "≤ ") if shown.quantity in SMALLEST_IS_WORST else (1.0, "≥ ")
     cells, bounds, at = [], [], found[0]
     for column in range(len(at.numbers)):
@@ -409,7 +409,7 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
             continue
 
         def size(told: DemandSummary, column: int = column) -> float:
-            """Return a statistic in its display unit, negated where a small value is the unfavorable one."""
+            """Return a structure's statistic in its display unit, negated if small values are unfavorable."""
             return sign * unit_of_column(shown, told.structure)[1] * (told.numbers[column].value or 0.0)
 
         at = max(known, key=size)
@@ -428,7 +428,7 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
 
 
 def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator[DemandRow]:
-    """Yield the rows of a demand that only the engine computes: its worst value over the motions, no statistics."""
+    """Yield a row per structure of a demand that only the engine computes: its largest value, no other statistics."""
     first = True
     for structure in ensemble.structures:
         values = ensemble.values_at_largest_scale(structure.name, shown.quantity, None, ensemble.engine.model)
@@ -453,5 +453,5 @@ def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator
 
 
 def peak_in_g(value: float) -> str:
-    """Return an acceleration in g."""
+    """Return an acceleration, m/s^2, as text in g."""
     return f"{value / GRAVITY:.3g} g"

@@ -22,10 +22,10 @@ from reference.plausibility import implausible_drift
 from reference.problem import Outcome
 from reference.support.arguments import name_some
 
-TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value  # outcome of a motion that ends where the isolator meets its rim
-MAX_LISTED_MOTIONS = 12  # largest number of motions that are listed by name
-MAX_LISTED_IN_SENTENCE = 3  # largest number of motions listed by name in a sentence that states other facts, too
-DIGITS = 12  # number of digits shown of a file digest
+TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value  # outcome of a motion that ends at the isolator's limit of travel
+MAX_LISTED_MOTIONS = 12  # largest number of motions that a sentence lists by name
+MAX_LISTED_IN_SENTENCE = 3  # largest number of motions that the answer lists by name
+DIGITS = 12  # number of characters shown of a SHA-256 digest
 DEFINITIONS = (  # definitions of the demands, shown with their table
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
     "that of x, y and z, the largest over time; floor spectra are the larger of x and y. Displacement is that of the "
@@ -63,8 +63,8 @@ DEFINITIONS = (  # definitions of the demands, shown with their table
 )
 
 
-VERTICAL_MOTION = "Vertical ground motion, except where the record has z."
-NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with the same words.
+VERTICAL_MOTION = "Vertical ground motion, except where the record has z."  # an entry of NOT_MODELED
+NOT_MODELED = (  # what no model has; docs/guide/building.md explains each, beginning with the same words
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
     "Bearings whose depression is below and whose slider is fixed to the building: there the displaced weight loads "
@@ -79,7 +79,7 @@ NOT_MODELED = (  # docs/guide/building.md explains each of these and begins with
 
 
 def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
-    """Return what is not modeled, with the number of motions that have a vertical component where it is known."""
+    """Return a sentence for each thing not modeled; that on vertical motion counts the motions that have it."""
     if not ensemble.suite or not all(each.components for each in ensemble.suite):
         return list(NOT_MODELED)
     count = sum(any(one.axis == "z" for one in each.components) for each in ensemble.suite)
@@ -88,7 +88,7 @@ def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
 
 
 def say_of_all(ensemble: EnsembleResult, word: Callable[[Structure], str]) -> list[str]:
-    """Return what is said of every structure: once where it is the same of all, else each after its label."""
+    """Return the sentence that `word` makes for each structure, after its label; only one if all are the same."""
     said = {each.name: word(each) for each in ensemble.structures}
     if len({*said.values()}) == 1:
         return list(filter(None, said.values()))[:1]
@@ -96,7 +96,7 @@ def say_of_all(ensemble: EnsembleResult, word: Callable[[Structure], str]) -> li
 
 
 def word_heading(ensemble: EnsembleResult) -> str:
-    """Return the building and the number of motions, with the scale where there are several."""
+    """Return the page's heading: titles of the buildings, number of motions; largest scale, if several or not 1."""
     titles = ", ".join(dict.fromkeys(each.title for each in ensemble.structures))
     at = f", scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 or ensemble.largest_scale != 1.0 else ""
     return f"{titles}: {word_motion_count(ensemble.motions)}{at}"
@@ -108,7 +108,7 @@ def word_motion_count(count: int) -> str:
 
 
 def answer_sentence(ensemble: EnsembleResult) -> str:
-    """Return the answer in words: limits, then mean and largest displacement and base shear of the worst structure."""
+    """Return the main result in words: limits met; mean and largest displacement and base shear, worst structure."""
     said = []
     for quantity, words in (("displacement", "isolator displacement"), ("base_shear", "base shear")):
         found, unknown = [], []
@@ -161,7 +161,7 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
-    """Return the limits that have this verdict, with structures and by how much they are not met; "" if none has."""
+    """Return in words the limits with this verdict, with structures and excess of the demands; "" if none has it."""
     found: dict[str, list[str]] = {}
     for each in ensemble.limits:
         if each.verdict == verdict:
@@ -173,7 +173,7 @@ def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
 
 
 def _word_excess(limit: LimitVerdict) -> str:
-    """Return by how much a limit is not met; "" for any other verdict."""
+    """Return in words by how much a demand exceeds its limit; "" if the verdict is not "not met"."""
     if limit.verdict != NOT_MET or limit.found is None or limit.stated is None:
         return ""
     unit, factor = unit_of_check(limit.unit)
@@ -189,7 +189,7 @@ def pending_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
-    """Return for which structures the displacement is at least the travel; "" where none reaches it."""
+    """Return in words which structures reach the limit of travel of the isolator; "" if none does."""
     named = label_structures(ensemble)
     found: dict[float, list[str]] = {}
     for structure in ensemble.structures:
@@ -198,7 +198,7 @@ def _travel_reached_sentence(ensemble: EnsembleResult) -> str:
             found.setdefault(building.travel, []).append(named[structure.name])
 
     def bounds_of(bounds: list[str]) -> str:
-        """Return the labels of structures in parentheses; "" where the ensemble has a single structure."""
+        """Return labels of structures in parentheses; "" if the ensemble has a single structure."""
         return f" ({', '.join(bounds)})" if len(ensemble.structures) > 1 else ""
 
     return "; ".join(
@@ -215,7 +215,7 @@ def word_plan_sizes(structure: Structure) -> str:
 
 
 def travel_sentence(ensemble: EnsembleResult) -> str:
-    """Return when which motions reach the travel at the largest scale, and how to compute their demands; or ""."""
+    """Return which motions reach the limit of travel at the largest scale, and when; "" if none does."""
     bounds = []
     for structure in ensemble.structures:
         ended = [
@@ -244,13 +244,13 @@ def outcomes_sentence(ensemble: EnsembleResult) -> str:
 
 
 def target_sentence(target: TargetSpectrum) -> str:
-    """Return the target spectrum that the motions are scaled to."""
+    """Return a sentence: how the motions are scaled to the target spectrum, over which periods."""
     between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
     return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
 
 
 def isolator_sentence(structure: Structure) -> str:
-    """Return the effective isolator of a structure; "" without one."""
+    """Return a sentence on a structure's equivalent linear isolator: period, damping, re-centering; "" without one."""
     if (at := structure.isolator) is None:
         return ""
     return (
@@ -271,7 +271,7 @@ def restoring_sentence(ensemble: EnsembleResult) -> str:
 
 
 def supremum_sentence(places: Collection[str], differing: Collection[str]) -> str:
-    """Return at which places the literal supremum equals the acceleration as integrated; "" if at none."""
+    """Return at which floors the literal supremum of acceleration equals the value as integrated; "" if at none."""
     if len(differing) == len(places):
         return ""
     where = "At the floors that are left out" if differing else "At every floor"
@@ -290,7 +290,7 @@ def below_contact_sentence(structure: Structure) -> str:
 
 
 def engine_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return which motions the engine computed, and why."""
+    """Return sentences: which motions the engine computed for each structure, and for which reasons."""
     engine, said = ensemble.engine, []
     for structure in ensemble.structures:
         own = [each for each in engine.motions if each.structure == structure.name]
@@ -314,14 +314,14 @@ def _word_status(status: str) -> str:
 
 
 def support_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return the largest and smallest force of a support by every model, with support and motion."""
+    """Return a sentence for each model: largest and smallest support force and uplift, with support and motion."""
     said = []
     for model in dict.fromkeys(each.model for each in ensemble.supports):
         rows = [each for each in ensemble.supports if each.model == model]
         by = "By the equations and statics" if model == EXACT.key else f"By the {model} engine"
         parts = list(_support_parts(ensemble, rows))
         if not parts:
-            continue  # No motion has a value of this force.
+            continue  # No motion has a force of a support by this model.
         counts = {label_structures(ensemble)[each.structure]: word_support_motions(ensemble, each) for each in rows}
         of = ", ".join(f"{count} of the {bound}" for bound, count in counts.items())
         of = next(iter(counts.values())) if len({*counts.values()}) == 1 else of
@@ -333,13 +333,13 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
 
 
 def word_support_motions(ensemble: EnsembleResult, supports: SupportExtremes) -> str:
-    """Return how many of all motions the extremes of a support are taken over."""
+    """Return over how many motions the extremes of a support are taken, as "5 of 7 motions"."""
     some = f"{supports.motions} of " if supports.motions < ensemble.motions else ""
     return f"{some}{word_motion_count(ensemble.motions)}"
 
 
 def displaced_weight_sentence(structure: Structure) -> str:
-    """Return which plate moves and about which points the displaced weight loads the supports; "" without supports."""
+    """Return sentences: which plate moves, and how the displaced weight loads the supports; "" without supports."""
     building = structure.building
     if building is None or not building.supports:
         return ""
@@ -356,7 +356,7 @@ def displaced_weight_sentence(structure: Structure) -> str:
 
 
 def damping_sentence(structure: Structure) -> str:
-    """Return the law of damping where all modes have ratios in proportion to their frequencies; "" for any other."""
+    """Return a sentence on stiffness-proportional damping, if the modal ratios show it; "" for any other damping."""
     building = structure.building
     if building is None:
         return ""
@@ -376,7 +376,7 @@ def damping_sentence(structure: Structure) -> str:
 
 
 def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
-    """Yield the largest and smallest support force and the largest uplift, with support and motion."""
+    """Yield phrases: largest and smallest support force, and largest uplift, with support and motion."""
     for name, sign in (("largest", 1.0), ("smallest", -1.0), ("uplift", 1.0)):
         known = [row for row in rows if getattr(row, name).value is not None]
         if not known:
@@ -403,7 +403,7 @@ def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """Return which motions lack which demands at the largest scale, and why; without those that reach the travel."""
+    """Return which motions lack which demands at the largest scale, and why; not those that reach the travel limit."""
     stripes = {
         shown.name: found
         for shown in MAIN_TABLE_COLUMNS
@@ -418,7 +418,7 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
     for (why, count), names in lacking.items():
         every = len(names) == len(stripes)
         if every and why == TRAVEL_REACHED:
-            continue  # `travel_sentence` states these motions.
+            continue  # named by `travel_sentence`: they reach the limit of travel
         which = (
             f" ({', '.join(ended[:MAX_LISTED_MOTIONS])}{' and more' * (len(ended) > MAX_LISTED_MOTIONS)})"
             if every
@@ -439,7 +439,7 @@ def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
 
 
 def digest_sentence(ensemble: EnsembleResult) -> str:
-    """Return the beginnings of the digests of the scene files and of the samples of every motion; "" without any."""
+    """Return a sentence with the first digits of SHA-256 of scene files and of each motion's samples; or ""."""
     scenes = [f"{Path(source).name} {digest[:DIGITS]}" for source, digest in ensemble.run.get("scenes", {}).items()]
     motions = [f"{each.motion} {each.digest[:DIGITS]}" for each in ensemble.suite if each.digest]
     said = [f"scene files: {', '.join(scenes)}"] * bool(scenes)
@@ -448,7 +448,7 @@ def digest_sentence(ensemble: EnsembleResult) -> str:
 
 
 def ground_sentence(ensemble: EnsembleResult) -> str:
-    """Return the range of peaks and durations of the motions."""
+    """Return a sentence: the ranges of peak ground acceleration and duration of the motions."""
     peaks, lengths = [each.peak for each in ensemble.suite], [each.duration for each in ensemble.suite]
     if not peaks:
         return ""
@@ -459,6 +459,6 @@ def ground_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _word_range(what: str, low: float, high: float) -> str:
-    """Return a range in seconds, or one value where both ends round to the same text."""
+    """Return the range of a duration in words, s; a single value if both ends print alike. what: its name."""
     ends = f"{low:.3g}", f"{high:.3g}"
     return f"{what} {ends[0]} s" if ends[0] == ends[1] else f"{what}s from {ends[0]} to {ends[1]} s"

@@ -18,14 +18,14 @@ MEDIAN_INDEX = FRACTILES.index(0.5)  # index of the median in FRACTILES
 
 
 def list_quantities(points: Sequence[MotionDemandsAtScale]) -> list[Quantity]:
-    """Return the demands that are known under any motion, in the order of `DEMANDS`."""
+    """Return name and body of every demand that any motion has, in the order of `DEMANDS`."""
     order = {name: place for place, name in enumerate(DEMANDS)}
     names = {quantity for point in points for quantity in point.values}
     return sorted(names, key=lambda quantity: (order[quantity[0]], quantity[1]))
 
 
 def summarize_demands(points: EnsemblePoints) -> Iterator[result.DemandAtScale]:
-    """Yield the statistics of every demand and scale by the equations, and by each model that computed every motion."""
+    """Yield statistics of every demand at every scale: by the equations, and by models that computed all motions."""
     yield from _summarize_points(points.equations)
     motions = {
         (name, scale): len(own) for (name, scale), own in _group_by_structure_and_scale(points.equations).items()
@@ -38,7 +38,7 @@ def summarize_demands(points: EnsemblePoints) -> Iterator[result.DemandAtScale]:
 def _group_by_structure_and_scale(
     points: Sequence[MotionDemandsAtScale],
 ) -> dict[tuple[str, float], list[MotionDemandsAtScale]]:
-    """Return the points by name of the structure and scale."""
+    """Return the demands of single motions grouped by name of the structure and scale."""
     groups: dict[tuple[str, float], list[MotionDemandsAtScale]] = {}
     for point in points:
         groups.setdefault((point.member.structure, point.member.scale), []).append(point)
@@ -46,7 +46,7 @@ def _group_by_structure_and_scale(
 
 
 def _summarize_points(points: Sequence[MotionDemandsAtScale]) -> Iterator[result.DemandAtScale]:
-    """Yield the statistics of demands over the motions; a motion without a value counts as worse than all others."""
+    """Yield statistics over motions of every demand; a motion without a value counts as worse than all others."""
     for name, own in group_rows_by(points, "member.structure").items():
         for quantity in list_quantities(own):
             for scale, at_scale in sorted(group_rows_by(own, "member.scale").items()):
@@ -61,9 +61,9 @@ def summarize_motions(
     about: tuple[str, str, int | None, str, str, float], numbers: Mapping[str, Estimate], lacking: Mapping[str, int]
 ) -> result.DemandAtScale:
     """
-    Return the statistics of a demand over the motions.
+    Return mean, fractiles, largest and smallest value of a demand over the motions.
 
-    about: first fields of a stripe. numbers: by motion. lacking: why motions have none, and how many each.
+    about: first fields of `DemandAtScale`. numbers: demand by motion. lacking: number of motions without it by reason.
     """
     every, values = list(numbers.values()), [number.value for number in numbers.values()]
     is_smallest = about[1] in SMALLEST_IS_WORST
@@ -76,7 +76,7 @@ def summarize_motions(
     of_known = compute_mean_and_fractiles(known, (0.0 if is_smallest else 1.0,)) if 0 < len(known) < len(every) else []
 
     def motion_with_value(number: result.Statistic) -> str:
-        """Return the name of the first motion whose demand equals this statistic, "" if none does."""
+        """Return the name of the first motion whose demand has this value, "" if none has."""
         return list(numbers)[values.index(number.value)] if number.value in values else ""
 
     motions = (
@@ -89,26 +89,26 @@ def summarize_motions(
 
 
 def split_quantity(quantity: Quantity) -> tuple[str, int | None]:
-    """Return the name of a demand and its body, None for the isolator."""
+    """Split a key (demand, body number): return the demand's name and the body, None for the isolator."""
     return quantity[0], quantity[1] or None
 
 
 def make_statistic(number: Estimate) -> result.Statistic:
-    """Return a number with its error, None where either is not known."""
+    """Return an estimate as a statistic: value and error, each None where it is not finite."""
     return result.Statistic(finite_or_none(number.value), finite_or_none(number.error))
 
 
 def compute_mean_and_fractiles(
     numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf
 ) -> list[result.Statistic]:
-    """Return the mean of numbers with errors, unknown unless all of them are known, and their fractiles at `shares`."""
+    """Return the mean of numbers (None if one is NaN), and their fractiles at `shares`, each with its error."""
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
     fractiles = [compute_fractile_with_error(numbers, share, worst) for share in shares]
     return [make_statistic(each) for each in (Estimate(value, error), *fractiles)]
 
 
 def compute_fractile_with_error(numbers: Sequence[Estimate], share: float, worst: float = math.inf) -> Estimate:
-    """Return a fractile of numbers, NaN counting as `worst`; its error is its largest change within the errors."""
+    """Return a fractile of numbers, NaN counting as `worst`; its error: how far it moves if all move by theirs."""
     value = np.array([number.value for number in numbers])
     error = np.array([number.error for number in numbers])
     low, middle, high = (
@@ -118,7 +118,7 @@ def compute_fractile_with_error(numbers: Sequence[Estimate], share: float, worst
 
 
 def summarize_spectra(points: Sequence[MotionDemandsAtScale]) -> Iterator[result.FloorSpectrumStatistics]:
-    """Yield the floor spectra of every body at the largest scale over all motions; the larger of x and y."""
+    """Yield statistics over motions of the floor spectrum of each body at the largest scale; larger of x and y."""
     top = max((point.member.scale for point in points), default=math.nan)
     for name, own in group_rows_by(
         [point for point in points if point.member.scale == top], "member.structure"
@@ -132,7 +132,7 @@ def summarize_spectra(points: Sequence[MotionDemandsAtScale]) -> Iterator[result
             (p.spectra.acceleration.max(axis=1), p.spectra.error.max(axis=1)) if p.spectra else nothing for p in own
         ]
         for body in range(bodies):
-            # Axes: period, motion, then value and error
+            # axes of this array: period, motion, then value and error
             columns = np.array(values)[:, :, body].transpose(2, 0, 1).tolist()
             numbers = ([Estimate(*pair) for pair in column] for column in columns)
             mean, *shares, largest = zip(*(compute_mean_and_fractiles(column, (*FRACTILES, 1.0)) for column in numbers))
@@ -141,7 +141,7 @@ def summarize_spectra(points: Sequence[MotionDemandsAtScale]) -> Iterator[result
 
 
 def make_demand_curves(points: EnsemblePoints) -> Iterator[result.DemandCurve]:
-    """Yield every demand of every motion over its scales, by structure, demand, model and motion."""
+    """Yield for each structure, demand, model and motion the demand over the scales."""
     every = [list(points.equations), *map(list, points.compared.values())]
     asked = list_quantities(points.all_points)
     for name in group_rows_by(points.equations, "member.structure"):
@@ -161,9 +161,9 @@ def make_demand_curves(points: EnsemblePoints) -> Iterator[result.DemandCurve]:
 
 def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtremes]:
     """
-    Yield the smallest and largest force of every support at the largest scale, with their motions.
+    Yield for each support, over the motions at the largest scale: smallest and largest force, and their motions.
 
-    By the equations and statics over all motions, and by the spatial model over its motions.
+    These are by the equations and statics, and by the spatial model for the motions that it computed.
     """
     top = max((point.member.scale for point in points.equations), default=math.nan)
     for model, own in {"": points.equations, **points.compared}.items():
@@ -171,7 +171,7 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
             known = [each for each in at if each.forces and each.forces.support_max]
             places = at[0].member.scene.support_places
             if not known or places is None or (model and known[0].forces and known[0].forces.uplift is None):
-                continue  # The translational model has no support forces of its own; statics already gave them.
+                continue  # no support forces, or only those of statics, which the equations have given
             for number in range(len(places)):
                 names = "support_min", "support_max", "uplift"
                 small, large, gaps = ([_support_estimate(each, key, number) for each in known] for key in names)
@@ -185,7 +185,7 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
 
 
 def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Estimate:
-    """Return a quantity of one support under one motion; NaN where the model has no support forces."""
+    """Return a quantity of a support under one motion. name: support_min, support_max or uplift. number: from 0."""
     values = getattr(point.forces, name)
     return values[number] if values else Estimate(math.nan, math.nan)
 
@@ -193,7 +193,7 @@ def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Es
 def _find_governing_motion(
     numbers: Sequence[Estimate], points: Sequence[MotionDemandsAtScale], sign: float
 ) -> tuple[result.Statistic, str]:
-    """Return the largest of the known numbers, or with a negative sign the smallest, and its motion."""
+    """Return the largest number (sign = -1: the smallest) and the motion of its point; NaN does not count."""
     known = [pair for pair in zip(numbers, points) if math.isfinite(pair[0].value)]
     if not known:
         return result.Statistic(None, None), ""

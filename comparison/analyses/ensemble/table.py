@@ -11,13 +11,13 @@ from comparison.analyses.ensemble.statistics import list_quantities
 from comparison.json_file import finite_or_none
 from reference.building import largest_horizontal_acceleration
 
-# Spreadsheets take a cell that begins with one of these, even after white space, for a formula.
+# A spreadsheet takes a text that begins with one of these, even after white space, for a formula to execute.
 FORMULA_STARTS = ("=", "+", "-", "@")
-CONTROL_STARTS = ("\t", "\r", "\n")  # A plain cell never begins with one of these control characters.
+CONTROL_STARTS = ("\t", "\r", "\n")  # A text that begins with one of these may hide a formula.
 
 
 def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[dict[str, object]]:
-    """Return a row of all demands and errors for every motion, structure, scale and model; None without a value."""
+    """Return a row for each motion, structure, scale and model: demands and errors by column name, None if unknown."""
     named = label_structures(ensemble)
     listed = list_quantities(points.all_points)
     units = {quantity: f" [{unit_of_demand(quantity[0]) or '-'}]" for quantity in listed}
@@ -49,12 +49,12 @@ def format_table(points: EnsemblePoints, ensemble: EnsembleResult) -> str:
     """Return the content of ensemble.csv; an apostrophe precedes a text that a spreadsheet takes for a formula."""
 
     def cell(value: object) -> object:
-        """Return a value of the table; an apostrophe keeps a spreadsheet from taking a text for a formula."""
+        """Return a value of the table; a text that looks like a formula gets an apostrophe in front."""
         formula = isinstance(value, str) and (value[:1] in CONTROL_STARTS or value.lstrip().startswith(FORMULA_STARTS))
         return f"'{value}" if formula else value
 
     rows, lines = make_table_rows(points, ensemble), io.StringIO(newline="")
-    # A text with a comma, quote or line break is quoted
+    # QUOTE_MINIMAL puts quotes around a text with a comma, quote or line break.
     writer = csv.writer(lines, quoting=csv.QUOTE_MINIMAL, lineterminator="\r\n")
     writer.writerow(rows[0])
     writer.writerows(map(cell, row.values()) for row in rows)

@@ -16,11 +16,11 @@ from reference.records.numerals import UNITS
 from reference.support.arguments import Range
 from reference.support.files import read_file
 
-# Numbers of periods, evenly spaced in their logarithm: for the least-squares fit to the target, for the plot
+# Number of periods (log-spaced) for the least-squares fit of motions to the target spectrum, and for its plot
 FITTED_PERIODS, DRAWN_PERIODS = 40, 60
-MAX_FILE_BYTES = 2**20  # largest size of a target file in bytes
-ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}  # factor to m/s^2 by heading
-PERIODS, LARGEST = Range(1e-3, 1e3, "s"), 1e6  # admissible periods besides zero; largest acceleration, m/s^2
+MAX_FILE_BYTES = 2**20  # bytes, largest size of a file with a target spectrum
+ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}  # by heading: factor to m/s^2
+PERIODS, LARGEST = Range(1e-3, 1e3, "s"), 1e6  # admissible periods above 0; largest acceleration, m/s^2, of a target
 FILE_RULE = (
     "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods, "
     f"{PERIODS.text} s, with accelerations above 0 and at most {LARGEST:g} m/s^2"
@@ -28,7 +28,7 @@ FILE_RULE = (
 
 
 def read_target(file: str) -> tuple[Array, Array]:
-    """Return the periods, s, and pseudo-accelerations, m/s^2, of a file, without period zero. Raises SceneError."""
+    """Read a target spectrum: return periods above 0, s, and pseudo-accelerations, m/s^2. Raises SceneError."""
     try:
         rows = [row for row in csv.reader(read_file(file, MAX_FILE_BYTES).decode("utf-8-sig").splitlines()) if row]
         first, second = ("".join(cell.split()).lower() for cell in rows[0])
@@ -56,7 +56,7 @@ def match_spectrum(
         raise SceneError("command line", "--periods", f"{low:g} {high:g}", "must be two periods, s, the shorter first")
 
     def target(at: Array) -> Array:
-        """Return the target spectrum at these periods, s, interpolated on logarithmic axes."""
+        """Return the target spectrum, m/s^2, at periods `at`, s, interpolated linearly in log-log coordinates."""
         return np.exp(np.interp(np.log(at), np.log(period), np.log(wanted)))
 
     compared, drawn = np.geomspace(low, high, FITTED_PERIODS), np.geomspace(period[0], period[-1], DRAWN_PERIODS)

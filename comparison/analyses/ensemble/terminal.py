@@ -30,7 +30,7 @@ from comparison.study.models import EXACT
 
 
 def print_equations(console: Console, ensemble: EnsembleResult) -> None:
-    """Print the demands of every structure by the equations, and the outcomes; a part that fails becomes one line."""
+    """Print the demands by the equations and the outcomes; if printing a part fails, one line says so."""
     parts: dict[str, Callable[[], None]] = {
         "factors of the motions": partial(_print_factors, console, ensemble),
         "demands": partial(_print_demands, console, ensemble),
@@ -41,7 +41,7 @@ def print_equations(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def print_engine(console: Console, ensemble: EnsembleResult) -> None:
-    """Print what the engine adds to the tables of the equations; a part that fails becomes one line."""
+    """Print the engine's motions, its ratios to the equations, support forces; if a part fails, one line says so."""
     parts: dict[str, Callable[[], None]] = {
         "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
         "table of models": partial(_print_model_ratios, console, ensemble),
@@ -53,7 +53,7 @@ def print_engine(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
-    """Print the lines without wrapping; an empty one is left out."""
+    """Print lines on the terminal without wrapping; empty ones are left out."""
     for line in filter(None, lines):
         console.print(line, soft_wrap=True)
 
@@ -82,14 +82,14 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _cells_of_row(row: DemandRow) -> list[str]:
-    """Return the cells of a table row, numbers without their errors, then motion and place of the worst value."""
+    """Return the texts of a row for the terminal: only the mean with its error; motion and place of the worst value."""
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
     return [row.name, row.unit, mean, *values, ", ".join(filter(None, [row.motion, row.where, *row.bounds[-1:]]))]
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
-    """Print for every structure the isolator, missing demands and warnings."""
+    """Print for every structure sentences on missing demands, isolator and warnings, then the main result."""
     for structure in ensemble.structures:
         lines = [
             *missing_sentences(ensemble, structure),

@@ -26,25 +26,25 @@ MODEL_TITLES = {
     TRANSLATIONAL.key: "translational engine",
     SPATIAL.key: "spatial engine",
 }
-# Demands of the main table that the table of model ratios does not show: each is a multiple of another demand, zero in
-# most motions, or a reading of the peak that no engine has.
+# Names of main-table demands without a row in the table of model ratios: each is a multiple of another demand, is zero
+# in most motions, or is the literal supremum, which engines do not compute.
 DEMANDS_WITHOUT_MODEL_RATIO = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support", "platform acceleration, literal supremum", "floor acceleration, literal supremum",
 )  # fmt: skip
-HIDDEN_BY_ROUNDING = 1e-4  # A relative difference below this does not show in the two decimals of the table.
-# Statistics that are extrapolated, and their columns
+HIDDEN_BY_ROUNDING = 1e-4  # relative difference below which the two decimals of percent in the table show none
+# Statistics that are extrapolated from the engine's motions to all: name, and index in a row of the main table
 EXTRAPOLATED_STATISTICS = ("mean", 0), ("84 %", 3), ("largest", 4)
-# Statistics of a smallest support force, whose low values are the unfavorable ones
+# Statistics extrapolated of a smallest support force, whose low values are the unfavorable ones: name, index in a row
 SMALLEST_FORCE_STATISTICS = (("mean", 0), ("16 %", 1), ("smallest", 4))
-MIN_SPREAD_MOTIONS = 2  # Of fewer motions a ratio has no spread.
-# Beginning of a sentence by the number of things that it lists
+MIN_SPREAD_MOTIONS = 2  # number of motions from which a ratio has a spread
+# Words of a sentence on how models differ, by index: the number of effects that it lists
 THING_COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
 
 @dataclass(frozen=True)
 class ModelRatio:
-    """Ratio of a demand by one model to that by another over common motions: mean, smallest and largest."""
+    """Ratio of a demand by one model to that by another: mean, smallest and largest over the motions that both have."""
 
     mean: float
     smallest: float
@@ -61,25 +61,25 @@ class ModelRatio:
 
     @property
     def text(self) -> str:
-        """Return the relative difference between the two models, %: mean over the motions, and range."""
+        """Return as text the relative difference of the two models in percent: mean over motions, and range."""
         ends = in_percent(self.smallest - 1.0), in_percent(self.largest - 1.0)
         return self.brief + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
 
     @property
     def brief(self) -> str:
-        """Return the relative difference between the two models, %: mean over the motions."""
+        """Return as text the relative difference of the two models in percent: mean over motions."""
         return f"{in_percent(self.mean - 1.0)} %"
 
 
 def in_percent(share: float) -> str:
-    """Return a share in percent to two decimals, without the percent sign."""
+    """Return a share as text in percent with sign and two decimals, without "%"."""
     return f"{100.0 * share:+.2f}".replace("-", "−").replace("+0.00", "0.00").replace("−0.00", "0.00")
 
 
 @dataclass(frozen=True)
 class ModelRatioRow:
     """
-    Ratios between models of one demand, over the motions that every model completed.
+    Ratios of one demand between models, over the motions that every model completed.
 
     They hold for one set of bearing properties (lower or upper bound).
     """
@@ -88,13 +88,13 @@ class ModelRatioRow:
     structure: Structure
     shown: DemandColumn
     motions: tuple[str, ...]
-    value: float  # mean over these motions by the exact equations, in SI units
+    value: float  # mean of the demand over these motions, exact equations, SI unit
     ratios: Mapping[str, ModelRatio] = field(default_factory=dict)
     by_law: ModelRatio | None = (
-        None  # ratio of the translational engine to the equations with the engine's friction law
+        None  # ratio of the demand by the translational engine to that by the equations with the engine's friction law
     )
-    law: ModelRatio | None = None  # ratio of the equations with the engine's friction law to the exact equations
-    # Ratio of the spatial to the translational engine; for support forces, to the static load
+    law: ModelRatio | None = None  # ratio of the equations with regularized friction to the exact equations
+    # Ratio of the demand by the spatial engine to that by the translational one; for support forces, to that by statics
     turning: ModelRatio | None = None
 
     @property
@@ -104,7 +104,7 @@ class ModelRatioRow:
 
     @property
     def read(self) -> tuple[str, float]:
-        """Return the display unit of the demand and its factor."""
+        """Return the unit in which the demand is shown, and the factor from SI units to it."""
         return unit_of_column(self.shown, self.structure)
 
     @property
@@ -115,7 +115,7 @@ class ModelRatioRow:
 
 
 def make_model_ratio_rows(ensemble: EnsembleResult) -> list[ModelRatioRow]:
-    """Return a row for each demand of the main table that another model than the exact equations has."""
+    """Return the model ratios of each demand of the main table that models other than the exact equations computed."""
     named, rows = label_structures(ensemble), []
     for structure in ensemble.structures:
         for shown in MAIN_TABLE_COLUMNS:
@@ -133,12 +133,12 @@ def _make_model_ratio_row(
     quantity = shown.quantity
 
     def values(model: str) -> dict[str, float]:
-        """Return the demand by a model, in SI units, by motion that has it."""
+        """Return a model's demand, in SI units, by name of the motion; without motions for which it is unknown."""
         found = read_column_values(ensemble, structure, shown, model)
         return {motion: each.value for motion, (each, _) in found.items() if math.isfinite(each.value)}
 
     by_model = {key: values(key) for key in (*MODEL_TITLES, REGULARIZED.key)}
-    # Statics gives the support forces of every model but the spatial one.
+    # Support forces are compared by the spatial model alone: those of all others are from statics.
     beside = [SPATIAL.key] if quantity.startswith("support_force") else [key for key in by_model if key != EXACT.key]
     others = {key: by_model[key] for key in beside if by_model[key]}
     exact = by_model[EXACT.key]
@@ -148,7 +148,7 @@ def _make_model_ratio_row(
         return None
 
     def ratio(upper: str, lower: str) -> ModelRatio | None:
-        """Return the demand by model `upper` over that by `lower`; None where either has none."""
+        """Return the ratio of the demand by model `upper` to that by `lower`; None if one was not computed."""
         if upper not in others or not (lower == EXACT.key or lower in others):
             return None
         pairs = [(by_model[upper][m] / by_model[lower][m], m) for m in common if by_model[lower][m]]
@@ -173,7 +173,7 @@ def _make_model_ratio_row(
 def _find_largest_deviation(
     ensemble: EnsembleResult, rows: Sequence[ModelRatioRow], pick: str
 ) -> tuple[float, str, str] | None:
-    """Return the largest relative difference between two models under one motion, its demand, structure and motion."""
+    """Return the largest relative difference by the model ratio `pick`, in any row and motion; its demand; where."""
     found = []
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
@@ -184,15 +184,15 @@ def _find_largest_deviation(
 
 
 def _word_largest_size(size: float) -> str:
-    """Return in words how large a relative difference is at most."""
+    """Return "up to" a relative difference in percent, or "less than 0.01 %" if rounding hides it."""
     return f"up to {percent(size)}" if size >= HIDDEN_BY_ROUNDING else f"less than {percent(HIDDEN_BY_ROUNDING)}"
 
 
 def model_ratio_sentence(ensemble: EnsembleResult) -> str:
     """
-    Return how much geometry, codes, friction law and turning of the bodies each change a demand; "" without an engine.
+    Return in words how much geometry, code, friction law and rotation of bodies change demands; "" without an engine.
 
-    Each is the largest of single motions over every demand of the table. The smallest support force has a clause of
+    Each is the largest over all motions and demands of the table. The smallest support force has a clause of
     its own: close to zero, a small force is a large share of it.
     """
     every = make_model_ratio_rows(ensemble)
@@ -220,7 +220,7 @@ def model_ratio_sentence(ensemble: EnsembleResult) -> str:
 
 def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow, ModelRatio, list[str]]]:
     """
-    Yield the equations' demands over all motions, times the mean ratio of engine to equations in the engine's motions.
+    Yield estimates of engine demands over all motions: the equations' demands times mean ratios of engine to equations.
 
     Each comes with the ratio and the texts of mean, 84 % fractile and largest value times the mean ratio, with a range
     from its spread; of a smallest force they are mean, 16 % fractile and smallest value.
@@ -237,9 +237,9 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
         for (name, place), (head, _) in zip(shown, EXTRAPOLATED_STATISTICS):
             value = told.numbers[place].value
             of = f"{name}: " if name != head else ""
-            # The ratio of a single motion has no spread
+            # extrapolate only if the ratio is of several motions, since that of one has no spread
             extended = value is not None and value > 0.0 and ratio.motions >= MIN_SPREAD_MOTIONS
-            # The travel is a limit, not a computed displacement
+            # and only a computed displacement: one without an error is the limit of travel
             extended = extended and told.numbers[place].error is not None
             text = _word_extrapolated(ratio, value, factor) if extended and value is not None else "none"
             cells.append(of + add_mark(text, told.marks[place]))
@@ -247,7 +247,7 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
 
 
 def extrapolation_sentence(rows: Sequence[tuple[ModelRatioRow, ModelRatio, list[str]]]) -> str:
-    """Return the note on the extrapolated demands, or that ratios of one motion allow no estimate."""
+    """Return a note on demands extrapolated to all motions, or that a ratio from one motion allows no estimate."""
     if all(ratio.motions < MIN_SPREAD_MOTIONS for _, ratio, _ in rows):
         return (
             f"A ratio of fewer than {MIN_SPREAD_MOTIONS} motions has no spread: it makes no estimate of the suite. "
@@ -264,6 +264,6 @@ def extrapolation_sentence(rows: Sequence[tuple[ModelRatioRow, ModelRatio, list[
 
 
 def _word_extrapolated(ratio: ModelRatio, value: float, factor: float) -> str:
-    """Return a value times the mean ratio, and the range that the spread of the ratio makes."""
+    """Return in words a value times the mean ratio of models, and its range from smallest to largest ratio."""
     mean, low, high = (word_value(each * value, None, factor) for each in (ratio.mean, ratio.smallest, ratio.largest))
     return f"{mean} ({low} to {high})"

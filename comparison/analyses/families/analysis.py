@@ -1,4 +1,4 @@
-"""A family of scenes in which one value runs: mu of every model, and every bar of the waterfalls, over that value."""
+"""A family of scenes in which one value varies: amplification by every model, and waterfall bars, over that value."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.measures.peak_demands import list_demands
 from reference.problem import Family, Scene
 
-if TYPE_CHECKING:  # types of the results of other features, which a study need not have
+if TYPE_CHECKING:  # for annotations only; a study may lack these features
     from comparison.analyses.demands.analysis import DemandStatistics
     from comparison.analyses.motions.analysis import StoredMotion
 
 
 @result
 class FamilyCurve:
-    """mu of one model and body over the key of the scene file that varies in a family; null where there is no value."""
+    """Amplification of a body by one model in every scene of a family, along the key that varies; null if unknown."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -39,7 +39,7 @@ class FamilyCurve:
 
 @result
 class FamilyStep:
-    """Change of mu of a body by one step between models (bar of a waterfall), over the key that varies in a family."""
+    """Change of a body's amplification from one model to the next (bar of a waterfall) in every scene of a family."""
 
     model: Annotated[str, "key of the model that the step leads to, or total"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -49,7 +49,7 @@ class FamilyStep:
 
 
 def compute_family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
-    """Return one curve per model and body; under a record, mean, lowest and highest are the one value."""
+    """Return one curve of amplification per model and body; under a record, mean, lowest and highest are equal."""
     keys = {model.key: model for scene in family.scenes for model in models_of(scene, study.hierarchy)}
     curves = []
     for model in keys.values():
@@ -60,7 +60,7 @@ def compute_family_curves(study: Study, surfaces: xr.Dataset, family: Family) ->
 
 
 def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
-    """Return for each body the change of mu by every step between models, over the scenes, then their total."""
+    """Return for each body its change of amplification from each model to the next, by scene, then the total."""
     steps = []
     for body in range(1, family.bodies + 1):
         bars = [_bars_by_effect(waterfalls[scene.name][body - 1]) for scene in family.scenes]
@@ -74,7 +74,7 @@ def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfal
 
 @result
 class FamilyDemand:
-    """One demand by one model over the key of the scene file that varies in a family: median, smallest and largest."""
+    """A demand by one model in every scene of a family: median, smallest and largest over motions or phases."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
@@ -86,7 +86,7 @@ class FamilyDemand:
 
 
 def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
-    """Return a demand over the varied key for each model, quantity and body with a stored motion."""
+    """Return the demands of stored motions by scene of the family, one for each model, quantity and body."""
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
@@ -105,7 +105,7 @@ def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list
 def list_family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
-    """Return a demand over the varied key for each model, quantity and body, computed from all phases."""
+    """Return demand statistics over all phases by scene of the family, one for each model, quantity and body."""
     found: dict[tuple[str, str, int], dict[str, tuple[float, float, float, int]]] = {}
     for scene in family.scenes:
         for row in statistics.get(scene.name, ()):
@@ -118,18 +118,18 @@ def list_family_demands_over_phases(
 def _make_family_demand(
     family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
 ) -> FamilyDemand:
-    """Return a demand over the varied key. rows: median, lowest, highest and number of motions, by scene."""
+    """Return a demand in each scene of a family. key: model, quantity, body. rows: median, lowest, highest, count."""
     numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
     return FamilyDemand(*key, *map(tuple, zip(*numbers)))
 
 
 def _bars_by_effect(waterfall: Waterfall) -> dict[str, WaterfallBar]:
-    """Return the bars of a waterfall by the model that each step leads to, and the bar of the total under TOTAL."""
+    """Return a waterfall's bars (changes from model to model) by the key of the later model, and the total by TOTAL."""
     return {**{bar.model: bar for bar in waterfall.bars}, TOTAL: waterfall.total}
 
 
 def _numbers_of_body(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
-    """Return mean, smallest and largest mu of a body over the phases, and the mean error; NaN without values."""
+    """Return a body's mean, smallest and largest amplification over the phases, and mean error; NaN if unknown."""
     mu = usable_mu(surfaces, scene.name, model)[body - 1]
     known = np.isfinite(mu)
     if not known.any():

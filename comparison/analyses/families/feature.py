@@ -22,8 +22,8 @@ from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.waterfall import UNEQUAL_PHASES
 from comparison.wording import MAX_AXIS_NAMES
 
-MOTION_KEY = "excitation.record.motion"  # key whose values name motions, so that no axis can have them as numbers
-LOG_AXIS_RATIO = 30.0  # Largest over smallest value of the varied key: beyond this ratio the axis is logarithmic.
+MOTION_KEY = "excitation.record.motion"  # key whose values are names of motions, shown on an axis as words
+LOG_AXIS_RATIO = 30.0  # ratio of largest to smallest value of the varied key from which its axis is logarithmic
 
 
 class FamilyResult(Part):
@@ -78,7 +78,7 @@ FOUND = ResultField(
 
 
 def family_panels(results: Results) -> list[dict[str, Any]]:
-    """Return per family the plots of mu by body and model over the varied key, and of what each effect adds."""
+    """Return per family plots over the varied key: each body's amplification by model, and its change by effect."""
     scenes = {scene.name: scene for scene in results.scenes}
     listed = []
     for family in FOUND.get(results) or ():
@@ -91,7 +91,7 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
 
 
 def _value_axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
-    """Return the positions of the values on the axis, and the axis: names where the values are no numbers."""
+    """Return the positions of a family's values on the plot's axis, and the axis; its ticks are words if needed."""
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
@@ -107,7 +107,7 @@ def _panel_over_values(
     family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]
 ) -> Panel:
     """
-    Return a plot over the varied key. lines: name, color and values, and smallest and largest values if there are any.
+    Return a plot over the varied key. lines: name, color, values; optionally their smallest and largest values.
     These make a band for the first and the last model alone, since the bands of all models hide each other.
     """
     places, axis = _value_axis(family)
@@ -121,14 +121,14 @@ def _panel_over_values(
 
 
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
-    """Return the plot of the amplification mu of a body by every model over the value of the varied key."""
+    """Return the plot of a body's amplification by every model over the varied key of the family."""
     curves = [curve for curve in family.curves if curve.body == body]
     lines = [(results.titles[each.model], n, each.mean, each.lowest, each.highest) for n, each in enumerate(curves)]
     return _panel_over_values(family, f"mu_{body}", f"mu_{body} of every model", f"μ_{body}", lines)
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
-    """Return the plot of what each effect adds to mu of a body, in percent, over the value of the varied key."""
+    """Return the plot of the change of a body's amplification by each effect, percent, over the family's varied key."""
     effects = {model.key: model.effect or model.title for model in results.models}
     effects |= {TOTAL: "total", UNEQUAL_PHASES: "other phases"}
     lines = [
@@ -142,7 +142,7 @@ def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
 def _family_demand_panel(
     results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
 ) -> Panel | None:
-    """Return a plot of one demand by model over the varied key: median, smallest and largest of the motions."""
+    """Return a plot of a demand by model over the family's varied key: median, with a band of smallest to largest."""
     looks = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     lines = []
     for demand in family.demands:

@@ -36,10 +36,10 @@ from reference.problem.measured import BODY_QUANTITIES, Measured
 
 NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")  # for a model without the measured quantity
 
-MeasuredQuantityKey = tuple[str, int]  # quantity and number of the body; 0 for the isolator
-# Arguments of a task: scene, model, relative error asked, phases in rad, and the measured quantities to compute
+MeasuredQuantityKey = tuple[str, int]  # name, and number of the body (0: isolator)
+# Arguments of a task: scene, model, relative error to aim at, phase pair in rad, and the measured quantities to compute
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[MeasuredQuantityKey]]
-# Value and error, NaN without an answer; and the reason for that, or the outcome of the motion
+# computed peak: value and error (NaN if not computed), and the outcome of the motion or why there is no value
 PeakAnswer = tuple[float, float, str]
 
 
@@ -57,13 +57,13 @@ class ComputedPeak:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def verdict(self) -> Verdict:
-        """Return "met" where the difference is within both errors together, else "not met" or "not compared"."""
+        """Return "met" if computed and measured value agree within both their errors, "not met", or "not compared"."""
         return NOT_COMPARED if self.exceeds is None else NOT_MET if self.exceeds else MET
 
 
 @result
 class MeasuredPeak:
-    """A peak that an experiment measured, compared with the models."""
+    """Peak of a quantity that an experiment measured, and the value of each model for it."""
 
     scene: Annotated[Text, "name of the scene"]
     quantity: Annotated[str, "mu, or a key in `demands` with the unit stated there"]
@@ -75,7 +75,7 @@ class MeasuredPeak:
     computed: Annotated[Sequence[ComputedPeak], "one per model that has the quantity"]
 
     def word(self, computed: ComputedPeak) -> str:
-        """Return the verdict on one model in words."""
+        """Return in words whether one model's value agrees with the measured one, and the difference."""
         why = "" if computed.verdict != NOT_COMPARED else f": {computed.status}"
         return word_verdict(computed.verdict, computed.difference, self.value, unit_of_peak(self)) + why
 
@@ -86,7 +86,7 @@ def unit_of_peak(peak: MeasuredPeak) -> str:
 
 
 def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
-    """Return the verdict of the section in one line: counts, and the largest relative difference that is not met."""
+    """Return a line on measured peaks: number of each verdict, and the largest relative difference not met."""
     pairs = [(peak, computed) for peak in peaks for computed in peak.computed]
     off = []
     for peak, each in pairs:
@@ -102,7 +102,7 @@ def phases_of_peak(peak: Measured) -> tuple[float, float]:
 
 
 def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[MeasuredQuantityKey]:
-    """Return the measured quantities that a model can answer: only mu if it shares its motion with another model."""
+    """Return the measured quantities that a model computes at a phase pair: only amplification if it has a cutoff."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()
@@ -111,10 +111,10 @@ def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> 
 
 
 def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
-    """Return the peaks of one model at one phase pair. Runs inside a worker process."""
+    """Compute, in a worker process, the measured quantities by one model at one phase pair."""
     scene, model, tolerance, phases, asked = task
     status = Outcome.OK.value
-    known: dict[str, Any] = {}  # estimates by quantity; a value may be for the isolator, for every body, or None
+    known: dict[str, Any] = {}  # by quantity: an estimate, one for each body, or None
     if any(quantity == "mu" for quantity, _ in asked):
         answer = compute_amplification(scene, model, [phases], tolerance=tolerance)
         known["mu"] = tuple(map(Estimate, answer.mu[0].tolist(), answer.error[0].tolist()))
@@ -128,7 +128,7 @@ def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
 
 
 def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
-    """Return how many measured peaks were compared with the models, with what verdicts, in a clause; "" without any."""
+    """Return a clause: number of measured peaks compared with models, and of each verdict; "" without any."""
     if not peaks:
         return ""
     counts = count_verdicts(computed.verdict for peak in peaks for computed in peak.computed)
@@ -137,7 +137,7 @@ def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
 
 
 class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
-    """Analysis that compares every measured peak with every model that has its quantity."""
+    """Analysis that compares every measured peak with the value of every model that computes its quantity."""
 
     key, stage, level = "measured", "measured", 2
     seconds = 1.0
@@ -145,7 +145,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
     without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
-        """Yield the arguments of a task for each scene, phase pair of a test, and model."""
+        """Yield the arguments of a task for each scene, phase pair at which a peak was measured, and model."""
         for scene in study.scenes:
             for phases in dict.fromkeys(map(phases_of_peak, scene.measured or ())):
                 for model in models_of(scene, study.hierarchy):
@@ -166,7 +166,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
 def _compare_peak(
     scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[MeasuredQuantityKey, PeakAnswer]]]
 ) -> MeasuredPeak:
-    """Return a measured peak beside those of the models; body 0 for the isolator."""
+    """Return a measured peak with its values by the models. models: key, and computed peaks by quantity and body."""
     computed, asked = [], (peak.quantity, peak.body or 0)
     for model, known in models:
         if asked in known:

@@ -19,15 +19,15 @@ from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
-# Largest interpolation error of a decimated motion, as a share of half a component's range
+# Decimation keeps few instants of a stored motion: largest error of lines between them, as a share of `half_range`
 MAX_DECIMATION_ERROR = 0.003
-MIN_RANGE_SHARE = 0.01  # A component whose range is below this share of its largest value counts as constant.
-# Number of phase pairs (k, 2k) 2 pi/5: they cover the square evenly, and no two are mirror images.
+MIN_RANGE_SHARE = 0.01  # smallest half range of a component that is used, as a share of its largest value
+# Number of phase pairs (k, 2k) 2 pi/5 with stored motions: even over the square of phases, no two mirror images
 EVENLY_SPREAD_PAIRS = 5
 
 
 def half_range(values: Array) -> Array:
-    """Return half of the range of each component of `values` (T, C), (C,): decimation errors are shares of it."""
+    """Return half the range (C,) of each component of `values` (T, C), to which decimation errors are relative."""
     largest = np.abs(values).max(axis=0, initial=0.0)
     half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
     scale: Array = np.maximum(half, MIN_RANGE_SHARE * largest)
@@ -36,7 +36,7 @@ def half_range(values: Array) -> Array:
 
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
-    Return the indices of the instants at which a decimated motion keeps its `values` (T, C) at `time` (T,).
+    Return the indices of the instants that a decimated motion keeps. values: (T, C) at `time` (T,).
 
     They are both ends, `peaks`, and as many more as it takes for straight lines between them to miss no value by more
     than MAX_DECIMATION_ERROR of `half_range` of its component.
@@ -53,7 +53,7 @@ def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.
 
 @cache_on_disk(__file__, error_model="numpy", nogil=True)
 def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.bool_]) -> None:
-    """Add to `kept` (T,) the row with the largest error wherever a straight line misses `values` (T, C)."""
+    """Mark more instants in `kept` (T,) until lines between them miss no value (T, C) by more than `share`."""
     start = 0
     while start < len(time) - 1:
         end = start + 1
@@ -75,7 +75,7 @@ def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.boo
 
 @dataclass(frozen=True)
 class MotionPlace:
-    """Phase pair whose motion is stored: its indices on the grid, and why it was chosen ("" in the even spread)."""
+    """Phase pair whose motion is stored: indices row, column on the grid; why chosen ("" if evenly spread)."""
 
     scene: str
     row: int
@@ -118,7 +118,7 @@ class StoredMotion:
     spectra: FloorSpectra | None = None
 
     def __post_init__(self) -> None:
-        """Refuse arrays whose sizes disagree."""
+        """Raise ValueError if the lengths of arrays differ from that of the time, or shapes disagree."""
         bodies = self.position.shape[1:2]
         shape = (len(self.time), *bodies, 2)
         if self.time.ndim != 1 or self.position.shape != shape or self.acceleration.shape != shape:
@@ -128,18 +128,18 @@ class StoredMotion:
                 raise ValueError(f"{self.time.shape} instants of {name} {values.shape}")
 
     def series_by_name(self) -> dict[str, Array]:
-        """Return the series of the motion, (T, C) each, by name; "time" comes first."""
+        """Return the time histories of the motion, (T, C) each, by name; "time" comes first; empty ones are omitted."""
         names = ("time", "position", "acceleration", "contact_force", "isolator_force", "support_force", "yaw")
         arrays = {name: np.asarray(getattr(self, name)) for name in names}
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
-Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # task; float: error; last: phases, rad
+Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # task; float: tolerance; last: phases, rad
 
 
 def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:
     """
-    Return phase pairs of largest differences and an even spread of others, with the engine models to compute there.
+    Choose phase pairs whose motions are stored (largest differences of models, even spread), and engines for each.
     """
     engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:
@@ -160,17 +160,17 @@ def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Moti
 
 
 def models_to_show(study: Study, scene: Scene) -> list[Model]:
-    """Return the models whose surfaces the page shows and that have motions, each once."""
+    """Return the models that the page compares and that can compute motions, each once."""
     shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
     return [model for model in shown.values() if model.trajectory]
 
 
 def compute_stored_motion(task: Arguments) -> StoredMotion:
-    """Return the decimated motion of one task; `error_message` holds what goes wrong."""
+    """Compute the motion of one task and return it decimated; if that fails, `error_message` says why."""
     scene, model, tolerance, place, phase = task
     try:
         motion = compute_motion(scene, model, phase, tolerance=tolerance)
-        if len(motion.time) == 0:  # The model refused the scene before its first step.
+        if len(motion.time) == 0:  # the model refused the scene before the first time step
             return replace(
                 _motion_without_values(place, model.key, Outcome(motion.status), ""), demands=demands(motion)
             )
@@ -180,7 +180,7 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
 
 
 def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> StoredMotion:
-    """Return the decimated motion with its demands and spectra. Raises ValueError for numbers that are not finite."""
+    """Return a motion decimated, with its demands and floor spectra. Raises ValueError if a number is not finite."""
     whole = StoredMotion(
         place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
         tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),
@@ -200,7 +200,7 @@ def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> Store
 
 
 def _motion_without_values(place: MotionPlace, model: str, outcome: Outcome, error_message: str) -> StoredMotion:
-    """Return a motion of no instants, with the outcome and message that say why."""
+    """Return a stored motion of zero length, with the outcome and message that say why it is empty."""
     empty = np.zeros((0, 0, 2))
     return StoredMotion(
         place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message
@@ -208,12 +208,12 @@ def _motion_without_values(place: MotionPlace, model: str, outcome: Outcome, err
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
-    """Return a motion of no instants for a task that failed."""
+    """Return a stored motion of zero length for a task that failed."""
     return _motion_without_values(task[3], task[1].key, failed.outcome, failed.error_message)
 
 
 class Motions(MappedAnalysis[list[StoredMotion]]):
-    """Analysis that stores motions for the report, at phases that depend on the surfaces."""
+    """Analysis that stores motions for the report, at phase pairs chosen by the surfaces of amplification."""
 
     key, stage, needs_surfaces = "motions", "motions", True
     seconds = 4.0
@@ -224,7 +224,7 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
     )
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
-        """Return every phase pair with every model to compute there, in the order scene, phase pair, model."""
+        """Return the arguments of each task: one for every scene, chosen phase pair and model to compute there."""
         assert surfaces is not None, "the places are chosen by the surfaces"
         axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
         return [

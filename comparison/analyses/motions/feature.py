@@ -17,7 +17,7 @@ from reference.problem import Scene
 
 
 class ResidualDisplacement(UncertainNumber):
-    """Displacement at which the platform comes to rest for good, m, or the reason why a motion has none."""
+    """Residual displacement, m, at which the platform stays at rest; or the reason why a motion has none."""
 
     reason: Text
     """why there is no value although the motion lasts as long as the scene; empty otherwise"""
@@ -50,19 +50,19 @@ class _StoredMotionDemandsSchema(Part):
 
 
 def _type_of_demand(annotation: str) -> Any:
-    """Return the schema type of a field of `Demands`: a number, or a list by body; or null if models may lack it."""
+    """Return the type, for the JSON schema, of a field of `Demands`: a number or one by body, or null if allowed."""
     kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
     return kind | None if annotation.endswith("None") else kind
 
 
 def _meaning_of_demand(name: str) -> Any:
-    """Return the schema entry of a demand: its meaning, SI unit and bodies."""
+    """Return the description of a demand for the JSON schema: meaning, SI unit and bodies that have it."""
     of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
     meaning, unit = QUANTITIES[name]
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
 
 
-_DEMANDS: dict[str, Any] = {  # type and schema entry of every demand, by name
+_DEMANDS: dict[str, Any] = {  # by demand: type and description in the JSON schema
     each.name: (
         ResidualDisplacement if each.name == "residual" else _type_of_demand(str(each.type)),
         _meaning_of_demand(each.name),
@@ -77,7 +77,7 @@ MotionDemands: Any = create_model(  # form in which summary.json holds the deman
 
 
 def _demands_of_motions(findings: Findings, scene: Scene) -> list[MotionDemands]:
-    """Return the demands of every stored motion that was computed."""
+    """Return the demands of the stored motions of a scene, as summary.json holds them."""
     alpha1, alpha2 = (findings.surfaces[name].values for name in ("alpha1", "alpha2"))
     motions: Sequence[StoredMotion] = findings.found.get(Motions.key) or []
     listed = []
@@ -96,7 +96,7 @@ def _demands_of_motions(findings: Findings, scene: Scene) -> list[MotionDemands]
 
 
 def _round_spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
-    """Return the spectra rounded to six digits, their errors to two."""
+    """Return floor spectra rounded to six digits, their errors to two; None without spectra."""
     if spectra is None:
         return None
     return MotionSpectra(
@@ -117,7 +117,7 @@ FEATURE = Feature(
     Motions.key,
     scene_fields=(DEMANDS,),
     analysis=Motions(),
-    needs="surfaces",  # The report shows the motions below the surfaces.
+    needs="surfaces",  # show motions only with surfaces, below which they stand
     page_data=collect_motion_data,
     packed_data=encode_motions,
 )

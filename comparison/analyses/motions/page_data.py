@@ -47,20 +47,20 @@ from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
 
-MotionOffsets = dict[tuple[MotionPlace, str], int]  # index of the first packed number, by place and model key
+MotionOffsets = dict[tuple[MotionPlace, str], int]  # by motion: index of its first packed number
 
-MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed column, as a share of half its range
-SPECTRUM_DIGITS = 4  # significant digits of a spectrum: more are invisible in a drawn line
-MAX_TIME_ROUNDING = 1e-6  # largest rounding error of the time, as a share of the duration
+MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed time history, as a share of half its range
+SPECTRUM_DIGITS = 4  # significant digits of a floor spectrum on the page: more are invisible
+MAX_TIME_ROUNDING = 1e-6  # largest rounding error of packed times, as a share of the duration
 
 
 def encode_motions(report: Report) -> bytes:
-    """Return the packed numbers of all motions, one motion after the other."""
+    """Return the time histories of all stored motions as bytes, one motion after the other."""
     return b"".join(_encode_motion(motion) for motion in report.found.get("motions") or [])
 
 
 def collect_motion_data(report: Report, scene: Scene) -> dict[str, Any]:
-    """Return the data that the page's script reads of the motions of a scene."""
+    """Return the data on a scene's stored motions that the page's script reads, without their packed numbers."""
     return {
         "contact": contact_geometry(scene),
         "places": list(list_pairs_with_motions(report, scene)),
@@ -100,7 +100,7 @@ def list_pairs_with_motions(report: Report, scene: Scene) -> Iterator[dict[str, 
 
 
 def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
-    """Return the periods, s, and the damping ratio of the scene's floor response spectra."""
+    """Return the periods, s, and the damping ratio at which a scene's floor spectra are computed."""
     for motion in report.found.get("motions") or []:
         if motion.place.scene == scene.name and motion.spectra is not None:
             return {
@@ -112,7 +112,7 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Return the positions of the contact points of the supports, and the lever of a sphere.
+    Return for the page the supports' contact points, and the share of the displacement that these move back.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.
@@ -125,7 +125,7 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
 
 
 def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
-    """Return for each column of a motion the exponent n of its rounding unit 2^n."""
+    """Return for each time history of a motion the exponent n of the unit 2^n to which it is rounded."""
     values = _motion_columns(motion)
     steps = MAX_COLUMN_ROUNDING * half_range(values)
     steps[:1] = MAX_TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
@@ -133,25 +133,25 @@ def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
 
 
 def _motion_columns(motion: StoredMotion) -> NDArray[np.float64]:
-    """Return all time histories of a motion as columns, (T, C)."""
+    """Return all time histories of a motion as columns of one array, (T, C): T instants, C components."""
     blocks = list(motion.series_by_name().values())
     return np.hstack(blocks) if blocks else np.zeros((0, 0))
 
 
 def _encode_motion(motion: StoredMotion) -> bytes:
-    """Return the columns of a motion in integer multiples of their rounding units: first value, then the changes."""
+    """Return a motion's time histories as bytes: 32-bit multiples of their units, first value, then differences."""
     values = np.round(_motion_columns(motion) / 2.0 ** _rounding_exponents(motion))
     return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
 
 
 def find_motion_offsets(motions: Sequence[StoredMotion]) -> MotionOffsets:
-    """Return the offset of the first number of every motion among all packed numbers."""
+    """Return for every motion the index of its first number among the packed numbers of all motions."""
     sizes = [sum(block.size for block in motion.series_by_name().values()) for motion in motions]
     return {(motion.place, motion.model): last for motion, last in zip(motions, accumulate(sizes, initial=0))}
 
 
 def _list_column_ranges(motion: StoredMotion) -> dict[str, list[int]]:
-    """Return for every series of the motion its first column and its number of columns."""
+    """Return for every time history of the motion, by name, its first column and its number of columns."""
     widths = {name: block.shape[1] for name, block in motion.series_by_name().items()}
     return {name: [last - width, width] for (name, width), last in zip(widths.items(), accumulate(widths.values()))}
 
@@ -164,10 +164,10 @@ def round_to_significant_digits(values: NDArray[np.float64], digits: int) -> lis
 
 
 def _list_demands(demands: Demands) -> dict[str, Any]:
-    """Return the demands as JSON without their status, which the motion states."""
+    """Return the demands in a form for JSON, without the status, which stands in the motion's entry."""
 
     def pair(estimate: Any) -> list[Any] | None:
-        """Return value and error of an estimate, with the reason for a missing one; a list for several bodies."""
+        """Return [value, error] of an estimate, with a reason if missing; a list of these for several bodies."""
         if estimate is None:
             return None
         if isinstance(estimate, tuple):

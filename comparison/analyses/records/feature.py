@@ -44,7 +44,7 @@ def list_recorded_motions(findings: Findings, scenes: Sequence[SceneResult]) -> 
 
 
 def _recorded_motion(record: RecordDescription) -> RecordedMotion:
-    """Return the description of a record in the form of the summary."""
+    """Return what was read of a record in the form in which summary.json holds it."""
     directions = tuple(
         RecordedDirection(one.axis, one.peak, one.mean_over_peak, one.final_velocity, one.final_displacement)
         for one in record.directions
@@ -53,7 +53,7 @@ def _recorded_motion(record: RecordDescription) -> RecordedMotion:
 
 
 def word_warnings(records: Sequence[RecordedMotion]) -> str:
-    """Return the number of records read and the number of them with implausible values."""
+    """Return in words how many records were read, and how many have implausible values."""
     count, warned = len(records), sum(bool(record.warnings) for record in records)
     read = f"{count} motion{'' if count == 1 else 's'} read"
     return f"{read}, {warned} with a warning" if warned else f"{read}, no warning"

@@ -1,5 +1,5 @@
 """
-Search for the phases where mu_i and the displacement are largest in every scene, and the engine's values there.
+Search for the phases where amplification and displacement are largest in every scene; the engine's values there.
 
 The search of `reference.worst_phases` is made for the small equations in both readings of (5.1), and for the equations
 that the engine answers for. Beside these the engine is searched in a square around the worst phases, so that its own
@@ -31,10 +31,10 @@ from reference.measures.local_maxima import GRID, find_local_maxima
 from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, make_square_nodes, predict_best
 from reference.problem import Scene
 
-SEARCH_TOLERANCE = 1e-5  # relative error of the amplification mu at which the equations are solved in a search
-# Half width, rad, of the square around the equations' worst phases in which the engine is searched
+SEARCH_TOLERANCE = 1e-5  # relative error of the amplification by the equations in a search for the worst phases
+# Half width, rad, of the square around the equations' worst phases in which the engine's largest value is searched
 ENGINE_HALF_WIDTH = 0.02
-NO_PHASES = (math.nan, math.nan)  # phases or a direction that are not known
+NO_PHASES = (math.nan, math.nan)  # stands for unknown phases, or an unknown direction
 
 
 Quantity = Literal["amplification", "displacement"]  # what is searched for its largest value over the phases
@@ -42,7 +42,7 @@ Quantity = Literal["amplification", "displacement"]  # what is searched for its 
 
 @result
 class LargestOverPhases:
-    """Largest amplification mu of a body, or largest displacement of the platform, over all phases by one model."""
+    """Largest amplification of a body, or largest displacement of the platform, over all phases by one model."""
 
     scene: Annotated[str, "name of the scene"]
     model: Annotated[str, "key of the model"]
@@ -64,14 +64,14 @@ class LargestOverPhases:
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
-# An engine model without a search of its own, and the largest value on its phase grid
+# Engine model for which no search is made, with the largest value on its phase grid
 UnsearchedEngine = tuple[Model, GridMaximum]
-# Arguments of a task: scene, model, its engine, unsearched engine, quantity, body, engine tolerance, start phases, rad
+# Arguments of a task: scene, equations, engine, engine on its grid, quantity, body, engine tolerance, start phases, rad
 SearchTaskArguments = tuple[Scene, Model, Model | None, UnsearchedEngine | None, Quantity, int, float, Array | None]
 
 
 def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
-    """Return the largest mu over all phases by a model, or by the nearest model of the hierarchy that was searched."""
+    """Return a body's largest amplification over all phases by a model, or by the next model that was searched."""
     searched = {
         worst.model: worst
         for worst in found
@@ -83,7 +83,7 @@ def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str,
 
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Return for every search its model, the engine with the same equations or None, the quantity and the body."""
+    """Return what is searched: model of equations, engine that solves the same (or None), quantity and body."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -97,7 +97,7 @@ def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None
 def _starting_phases(
     study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
 ) -> Array | None:
-    """Return the phases, rad, (K, 2), of the surface's local maxima; None if its grid is coarser than the search's."""
+    """Return phases, rad, (K, 2), of local maxima on the study's grid; None if it is coarser than the search's own."""
     if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
@@ -109,7 +109,7 @@ def _starting_phases(
 
 
 def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
-    """Return the largest value by the equations, and by the engine near it. Runs inside a worker process."""
+    """Search the largest value by the equations over all phases, and the engine's near it, in a worker process."""
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
@@ -124,21 +124,21 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
 
 
 def _without_value(task: SearchTaskArguments, failed: TaskResult) -> list[LargestOverPhases]:
-    """Return a result without a value for each model of a search that failed, with the reason."""
+    """Return, for each model of a search that failed, a result without value that states the reason."""
     scene, model, engine, on_grid, quantity, body, *_ = task
     models = [model, *([engine] if engine else []), *([on_grid[0]] if on_grid else [])]
     return [LargestOverPhases(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
 
 
 class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):
-    """Analysis that searches the largest amplification mu of every body and the largest displacement in every scene."""
+    """Analysis that searches the phases of the largest amplification of each body and the largest displacement."""
 
     key, stage, needs_surfaces = "worst_phases", "worst phases", True
     seconds = 2.0
     function, without_value = staticmethod(search_worst_phases), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[SearchTaskArguments]:
-        """Yield the arguments of each search, with the engine that solves the same equations."""
+        """Yield the arguments of each search: those of a model of equations and of the engine that solves the same."""
         for scene in study.phased:
             for model, engine, quantity, body in _list_searches(study, scene):
                 starts = _starting_phases(study, surfaces, scene, model, quantity, body)
@@ -149,7 +149,7 @@ class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):
 def _compute_engine_nearby(
     worst: LargestOverPhases, scene: Scene, like: Model, model: Model, tolerance: float
 ) -> LargestOverPhases:
-    """Return the engine's value at the worst phases of the equations, and its largest in a square around them."""
+    """Return the engine's amplification at the equations' worst phases, and its largest in a square around them."""
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))
     search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
@@ -173,7 +173,7 @@ def _compute_engine_nearby(
 
 
 def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> UnsearchedEngine | None:
-    """Return the spatial engine model with the largest mu of a body on its phase grid; None without such a model."""
+    """Return the spatial engine and a body's largest amplification on its phase grid; None without such a model."""
     model = study.compared(scene)[-1]
     if surfaces is None or not model.is_spatial:
         return None
@@ -184,7 +184,7 @@ def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, bo
 def _larger_of_grid_and_worst(
     worst: LargestOverPhases, scene: Scene, on_grid: UnsearchedEngine, tolerance: float
 ) -> LargestOverPhases:
-    """Return the larger of two values of mu by the engine: largest on its grid; at the equations' worst phases."""
+    """Return the larger of two amplifications by the engine: largest on its grid; at the equations' worst phases."""
     model, largest = on_grid
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
@@ -197,14 +197,14 @@ def _larger_of_grid_and_worst(
 
 
 def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
-    """Return mu of one body by a model as a function of the phases, to be searched for its largest value."""
+    """Return a body's amplification by a model as a function of the phases, for the search of its maximum."""
     return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
 def _estimate_engine_by_ratio(
     center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
 ) -> ComputedPhases:
-    """Return an estimate of the engine's mu at 3 x 3 phase pairs: the equations' mu times a ratio known at five."""
+    """Estimate the engine's amplification at 3 x 3 phase pairs: that of the equations times a ratio known at five."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]

@@ -16,7 +16,7 @@ from reference.problem.readings import BOTH_READINGS
 
 
 def _word_kind(worst: LargestOverPhases) -> str:
-    """Return how a largest value was found, or why there is none."""
+    """Return in words where a largest value lies (maximum, edge, jump, grid), or why there is none."""
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
@@ -33,14 +33,14 @@ def _word_kind(worst: LargestOverPhases) -> str:
 
 
 def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
-    """Return the distributions to draw for a body: the small equations in both readings, and the last model."""
+    """Return the curves to draw of a body's amplification over all phases: by small equations and by the last model."""
     (last,) = (line.second for line in scene.headlines if line.body == body)
     kept = (SMALL.key, SMALL_AS_INTEGRATED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 
 def _name_reading(report: Report, worst: LargestOverPhases) -> str:
-    """Return the reading of (5.1) that a largest value has; "" for a displacement."""
+    """Return the name of the acceleration peak (literal supremum or as integrated) of a largest value, or ""."""
     if worst.quantity == "displacement":
         return ""
     (scene,) = (scene for scene in report.study.scenes if scene.name == worst.scene)
@@ -55,9 +55,9 @@ FOUND = ResultField(
 
 def _list_marks(report: Report, scene: Scene) -> Mapping[str, Any]:
     """
-    Return under `worst` the largest value of every model and body, which the page marks on the surface.
+    Return the largest amplification of every model and body, which the page marks on its surface.
 
-    alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this one or one near it. None
+    Each is alpha1, alpha2 (rad), the amplification, and the model that was searched: this one or one near it. None
     where none was.
     """
     keys = [each.key for each in models_of(scene, report.study.hierarchy)]
@@ -67,12 +67,12 @@ def _list_marks(report: Report, scene: Scene) -> Mapping[str, Any]:
 
 
 def _make_mark(worst: LargestOverPhases) -> list[float | str]:
-    """Return the phases, rad, the value and the model of a largest value, for its mark in the plot."""
+    """Return the phases, rad, value and model of a largest amplification, for its mark on the surface."""
     return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{MU_DIGITS}g}"), worst.model]
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
-    """Return the variables that the template of this section reads."""
+    """Return the template variables of the report section on worst phases: distributions and largest values."""
     results = report.results
     return {
         "distribution_panels": [

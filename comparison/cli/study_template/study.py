@@ -14,21 +14,21 @@ SCENE = Path(__file__).with_name("building.toml")
 
 
 def main() -> None:
-    """Print amplification, both sides at the worst phases, and demands there."""
+    """Print the range of amplification, equations and engine at the worst phases, and demands there."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--grid", type=int, default=12, help="phases per axis (default %(default)s)")
     grid = parser.parse_args().grid
 
     scene = reference.load_scene(SCENE)
     phases = reference.phase_grid(grid)  # rad, one pair per row
-    answer = reference.amplification(scene, phases, tolerance=1e-6)  # mu: a row per pair, a column per body
+    answer = reference.amplification(scene, phases, tolerance=1e-6)  # answer.mu: a row per pair, a column per body
     worst = int(np.nanargmax(answer.mu[:, -1]))
     print(f"{scene.title}: {len(phases)} phase pairs, status {', '.join(sorted(set(answer.status)))}")
     for body, (low, high) in enumerate(zip(np.nanmin(answer.mu, axis=0), np.nanmax(answer.mu, axis=0)), start=1):
         print(f"  body {body}: mu from {low:.3f} to {high:.3f}")
 
-    # the same law of friction on both sides, where the top moves most
-    law, pair = 1e-3, phases[worst : worst + 1]  # m/s
+    # equations and engine with the same friction law, at the phases where the top's amplification is largest
+    law, pair = 1e-3, phases[worst : worst + 1]  # v_reg, m/s, and worst phase pair, rad
     equations = reference.amplification(scene, pair, regularization=law)
     engine = multibody.amplification(scene, pair, regularization=law)
     print(f"phases {pair[0].round(3).tolist()} rad, like for like:")

@@ -26,17 +26,17 @@ from comparison.verdicts import MET, NOT_MET
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import State, Trajectory
 
-# Model of each code: the equations with rigid and with regularized friction, and the multibody engine
+# Model used for each "side": equations with rigid friction, equations with regularized friction, multibody engine
 MODEL_OF_SIDE = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
-TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked of each code
-READ_SAMPLES = 100_001  # number of instants at which a motion by the equations is read
-SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by each code
-TASK_TIME_LIMIT = 300.0  # s, largest processor time of one task
+TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked of each side
+READ_SAMPLES = 100_001  # number of instants of a motion by the equations, from which numbers such as extremes are read
+SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by side
+TASK_TIME_LIMIT = 300.0  # s, processor time after which a task is ended
 
 
 @dataclass(frozen=True)
 class SideNumbers:
-    """Numbers that one code computes for a benchmark, with their errors, and how its motion ended."""
+    """Numbers that one side (equations or engine) computes for a benchmark, with errors, and how its motion ended."""
 
     values: list[float]
     errors: list[float]
@@ -46,16 +46,16 @@ class SideNumbers:
 
 @dataclass(frozen=True)
 class BenchmarkTable:
-    """Task list of the benchmarks: equations, equations with the engine's friction law, and engine."""
+    """Benchmarks and the tasks that solve each: by equations, by equations with the engine's friction, by engine."""
 
     cases: Sequence[BenchmarkCase]
 
     def tasks(self) -> list[Task]:
-        """Return one task for each benchmark and code."""
+        """Return one task for each benchmark and side (equations, smoothed equations, engine)."""
         return [self._task(case, side) for case in self.cases for side in MODEL_OF_SIDE]
 
     def collect(self, results: TaskResults) -> Benchmarks:
-        """Return the table of results without the facts of the run, which the command adds."""
+        """Return the results of all benchmarks; its field `run` is empty, to be filled by the command."""
         answers = [
             {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
             for case in self.cases
@@ -63,7 +63,7 @@ class BenchmarkTable:
         return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
-        """Return the task that solves one benchmark by one code."""
+        """Return the task that solves one benchmark by one side (equations, smoothed equations, engine)."""
         seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
         return Task(
             solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
@@ -71,7 +71,7 @@ class BenchmarkTable:
 
 
 def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
-    """Return the numbers that one code computes for a benchmark. Runs inside a worker process."""
+    """Solve a benchmark by one side in a worker process; return the numbers to compare with published ones."""
     case, side = benchmark_and_side
     settings = dict(MODEL_OF_SIDE[side].settings)
     if side != EQUATIONS:
@@ -88,12 +88,12 @@ def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
 
 
 def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
-    """Return the numbers read from a motion and their estimated absolute errors; none if it ended early."""
+    """Return the numbers read from a motion and their estimated absolute errors; two empty lists if it ended early."""
     if motion.status not in FULL_LENGTH_OUTCOMES or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.read(motion), motion.accuracy
     others = [] if accuracy is None else [reading.read(each) for each in (halve_samples(motion), *accuracy.coarser)]
-    # A coarser reading finds another number of swings, so its difference is no error estimate.
+    # no error estimate: a coarser solution has another number of swings, so that numbers do not pair
     if accuracy is None or any(len(other) != len(values) for other in others):
         return values, [math.nan] * len(values)
     rows = zip(values, *others)
@@ -108,7 +108,7 @@ def halve_samples(motion: Trajectory) -> Trajectory:
 
 
 def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
-    """Return a benchmark with the published numbers and those of every code."""
+    """Return the result of a benchmark: published numbers, and those by each side."""
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -123,7 +123,7 @@ def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> 
 
 
 def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
-    """Return a published number with that of every code; NaN if a code has fewer values than are published."""
+    """Return published number `place` of a benchmark with those by each side; without value if a side has too few."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
     for side, answer in answers.items():
@@ -131,13 +131,13 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
             numbers[side] = answer.values[place], answer.errors[place]
 
     def read_number(side: str) -> SideNumber:
-        """Return the number by one code, with its verdict and, if it is not met, the reason."""
+        """Return the number by one side, with its verdict and, if it is "not met", the explanation."""
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
         return SideNumber(value, error, verdict, explain_deviation(side) if verdict == NOT_MET else "")
 
     def explain_deviation(code: str) -> str:
-        """Return why a code misses the published number: the case's model or regularized friction, "" if neither."""
+        """Return why a side misses the published number: another model in the source, regularized friction, or ""."""
         if case.difference:
             return MODEL_EXPLANATION
         (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]
@@ -148,5 +148,5 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
 
 
 def _answer_of_failure(benchmark_and_side: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
-    """Return the answer of a code that failed: no numbers, and the reason."""
+    """Return what stands for the numbers of a side that failed: no numbers, and the reason."""
     return SideNumbers([], [], failed.reason, 0.0)

@@ -26,7 +26,7 @@ from reference.support.files import read_file
 SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"  # folder of the scene files
 INCH = 0.0254  # m in an inch
 BLOCK_WEIGHT = 10.0  # N, weight of the blocks in code_aster's benchmarks
-RAMP_EFFECT = 2e-7  # m, change of the displacement because Newmark's pulse ends within 1 ms instead of at once
+RAMP_EFFECT = 2e-7  # m, effect on the displacement of a pulse that falls to zero within 1 ms; Newmark's falls at once
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class MotionReading:
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)
-    factor: float = 1.0  # from SI units to the unit of the published number
+    factor: float = 1.0  # factor from SI unit to published unit
 
     def read(self, motion: Trajectory) -> list[float]:
-        """Return the numbers in the published units."""
+        """Read the numbers from a motion and return them in the units of the published ones."""
         values = np.atleast_1d(self.function(motion, **self.arguments))
         return [self.factor * float(value) for value in values]
 
@@ -67,7 +67,7 @@ class BenchmarkCase:
 
 
 def load_shipped_scene(name: str, values: Mapping[str, Any] | None = None) -> Scene:
-    """Return a scene of this package with some values replaced."""
+    """Return a scene file shipped with the benchmarks, by name, as a scene; `values` replace some of its values."""
     return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values({"name": name, **(values or {})})
 
 
@@ -85,7 +85,7 @@ def list_cases() -> list[BenchmarkCase]:
 
 
 def _wear_power_cases() -> list[BenchmarkCase]:
-    """Return benchmarks of a block under a harmonic force, from always sliding to stuck (code_aster SDND104)."""
+    """Return benchmarks of the friction power of a harmonically shaken block, always sliding to stuck (SDND104)."""
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
@@ -103,7 +103,7 @@ def _wear_power_cases() -> list[BenchmarkCase]:
 
 
 def _release_case() -> BenchmarkCase:
-    """Return a mass on a spring with dry friction, released from rest (code_aster SDND100)."""
+    """Return the benchmark of a mass on a spring with dry friction, released from rest (code_aster SDND100)."""
     return BenchmarkCase(
         title="code_aster SDND100: release with friction",
         source="code_aster, test SDND100 (V5.01.100): closed form",
@@ -120,8 +120,8 @@ def _release_case() -> BenchmarkCase:
 
 
 def _coulomb_damping_case() -> BenchmarkCase:
-    """Return a free vibration with Coulomb damping (ANSYS VM73), scaled in time."""
-    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # frequency at 30 lb/in and 10 lb, over the scene's 0.1 rad/s
+    """Return the benchmark of a free vibration with Coulomb damping (ANSYS VM73), scaled in time."""
+    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # frequency at 30 lb/in and 10 lb, divided by the scene's 0.1 rad/s
     times = (0.09, 0.102, 0.183)
     return BenchmarkCase(
         title="ANSYS VM73: free vibration with Coulomb damping",
@@ -141,9 +141,9 @@ def _coulomb_damping_case() -> BenchmarkCase:
 
 
 def _den_hartog_case() -> BenchmarkCase:
-    """Return Den Hartog's forced oscillator with dry friction, beside its resonance."""
+    """Return the benchmark of Den Hartog's forced oscillator with dry friction, off its resonance."""
     scene = load_shipped_scene("den-hartog")
-    unit = 1e-3 * scene.radius / GRAVITY  # m: static displacement under the force
+    unit = 1e-3 * scene.radius / GRAVITY  # m, static displacement under the force; published numbers are multiples
     return BenchmarkCase(
         title="Den Hartog: forced oscillation with friction",
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
@@ -158,8 +158,8 @@ def _den_hartog_case() -> BenchmarkCase:
 
 
 def _harmonic_block_case() -> BenchmarkCase:
-    """Return a rigid block that slides on a harmonically shaken plane (Westermo and Udwadia)."""
-    share = 1.0 / 2.5  # friction limit over the amplitude of the ground acceleration
+    """Return the benchmark of a rigid block that slides on a harmonically shaken plane (Westermo and Udwadia)."""
+    share = 1.0 / 2.5  # friction force per mass, divided by the amplitude of the ground acceleration
     amplitude = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
     return BenchmarkCase(
         title="Rigid block on a harmonically shaken plane",
@@ -173,7 +173,7 @@ def _harmonic_block_case() -> BenchmarkCase:
 
 
 def _pulse_case() -> BenchmarkCase:
-    """Return Newmark's sliding block under a rectangular acceleration pulse."""
+    """Return the benchmark of Newmark's sliding block under a rectangular acceleration pulse."""
     return BenchmarkCase(
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
@@ -185,7 +185,7 @@ def _pulse_case() -> BenchmarkCase:
 
 
 def _linear_cases() -> list[BenchmarkCase]:
-    """Return the benchmarks of linear structures: natural periods and responses."""
+    """Return the benchmarks of natural periods of two structures, and of the period of a pendulum at large swing."""
     stories = (2.0, 0.6852, 0.4346, 0.3383, 0.2966)
     return [
         BenchmarkCase(
@@ -227,28 +227,28 @@ def _linear_cases() -> list[BenchmarkCase]:
 
 MASTODON_OPTION = "--mastodon"  # option that names the file with MASTODON's input motion
 MASTODON_RULE = "must be the CSV file with the input of MASTODON's friction pendulum test: time [s], ax, ay, az"
-READING_ERROR = 3.0  # mm, error of reading the published loops
+READING_ERROR = 3.0  # mm, error of displacements read from the published force-displacement loops (MASTODON)
 MASTODON_RADIUS = 2.2352  # m, radius of the friction pendulum
 MASTODON_WEIGHT = 6285710.0  # N, weight on the friction pendulum
-MASTODON_DURATION = 8.0  # s that are computed of 50 s: later displacements are smaller
-# Samples of the MASTODON input motion; their step, s, from the second sample on
+MASTODON_DURATION = 8.0  # s, computed part of the 50 s of motion; later displacements are smaller
+# MASTODON input motion: number of samples, and time step, s (that after the first sample may differ)
 MASTODON_SAMPLES, MASTODON_STEP = 5002, 0.01
-MASTODON_PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, peaks of the MASTODON input along x, y and z
-INPUT_TOLERANCE = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
+MASTODON_PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, peaks of the MASTODON input motion along x, y, z
+INPUT_TOLERANCE = 1e-3  # largest relative deviation of a file's time step and peaks from those of the MASTODON input
 # mm, published displacements: smallest and largest along x, then along y
 MASTODON_EXTREMES = -432.0, 330.0, -197.0, 152.0
 # Friction of the MASTODON benchmark: it falls with pressure and temperature and grows with the slip velocity
 MASTODON_FRICTION = {
-    "slow": 0.03 * 0.789 / 0.79,  # MASTODON's factor at T degrees C is 0.789 (0.7^(0.02 T) + 0.4), here 0.79 (...)
+    "slow": 0.03 * 0.789 / 0.79,  # MASTODON's temperature factor 0.789 (0.7^(0.02 T) + 0.4), T in °C; here 0.79 (...)
     "fast": 0.06 * 0.789 / 0.79,
     "rate": 100.0,
-    "load_exponent": -0.357,  # log-log slope of MASTODON's 0.7^(0.02 (p - 50)) at p = 50 MPa, under the weight
+    "load_exponent": -0.357,  # power of the pressure p: slope of ln 0.7^(0.02 (p - 50)) over ln p at p = 50 MPa
     "heating": {"contact_radius": 0.2, "conductivity": 18.0, "diffusivity": 4.4e-6},
 }
 
 
 def load_mastodon_case(path: Path) -> BenchmarkCase:
-    """Return the benchmark whose input motion is a CSV file: time, s, ax, ay and vertical az. Raises SceneError."""
+    """Return the MASTODON benchmark with its input motion from a CSV file (time, ax, ay, az). Raises SceneError."""
     try:
         samples = read_csv_samples(read_file(path, MAX_FILE_BYTES).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:

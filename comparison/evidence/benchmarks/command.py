@@ -34,7 +34,7 @@ from comparison.runner.progress import make_wide_console
 from comparison.verdicts import NOT_COMPARED
 from reference.problem import SceneError
 
-TERMINAL_DIGITS = 6  # largest number of digits of a number on the terminal
+TERMINAL_DIGITS = 6  # largest number of significant digits of a number on the terminal
 WORKER_FUNCTIONS = {model.trajectory for model in MODEL_OF_SIDE.values()}  # functions that the workers call
 
 
@@ -53,7 +53,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
     )
     options = parser.parse_args(argv)
-    read_number_of_jobs(options)  # a wrong number of jobs is refused before the benchmarks are read
+    read_number_of_jobs(options)  # only to refuse a wrong --jobs before the benchmarks are read
     analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
     out = resolve_destination(options.out)
     refuse_foreign_files(out, [STORED.name, TABLE_PAGE])
@@ -63,7 +63,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     table = replace(solved, run=collect_run_facts("benchmarks", options, argv, begin))
 
     def write() -> list[Path]:
-        """Write the table as JSON and as a page; return the paths."""
+        """Write the table of benchmarks as JSON and as a Markdown page; return the paths of the files."""
         files = publish_files(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
         return files + publish_attempted(out, TABLE_PAGE, lambda: word_page(table).encode(), "comparison.benchmarks")
 
@@ -74,7 +74,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def print_benchmarks(console: Console, table: Benchmarks) -> None:
-    """Print a row for every published number, the differences of the models, the counts and the explanations."""
+    """Print a table row for every published number, then how models differ from sources, and counts of verdicts."""
     lines = make_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
     for each in table.benchmarks:
         for row in each.rows:
@@ -91,7 +91,7 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
 
 
 def _choose_cases(only: str, mastodon_input: Path | None) -> list[BenchmarkCase]:
-    """Return the benchmarks that the options select. Raises SceneError."""
+    """Return the benchmarks with `only` in their name, MASTODON's if its input is given. Raises SceneError if none."""
     known = list_cases() + ([] if mastodon_input is None else [load_mastodon_case(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]
     if not chosen:

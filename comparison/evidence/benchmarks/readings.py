@@ -12,9 +12,9 @@ from comparison.evidence.sides import interpolate_platform
 from comparison.result_types import Array
 from reference.problem import Trajectory
 
-READING_PARTS = 16  # number of parts of an interval between two instants, where extremes and path lengths are read
-TIME_ROUNDING = 1e-12  # relative rounding error of the last instant of a motion
-CREEP_SPEED_SHARE = 1e-3  # share of the largest speed: a turn with slower motion after it is creep, not a swing
+READING_PARTS = 16  # number of parts into which each interval of a motion's samples is divided to read it more finely
+TIME_ROUNDING = 1e-12  # relative rounding error that the last time of a motion may have
+CREEP_SPEED_SHARE = 1e-3  # share of the largest speed; slower motion is creep at rest and makes no turning point
 
 
 def interpolate_positions(motion: Trajectory, times: ArrayLike) -> Array:
@@ -25,11 +25,11 @@ def interpolate_positions(motion: Trajectory, times: ArrayLike) -> Array:
 
 
 def find_turning_points(motion: Trajectory) -> Array:
-    """Return where the platform's velocity along x changes sign, m, and where its last swing ends."""
+    """Return the positions, m, at which the platform's velocity along x changes sign, and the end of its last swing."""
     speed = motion.velocity[:, 0, 0]
     moving = np.flatnonzero(np.abs(speed) > CREEP_SPEED_SHARE * np.abs(speed).max())
     sign = np.sign(speed[moving])
-    last = np.flatnonzero(np.diff(sign))  # index of the last moving sample of every swing but the final one
+    last = np.flatnonzero(np.diff(sign))  # index in `moving` of the last sample of each swing but the final
     place = interpolate_platform(motion, 0)
     turns = []
     for end, begin in [*zip(moving[last], moving[last + 1]), (moving[-1], len(speed) - 1)]:
@@ -68,7 +68,7 @@ def compute_mean_period(motion: Trajectory) -> float:
 
 
 def compute_natural_periods(motion: Trajectory) -> Array:
-    """Return the natural periods, s, longest first, of a chain that vibrates freely along x: acceleration = -A x."""
+    """Return the natural periods, s, longest first, of a chain in free vibration, by fitting acceleration = -A x."""
     place, acceleration = motion.position[:, :, 0], motion.absolute_acceleration[:, :, 0]
     moving = np.abs(place).max(axis=0) > CREEP_SPEED_SHARE * np.abs(place).max()
     fitted = np.linalg.lstsq(place[:, moving], -acceleration[:, moving], rcond=None)[0]
@@ -78,7 +78,7 @@ def compute_natural_periods(motion: Trajectory) -> Array:
 
 
 def _dense_instants(motion: Trajectory, begin: float, end: float) -> Array:
-    """Return instants from `begin` to `end`: those of the motion, and parts of the intervals between them."""
+    """Return times from `begin` to `end`, s: samples of the motion, each interval divided in READING_PARTS."""
     inner = motion.time[(motion.time > begin) & (motion.time < end)]
     knots = np.concatenate([[begin], inner, [end]])
     parts = np.arange(READING_PARTS) / READING_PARTS

@@ -23,14 +23,14 @@ from comparison.verdicts import (
 TABLE_FILE, TABLE_PAGE = "benchmarks.json", "benchmarks.md"
 
 
-VALUE_ROUNDING = 1e-12  # relative rounding error of a computed value
+VALUE_ROUNDING = 1e-12  # relative rounding error of a computed value, which is no deviation from a published one
 FRICTION_EXPLANATION = "the engine's friction law, linear below v_reg: the equations with it give the same"
 MODEL_EXPLANATION = "the source models something else, which its benchmark names"
 
 
 @result
 class SideNumber:
-    """Number that one code computes for a published one, with its error and verdict."""
+    """Number that one side (equations or engine) computes for a published number, with its error and verdict."""
 
     value: Annotated[float | None, "in the unit of the published number; null without an answer"]
     error: Annotated[float | None, "estimated absolute error; null where it is not known"]
@@ -40,7 +40,7 @@ class SideNumber:
 
 @result
 class PublishedNumber:
-    """One published number with its uncertainty, and the number that every code computes for it."""
+    """One published number with its uncertainty, and the number that each side (equations, engine) computes for it."""
 
     quantity: Annotated[str, "what it is"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -50,7 +50,7 @@ class PublishedNumber:
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
     def __post_init__(self) -> None:
-        """Refuse a verdict that contradicts the numbers."""
+        """Raise ValueError if a stored verdict contradicts the numbers."""
         for side, number in self.numbers.items():
             if number.verdict != self.judge(number.value, number.error):
                 raise ValueError(
@@ -58,18 +58,18 @@ class PublishedNumber:
                 )
 
     def judge(self, value: float | None, error: float | None) -> Verdict:
-        """Return the verdict on a value with its error; rounding of the value is no deviation."""
+        """Return whether a computed value agrees with the published one within both errors ("met", ...)."""
         if value is None or error is None:
             return judge_error(value, error)
         return judge_error(value - self.published, error + self.uncertainty + VALUE_ROUNDING * abs(value))
 
     def error_of(self, side: str) -> float | None:
-        """Return the computed number of one code minus the published one; None without a value."""
+        """Return the number by one side minus the published one; None without a value."""
         value = self.numbers[side].value
         return None if value is None else value - self.published
 
     def word(self, side: str, explained: bool = False) -> str:
-        """Return the verdict on the number of one code in words, with its explanation if asked."""
+        """Return the verdict on the number by one side in words, with its explanation if asked."""
         number = self.numbers[side]
         why = (number.explanation or "not explained") if explained else ""
         return word_verdict(number.verdict, self.error_of(side), self.published, self.unit, why)
@@ -77,7 +77,7 @@ class PublishedNumber:
 
 @result
 class Benchmark:
-    """One benchmark: the published numbers of a scene, and those of every code."""
+    """One benchmark: the published numbers of a scene, and those that each side computes."""
 
     name: Annotated[str, "name of the scene"]
     title: Annotated[str, "what is solved"]
@@ -90,29 +90,29 @@ class Benchmark:
     seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
 
     def __post_init__(self) -> None:
-        """Refuse a row without the numbers of the equations or of Exudyn."""
+        """Raise an error if a published number lacks that by the equations or that by Exudyn."""
         for row in self.rows:
             require(row.numbers.keys() >= {EQUATIONS, ENGINE}, f"numbers must have {EQUATIONS} and {ENGINE}")
 
 
 @result
 class Benchmarks:
-    """Every benchmark with its results."""
+    """All benchmarks with their results, as benchmarks.json holds them."""
 
     benchmarks: Annotated[Sequence[Benchmark], "one per scene"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def counts(self) -> dict[Verdict, int]:
-        """Return how many numbers of the equations and of the engine have each verdict."""
+        """Return how many numbers by the equations and by the engine have each verdict."""
         return count_verdicts(number.verdict for _, _, _, number in self.iterate_numbers())
 
     def count_explanations(self) -> dict[str, int]:
-        """Return how many numbers that are not met have each explanation, "" for those without one."""
+        """Return how many computed numbers with the verdict "not met" have each explanation ("" for none)."""
         found = [number.explanation for _, _, _, number in self.iterate_numbers() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION_EXPLANATION, MODEL_EXPLANATION, "")}
 
     def iterate_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, SideNumber]]:
-        """Yield every number that has a verdict: those of the equations and of the engine."""
+        """Yield every number by equations and engine: its benchmark, published number, side, computed number."""
         for each in self.benchmarks:
             for row in each.rows:
                 for side in (EQUATIONS, ENGINE):
@@ -120,7 +120,7 @@ class Benchmarks:
 
 
 def verdict_line(table: Benchmarks) -> str:
-    """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
+    """Return a line on all benchmarks: number of each verdict, and the largest relative error not met."""
     off = [
         (row.error_of(side) or 0.0, row.published, f"{each.name}, {row.quantity}, {side}")
         for each, row, side, number in table.iterate_numbers()
@@ -132,13 +132,13 @@ def verdict_line(table: Benchmarks) -> str:
 STORED = StoredFile(TABLE_FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
 
 
-MAX_DIGITS = 7  # largest number of digits of a value
-# Name of the benchmark and row of its number, for the short table
+MAX_DIGITS = 7  # largest number of significant digits printed
+# Short table of the page: name of a benchmark, and index of one of its published numbers
 SHORT_TABLE_ROWS = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))
 
 
 def word_page(table: Benchmarks) -> str:
-    """Return benchmarks.md: five numbers, one of each kind, the counts, and every number by its benchmark."""
+    """Return the text of benchmarks.md: a short table of five numbers, the counts, and every number by benchmark."""
     text = (resources.files("comparison.evidence.benchmarks") / "page.md.j2").read_text(encoding="utf-8")
     short = [
         (each, each.rows[place]) for name, place in SHORT_TABLE_ROWS for each in table.benchmarks if each.name == name
@@ -153,14 +153,14 @@ def word_page(table: Benchmarks) -> str:
 
 
 def word_explanations(table: Benchmarks) -> list[str]:
-    """Return one sentence for the counts, and one for each explanation that any number has."""
+    """Return a sentence that counts the verdicts, and one that counts each explanation of "not met"."""
     found = table.count_explanations()
     sentences = [verdict_line(table), *(f"{count} not met: {why}" for why, count in found.items() if why and count)]
     return [*sentences, f"{found['']} not met and not explained"]
 
 
 def word_with_error(number: SideNumber, digits: int = MAX_DIGITS) -> str:
-    """Return value and error of a number, the value with the digits that the error leaves, at most `digits`."""
+    """Return "value ± error" of a number; the value has the digits that the error leaves, at most `digits`."""
     if number.value is None:
         return "none"
     if not number.error:

@@ -12,20 +12,20 @@ from comparison.result_types import Text, result
 from comparison.surfaces.budget import compute_torus_distance
 from comparison.verdicts import MET, NOT_MET, Verdict
 
-EPSILON = 0.1  # the paper's epsilon: periods of the loading T_1, T_2 = T_c (1 -+ epsilon), with T_c of the platform
-ROUNDING = 1e-9  # relative rounding error that is allowed, so that T_c (1 -+ epsilon) itself counts as close to T_c
-# Correlation from which two surfaces are similar: each explains half of the variance of the other
+EPSILON = 0.1  # the paper's epsilon: a loading period T_c (1 -+ epsilon) is close to the natural period T_c
+ROUNDING = 1e-9  # relative rounding error allowed, so that periods of exactly T_c (1 -+ epsilon) are close to T_c
+# Two surfaces are similar from this correlation on: each then explains half of the other's variance
 MIN_CORRELATION = 0.7
-# |x - y| over the largest displacement below which a motion is along one line, within the solver's tolerance
+# A motion is along the line x = y if |x - y|, divided by the largest displacement, stays below this (solver tolerance)
 MAX_PLANE_DEVIATION = 1e-6
-MIN_AXIS_DIFFERENCE = 0.1  # |x - y| over the largest displacement above which motions along x and y differ
-SMALL_SWING_RATIO = 0.1  # largest squared displacement over rho^2 that counts as small
-# Prominence of a counted peak over the range of mu; at 20 % the count of mu_1 depends on grid and integration
+MIN_AXIS_DIFFERENCE = 0.1  # motions along x and y differ if |x - y| / largest displacement is above this
+SMALL_SWING_RATIO = 0.1  # a swing is small if (displacement / rho)^2, rho: radius of the bearing, is at most this
+# Smallest prominence of a counted peak, as a share of the surface's range; at 20 % grid and integration alter counts
 COMPLEX_PROMINENCE = 0.25
-OTHER_PROMINENCES = 0.15, 0.35  # other prominences, at which the count may contradict the statement
-MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, distance from a corner within which a peak counts as near it
+OTHER_PROMINENCES = 0.15, 0.35  # other prominences tried, to see whether the verdict depends on it
+MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, a peak within this distance of a corner (in the square of phases) is near it
 CORNER = (0.0, 0.0)  # rad, the corner (0, 0): the four corners are one point of the periodic square
-# How peaks are counted: on the periodic square, on the square as drawn, or on a profile across it
+# Functions that count peaks and valleys of a surface: on the periodic square of phases, as drawn, or on a profile
 PEAK_COUNTS_BY_VIEW = {
     "periodic": counting.count_periodic_peaks_and_valleys,
     "drawn": counting.count_drawn_peaks_and_valleys,
@@ -35,33 +35,33 @@ PEAK_COUNTS_BY_VIEW = {
 
 @result
 class StatementVerdict:
-    """Verdict on a statement of the paper by the surfaces in one reading of (5.1), with a reason that is required."""
+    """Verdict on a statement of the paper by the surfaces of one kind of peak in (5.1), with its reason."""
 
     verdict: Annotated[Verdict, "met, not met, or not compared"]
     reason: Annotated[Text, "the numbers that decide, why it cannot hold, or why nothing was compared"]
 
     def __post_init__(self) -> None:
-        """Refuse a verdict without a reason."""
+        """Raise ValueError if the verdict has no reason."""
         if not self.reason:
             raise ValueError(f"reason = {self.reason!r}: the verdict {self.verdict!r} needs one")
 
 
-Check = Callable[..., StatementVerdict]  # function of the evidence of each case of a statement
+Check = Callable[..., StatementVerdict]  # function that judges a statement by the evidence of its cases
 
 
 def verdict_with_reason(holds: bool, reason: str) -> StatementVerdict:
-    """Return "met" or "not met" with the numbers that decide."""
+    """Return the verdict "met" or "not met" with a reason: the numbers that decide."""
     return StatementVerdict(MET if holds else NOT_MET, reason)
 
 
 def compare_intensity(case: Evidence) -> StatementVerdict:
-    """Return whether mu of the first mass is above that of the second at more than half of the phases."""
+    """Return the verdict whether body 1's amplification exceeds body 2's at more than half of the phases."""
     share = float((case.mu[..., 0] > case.mu[..., 1]).mean())
     return verdict_with_reason(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
 
 
 def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> StatementVerdict:
-    """Return whether the surfaces of a body of each case are similar, at the phases that both have."""
+    """Return the verdict whether the amplification surfaces of two cases (one body of each) are similar."""
     if any(case.flat(body) for case, body in zip(cases, bodies)):
         return verdict_with_reason(False, "one of them is flat")
     steps = [len(case.mu) // min(len(case.mu) for case in cases) for case in cases]
@@ -71,13 +71,13 @@ def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> St
 
 
 def find_folds(*cases: Evidence) -> StatementVerdict:
-    """Return whether every surface of the amplification mu has a fold or a jump at its sharpest curvature."""
+    """Return the verdict whether every surface of the amplification has a fold or jump where it is curved most."""
     rough = all(not (flat or bend.smooth) for case in cases for _, flat, bend in _list_curvatures(case))
     return verdict_with_reason(rough, "; ".join(map(_describe_curvatures, cases)))
 
 
 def find_no_fold(case: Evidence) -> StatementVerdict:
-    """Return whether no surface has a fold or a jump at its sharpest curvature, nor the denominator of (5.1)."""
+    """Return the verdict whether no surface, nor the ground peak that divides it in (5.1), has a fold or a jump."""
     if case.ground is not None and not case.ground.smooth:
         return verdict_with_reason(
             False, f"cannot hold: the denominator of (5.1) has a fold; {_describe_curvatures(case)}"
@@ -88,12 +88,12 @@ def find_no_fold(case: Evidence) -> StatementVerdict:
 
 
 def _list_curvatures(case: Evidence) -> list[tuple[int, bool, SharpestCurvature]]:
-    """Return for every body its number, whether its surface is flat, and its sharpest curvature."""
+    """Return for every body its number, whether its amplification surface is flat, and where that is curved most."""
     return [(body, case.flat(body), bend) for body, bend in enumerate(case.bends, 1)]
 
 
 def _describe_curvatures(case: Evidence) -> str:
-    """Return the sharpest curvatures of a case in words: kind, and exponent of the second difference over the step."""
+    """Return in words where each body's surface is curved most: kind (fold, jump, smooth) and exponent of the step."""
     words = (
         f"mu_{body} {'flat' if flat else f'{bend.kind} (h^{bend.exponent:.1f})'}"
         for body, flat, bend in _list_curvatures(case)
@@ -102,27 +102,27 @@ def _describe_curvatures(case: Evidence) -> str:
 
 
 def find_unequal_axes(case: Evidence) -> StatementVerdict:
-    """Return whether the second body moves differently along x and y."""
+    """Return the verdict whether the second body's motions along x and y differ."""
     return verdict_with_reason(
         case.apart[1] > MIN_AXIS_DIFFERENCE, f"|x_2 - y_2| up to {case.apart[1]:.2g} of the largest"
     )
 
 
 def find_plane(case: Evidence) -> StatementVerdict:
-    """Return whether every body moves alike along x and y."""
+    """Return the verdict whether every body moves in the plane x = y."""
     apart = max(case.apart)
     size = f"up to {apart:.1g}" if apart > ROUNDING else f"below {ROUNDING:g}"
     return verdict_with_reason(apart < MAX_PLANE_DEVIATION, f"|x_i - y_i| {size} of the largest")
 
 
 def compare_swing(*cases: Evidence) -> StatementVerdict:
-    """Return whether displacements are small against rho."""
+    """Return the verdict whether displacements of the platform are small against rho, the radius of the bearing."""
     swing = max(case.swing for case in cases)
     return verdict_with_reason(swing <= SMALL_SWING_RATIO, f"up to {swing:.2g} rho^2")
 
 
 def compare_periods(case: Evidence) -> StatementVerdict:
-    """Return whether both loading periods are close to a natural period: |T_load / T_natural - 1| <= epsilon."""
+    """Return the verdict whether both loading periods are near a natural one: |T_load / T_natural - 1| <= EPSILON."""
     words = [
         f"{period:.2f} s is {100.0 * (period / natural - 1.0):+.0f} % from {natural:.2f} s"
         for period, natural in case.resonance
@@ -132,7 +132,7 @@ def compare_periods(case: Evidence) -> StatementVerdict:
 
 
 def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict:
-    """Return whether mu_1 has as many peaks and valleys as the paper counts, both in the same view."""
+    """Return the verdict whether the platform's surface has as many peaks and valleys as the paper counts."""
     if case.flat(1):
         return verdict_with_reason(False, "flat")
     shares = counting.SHARE, counting.MIN_SHARE, counting.MAX_SHARE
@@ -142,7 +142,7 @@ def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict
     }
     holds = {name: at_shares[0] == wanted for name, at_shares in counts.items()}
     words = []
-    for name, at_shares in counts.items():  # The count at SHARE, with its range over the other prominences.
+    for name, at_shares in counts.items():  # text: count at prominence SHARE, and its range over the others
         spans = [f" ({min(column)} to {max(column)})" if len({*column}) > 1 else "" for column in zip(*at_shares)]
         words.append(f"{name} " + " and ".join(f"{count}{span}" for count, span in zip(at_shares[0], spans)))
     only = "only as drawn: " if any(holds.values()) and not holds["periodic"] else ""
@@ -150,14 +150,14 @@ def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict
 
 
 def compare_complexity(case: Evidence) -> StatementVerdict:
-    """Return whether mu_2 has several peaks and valleys, and more than mu_1; name prominences at which this differs."""
+    """Return the verdict whether body 2's surface has several peaks and valleys, and more than body 1's."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
-        """Return peaks and valleys of amplification mu_1 and of mu_2 at a prominence, as a share of the range of mu."""
+        """Return how many peaks and valleys the surfaces of bodies 1 and 2 have. share: prominence over their range."""
         return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:
-        """Return whether mu_2 has several peaks and valleys, and more than mu_1, at this prominence."""
+        """Return whether the statement holds with peaks of this prominence (a share of the surface's range)."""
         first, second = counts(share)
         return min(second) > 1 and sum(second) > sum(first)
 
@@ -169,7 +169,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
 
 
 def find_corner_peaks(case: Evidence) -> StatementVerdict:
-    """Return whether mu_2 has a peak near a corner of the square."""
+    """Return the verdict whether body 2's amplification has a peak near a corner of the square of phases."""
     mu = case.mu[..., 1]
     if case.flat(2):
         return verdict_with_reason(False, "flat")

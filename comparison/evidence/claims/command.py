@@ -18,7 +18,7 @@ from reference.problem import builtin_scenes, load_scene
 
 @command
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
-    """Print the table of statements; return the exit code."""
+    """Check the paper's statements about its figures and print the verdicts; return the exit code."""
     parser = CommandParser("claims", "The statements of section 5 of the paper in both readings of (5.1).")
     parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {CLAIMS_GRID})")
     parser.add_out(STORED_RESULTS_HELP)
@@ -38,7 +38,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def print_claims(console: Console, table: ClaimTable) -> None:
-    """Print the verdicts in both readings, then the reason of each verdict and the statements that cannot hold."""
+    """Print the verdicts for both kinds of peak in (5.1), then their reasons, and why a statement cannot hold."""
     grid = Table("about", "statement", *table.counts, box=None, pad_edge=False)
     for each in table.statements:
         grid.add_row(each.figure, each.says, *(each.verdicts[name].verdict for name in table.counts))
@@ -50,7 +50,7 @@ def print_claims(console: Console, table: ClaimTable) -> None:
 
 
 def print_ratios(console: Console, study: Study) -> None:
-    """Print the amplitude ratios of the bodies above the platform, which follow from (4.4) alone."""
+    """Print, by (4.4) alone, the ratios of the amplitudes of upper bodies to that of the platform."""
     console.print("Amplitude of a body over that of the platform under each harmonic, by (4.4) alone:")
     grid = Table("scene", "axis", "period, s", "body", "ratio", "without decay", box=None, pad_edge=False)
     for scene in study.scenes:

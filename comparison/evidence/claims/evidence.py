@@ -12,37 +12,37 @@ from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.symmetry import complete_surface
 
-# Relative error of surfaces that the study lacks: small enough to count peaks by their prominence
+# Relative error of surfaces that are computed here: small enough to count peaks
 SURFACE_TOLERANCE = 1e-3
-CURVATURE_TOLERANCE = 1e-6  # relative error of values whose second differences distinguish a fold from a curvature
-FLAT_RANGE_RATIO = 0.05  # range of a surface over its mean, below which it shows no resonance
-MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase pairs whose motions are computed
+CURVATURE_TOLERANCE = 1e-6  # relative error of amplifications whose second differences tell a fold from a smooth curve
+FLAT_RANGE_RATIO = 0.05  # range of a surface divided by its mean, up to which it counts as flat: no resonance
+MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase pairs of motions computed
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Findings on surfaces and motions of one scene by (4.3)-(4.4) as printed, in one reading of (5.1)."""
+    """Findings on surfaces and motions of one scene by (4.3)-(4.4) as printed, for one kind of peak in (5.1)."""
 
-    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
-    error: float = float("nan")  # largest absolute error estimate
+    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # amplification (n, n, N), NaN if unknown
+    error: float = float("nan")  # largest absolute error estimate of the amplification
     statuses: tuple[str, ...] = ()  # distinct outcomes of the phase pairs
     bends: tuple[SharpestCurvature, ...] = ()  # sharpest curvature of each body's surface
-    # For each body, largest difference of its displacements along x and y over the largest of them, at MOTION_PHASES
+    # For each body, largest |x - y| of its displacements, divided by the largest displacement, at MOTION_PHASES
     apart: tuple[float, ...] = ()
-    swing: float = float("nan")  # largest squared displacement of the platform over rho^2, at MOTION_PHASES
+    swing: float = float("nan")  # largest (displacement of the platform / rho)^2, at MOTION_PHASES
     resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s
-    ground: SharpestCurvature | None = None  # sharpest curvature of the denominator of (5.1)
-    error_message: str = ""  # why there is no evidence, or ""
+    ground: SharpestCurvature | None = None  # sharpest curvature of the ground peak, divisor in (5.1)
+    error_message: str = ""  # why nothing was computed, or ""
     case: str = ""  # name of the scene in STATEMENT_CASES
 
     def flat(self, body: int) -> bool:
-        """Return whether a surface varies by less than its errors, or so little that it shows no resonance."""
+        """Return whether a body's surface varies by less than its errors, or so little that it shows no resonance."""
         mu = self.mu[..., body - 1]
         return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT_RANGE_RATIO * abs(float(mu.mean()))))
 
     @property
     def complete(self) -> bool:
-        """Return whether every point has a value."""
+        """Return whether the amplification has a value at every phase pair."""
         return self.mu.size > 0 and bool(np.isfinite(self.mu).all())
 
 
@@ -61,11 +61,11 @@ class CaseInReading:
 
 
 def gather_evidence(question: CaseInReading) -> Evidence:
-    """Return surfaces, curvatures and facts of motions of a case in a reading. Runs inside a worker process."""
+    """Compute, in a worker process, the surfaces, sharpest curvatures and facts of motions of one case."""
     scene, cutoff = STATEMENT_CASES[question.case](), question.reading.cutoff
 
     def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
-        """Return the amplification mu by the printed equations at phase pairs (M, 2), rad."""
+        """Return the amplification by the paper's equations at phase pairs (M, 2), rad."""
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
 
     surfaces = question.known
@@ -76,7 +76,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
         return surfaces
 
     def ground(phases: Array) -> Array:
-        """Return the largest ground acceleration, the denominator of (5.1), at phase pairs (M, 2), rad."""
+        """Return the peak ground acceleration, m/s^2, the divisor in (5.1), at phase pairs (M, 2), rad."""
         return ground_peak(scene, phases)[:, None]
 
     grid, natural = len(surfaces.mu), reference.modes(scene).period.ravel()
@@ -98,7 +98,7 @@ def make_failed_evidence(question: CaseInReading, failed: TaskResult) -> Evidenc
 
 
 def _measure_motions(scene: Scene) -> tuple[tuple[float, ...], float]:
-    """Return how far motions along x and y differ, `apart`, and the largest displacement, `swing`, at MOTION_PHASES."""
+    """Return, at MOTION_PHASES, `apart` (difference of motions along x and y) and `swing` of `Evidence`."""
     apart, swing = np.zeros(len(scene.bodies)), 0.0
     for phase in MOTION_PHASES:
         place = reference.trajectory(scene, phase, equations="small").position[..., :2]
