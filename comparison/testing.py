@@ -26,7 +26,7 @@ from reference.support.arguments import Range, check_choice, check_number, check
 
 # Admissible values of `assert_consistent`: relative differences, phases per axis, number of pairs without a value
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
-STATISTICS = ("largest", "mean")  # statistics over the motions that limits may be on
+STATISTICS = ("largest", "mean")  # statistics of a demand over the motions to which a limit may apply
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
 
 
@@ -51,8 +51,8 @@ def assert_consistent(
     scene : Scene, str or Path
         A scene, the name of a built-in one, or a scene file; of a file in which values run every scene.
     like_for_like, like_for_like_maximum : float, optional
-        Limits on the relative difference of mu_i with the same geometry and friction law on both sides: on its median
-        over the phases, and on its largest value, for each body.
+        Limits on the relative difference of amplification with the same geometry and friction law on both sides: on
+        its median over the phases, and on its largest value, for each body.
     total, total_maximum : float, optional
         The same for the difference between the paper's printed equations and the most complete model of Exudyn.
     grid : int
@@ -138,7 +138,7 @@ def _broken_limits(
 
 
 def _word_missing_values(gaps: Sequence[MissingValues], answers: Sequence[BatchResult], failed: int) -> list[str]:
-    """Return a line for each model without some of its values, and the solvers' messages; none if few enough."""
+    """Return a line for each model without some of its values, and the solvers' messages; none if `failed` permits."""
     if not sum(gap.points + gap.unusable for gap in gaps) > failed:
         return []
     why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
@@ -163,7 +163,7 @@ def assert_demands(
     within: float = 0.01,
 ) -> None:
     """
-    Raise AssertionError where demands under recorded motions do not meet their limits, or are not those of before.
+    Raise AssertionError where demands under recorded motions exceed their limits, or differ from stored demands.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ def assert_demands(
 def _word_breaches(
     surfaces: xr.Dataset, scene: Scene, pair: Pair, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
-    """Yield a line for each body beyond the limit, which is on the largest difference or on the median."""
+    """Yield a line for each body whose median difference, or with `maximum` its largest, exceeds the limit."""
     for body in range(1, len(scene.bodies) + 1):
         step = compute_difference(surfaces, scene.name, pair, body)
         if not step.known.any():

@@ -26,14 +26,14 @@ STYLE_CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-limit", 
 
 
 def judge_error(error: float | None, allowed: float | None) -> Verdict:
-    """Return the verdict on an error that the uncertainties allow so much; "not compared" if either is unknown."""
+    """Return "met" if |error| is at most `allowed`, else "not met"; "not compared" if either number is unknown."""
     if error is None or allowed is None or not (math.isfinite(error) and math.isfinite(allowed)):
         return NOT_COMPARED
     return MET if abs(error) <= allowed else NOT_MET
 
 
 def word_error(error: float, stated: float | None, unit: str = "") -> str:
-    """Return a comparison error in words: relative to the stated value, or with its unit where that is None or zero."""
+    """Return the error of a computed value in words: as a share of `stated`, or in its unit if that is None or zero."""
     if stated:
         return signed(error / stated)
     size = f"{abs(error):.2g}"
@@ -42,7 +42,7 @@ def word_error(error: float, stated: float | None, unit: str = "") -> str:
 
 
 def word_excess(error: float, stated: float | None, unit: str = "", is_least: bool = False) -> str:
-    """Return by how much a value is not met, as "by +7.7 %"; is_least: the error is larger by an unknown amount."""
+    """Return in words how far a computed value is off, as "by +7.7 %"; is_least: it is off by at least this."""
     return f"by {'more than ' * is_least}{word_error(error, stated, unit)}"
 
 

@@ -8,9 +8,9 @@ from markupsafe import Markup, escape
 from reference.support.drawing import escape_for_matplotlib
 
 MAX_PERCENT_DECIMALS = 4  # largest number of decimals of a percentage: smaller sizes are shown as zero
-MIN_SHOWN_ERROR = 0.01  # share of a size below which its error does not show in two digits
+MIN_SHOWN_ERROR = 0.01  # an error below this share of its value is not written: two digits would not show it
 MAX_AXIS_NAMES = 12  # largest number of names on an axis; with more values every n-th is named
-# Patterns of what HTML or mathtext writes in another way. First: a power such as l^3.
+# Patterns of texts that HTML or mathtext writes differently; the first: the exponent of a power such as l^3
 POWER_PATTERN = re.compile(r"\^(\w)")
 PERCENT_PATTERN = re.compile(r"(?<=\d) %")  # percent sign after a number and a space
 SUBSCRIPT_PATTERN = re.compile(r"(?<=[\w>])_(\w+)")  # index after an underscore, without its symbol
@@ -18,6 +18,7 @@ INDEX_PATTERN = re.compile(r"\b([^\W\d_]+)_(\w+)")  # symbol and its index, such
 # names of small Greek letters in texts, and the letters
 SMALL_GREEK = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
 GREEK_LETTERS = {**SMALL_GREEK, "Delta": "Δ", "Phi": "Φ"}  # names of all Greek letters in texts, and the letters
+# name of a Greek letter that stands alone, or after a d as in dxi
 GREEK_PATTERN = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK_LETTERS)})(?![a-zA-Z])")
 
 
@@ -46,7 +47,7 @@ def signed(value: float) -> str:
 
 
 def word_difference(size: float, error: float) -> str:
-    """Return a signed share with the digits that its error leaves, and with the error where these digits show it."""
+    """Return a signed share in percent, rounded to decimals that its error justifies, with the error unless tiny."""
     decimals = _count_decimals(size, error)
     if decimals is None:
         return signed(size)
@@ -58,12 +59,12 @@ def word_difference(size: float, error: float) -> str:
 
 
 def more_or_less(size: float, error: float) -> str:
-    """Return a share in the digits of `word_difference`, with "more" or "less" for its sign."""
+    """Return a share in percent, rounded as by `word_difference`, with "more" or "less" in place of its sign."""
     return f"{word_difference(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
 
 
 def _count_decimals(size: float, error: float) -> int | None:
-    """Return the decimals of a percentage that its error leaves, None where the error is unknown or does not show."""
+    """Return the number of decimals that a percentage's error justifies; None if it is unknown or too small to show."""
     if not (math.isfinite(error) and error > MIN_SHOWN_ERROR * abs(size)):
         return None
     return max(0, -math.floor(math.log10(100.0 * error)))

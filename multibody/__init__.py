@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from multibody.surface import amplification
     from reference.measures import demands, floor_spectra
 
-_MODULE_OF_NAME = {  # modules that are loaded when a name is first used
+_MODULE_OF_NAME = {  # module from which each public name is imported when it is first used
     "MAX_WORK": "multibody.integration.refine",
     "Level": "multibody.integration.level",
     "amplification": "multibody.surface",

@@ -33,20 +33,20 @@ Array = NDArray[np.float64]
 SUPPORT_RING_RADIUS, SPHERE_RADIUS = 1.0, 0.05
 DEFAULT_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * SUPPORT_RING_RADIUS / np.sqrt(2.0)
 
-# Distance and thickness of the boxes of a scene without spatial data, over the width of a box.
+# Distance and thickness of the boxes of a scene without spatial data, as shares of the width of a box.
 BOX_DISTANCE, BOX_THICKNESS = 0.5, 0.1
 
-# Smallest and largest drawn height of the highest box above the lowest, over the width of the widest box.
+# Smallest and largest drawn height of the highest box above the lowest, as shares of the width of the widest box.
 MIN_SPAN, MAX_SPAN = 0.35, 1.2
 
-# Largest drawn thickness of a box, and largest drawn dip of its edge by tilt, over the smallest distance of two boxes.
+# Largest thickness of a drawn box, and largest drop of its edge by tilt, as shares of the smallest distance of boxes.
 MAX_DRAWN_THICKNESS, MAX_DRAWN_DIP = 0.4, 0.2
 
-# Largest drawn rotation, rad; also the largest drawn contact path, over the distance of the farthest support.
+# Largest drawn rotation, rad; also the longest drawn contact path, as a share of the distance of the farthest support.
 MAX_DRAWN_ROTATION = 0.3
 MAX_MAGNIFICATION = 1e4  # largest factor on drawn rotations and contact paths
 
-# Length of the poles of the supports, over the width of the drawing.
+# Length of the poles of the supports, as a share of the width of the drawing.
 POLE_LENGTH = 0.15
 
 # Width of the figure, inches, for any number of pixels, so that the layout does not depend on the pixels.

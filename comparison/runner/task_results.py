@@ -12,7 +12,7 @@ from reference.problem import Outcome
 
 @dataclass
 class StageCost:
-    """Cost of one stage: number of tasks, how many of them an earlier run had stored, and processor time of all, s."""
+    """Cost of one stage of a run: number of tasks, how many an earlier run stored, and processor time of all, s."""
 
     tasks: int = 0
     stored: int = 0
@@ -21,15 +21,15 @@ class StageCost:
 
 @dataclass(frozen=True)
 class Overrun:
-    """Record stored for a task that took longer than its timeout, s of processor time; ending: its end in words."""
+    """Record stored for a task stopped at its timeout, s of processor time; ending: how it ended, in words."""
 
     timeout: float
-    ending: str  # end of the task in words
+    ending: str  # how the task ended, in words
 
 
 class TaskResults:
     """
-    Results by task, kept in `cache` for later runs; with `fresh` nothing stored earlier is read.
+    Results of tasks, looked up by task and stored in `cache` for later runs; fresh: stored results are not read.
 
     parts: what each stage cost. stored: the tasks whose results were read from the cache.
     """
@@ -51,7 +51,7 @@ class TaskResults:
 
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
         """
-        Return the value of a task; without one, the value that `on_failure` makes of argument and result.
+        Return what a task's function returned; if it failed, what `on_failure` returns for its argument and result.
         """
         result = self[task]
         failed = result.value is None and result.outcome != Outcome.OK
@@ -62,12 +62,12 @@ class TaskResults:
         return [task for task in tasks if not (task.key in self._results or self._read(task))]
 
     def holds(self, task: Task) -> bool:
-        """Return whether the cache has a file for the task, whatever its state."""
+        """Return whether the cache may be read and has a file for the task, even one that proves invalid."""
         return self.cache is not None and not self._fresh and self.cache.holds(task.key)
 
     def put(self, task: Task, result: TaskResult) -> None:
         """
-        Keep a result. Raises StoreError.
+        Keep the result of a task, and store it in the cache. Raises StoreError.
 
         One that names an error is not stored in the cache: the next run tries it again. That a task took longer than
         its `timeout` is stored: only a run that allows more tries it again.
@@ -82,7 +82,7 @@ class TaskResults:
             self.cache.put(task.key, (result.value, result.cost))
 
     def _remember(self, task: Task, result: TaskResult) -> None:
-        """Keep the result of a task, and count it and its cost for its stage."""
+        """Keep the result of a task in memory, and add it to the task count and cost of its stage."""
         self._results[task.key] = result
         self.parts[task.stage].tasks += 1
         self.parts[task.stage].seconds += result.cost

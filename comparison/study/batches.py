@@ -14,14 +14,14 @@ from comparison.study.models import Model
 from comparison.wording import word_exception
 from reference.problem import Amplification, Outcome, Scene, Trajectory
 
-MAX_MU = 1e12  # largest mu that counts as an answer: far above that of any building, but sums of squares stay finite
-# Outcome, besides ok, after which mu of this project's models is used: with its stated error above the tolerance
+MAX_MU = 1e12  # largest amplification accepted as an answer: far above any building's, but its square stays finite
+# Outcome, besides ok, with which amplifications of this project's models are used: the error exceeds the tolerance
 USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Consecutive phase pairs (M, 2), rad, of one scene and model; first: number of the first among all of them."""
+    """Consecutive phase pairs (M, 2), rad, of a model and scene; first: place of the first among the model's pairs."""
 
     scene: Scene
     model: str
@@ -29,8 +29,8 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
-    timeout: float | None = None  # s, largest processor time of the call
-    group: str = ""  # group of workers that it may use, for a user's engine, whose errors may be unknown
+    timeout: float | None = None  # s, limit on the processor time of the call that computes the batch
+    group: str = ""  # for a user's engine: name of the workers that only it uses; its errors may be unknown
 
     @property
     def points(self) -> int:
@@ -39,11 +39,11 @@ class Batch:
 
     @property
     def question(self) -> dict[str, object]:
-        """Return the contents that all batches of a surface share, without the scene's name and title."""
+        """Return what all batches of a surface have in common: scene without name and title, function, settings."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
-        """Return everything besides the code that the numbers of the batch depend on."""
+        """Return everything, besides the code, that determines the numbers of the batch."""
         return {**self.question, "phases": self.phases}
 
     def halves(self) -> list[Batch]:
@@ -73,11 +73,11 @@ class Batch:
         return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
 
     def accepts(self, result: BatchResult) -> bool:
-        """Return whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
+        """Return whether a result fits the numbers of phase pairs and bodies, with values wherever its status is ok."""
         return self.fits(result) and not self.ok_without_numbers(result.mu, result.error, result.status)
 
     def fits(self, result: BatchResult) -> bool:
-        """Return whether a result has the shape of the phase pairs and bodies."""
+        """Return whether the arrays of a result have the batch's numbers of phase pairs and bodies."""
         points, plane = (self.points,), (self.points, len(self.scene.bodies))
         shapes = result.mu.shape, result.error.shape, result.instant.shape, result.displacement.shape
         return shapes == (plane, plane, points, points) and len(result.status) == self.points
@@ -90,7 +90,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Result of a batch, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
+    """Result of a batch: fields of `reference.problem.Amplification`; error_message: the solver's message, or ""."""
 
     mu: Array
     error: Array
@@ -102,20 +102,20 @@ class BatchResult:
 
 
 def import_function(path: str) -> Any:
-    """Return the object at "package.module:name"."""
+    """Import and return the object named `path`, in the form "package.module:name"."""
     module, name = path.split(":")
     return getattr(import_module(module), name)
 
 
 def compute_amplification(scene: Scene, model: Model, phases: Any, **settings: object) -> Amplification:
-    """Return mu of a scene by a model; settings: besides the model's own. Runs inside a worker process."""
+    """Return the amplification that a model computes for a scene; settings: added to the model's. Runs in a worker."""
     asked = {**model.settings, **settings}
     answer: Amplification = import_function(model.amplification)(model.scene_of(scene), phases, **asked)
     return answer
 
 
 def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) -> Trajectory:
-    """Return one motion of a scene by a model; settings: besides the model's own. Runs inside a worker process."""
+    """Return one motion that a model computes for a scene; settings: added to the model's. Runs in a worker process."""
     asked = {**model.motion_settings, **settings}
     motion: Trajectory = import_function(model.trajectory)(model.scene_of(scene), phases, **asked)
     return motion

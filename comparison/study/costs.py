@@ -13,14 +13,15 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from reference.problem import Scene
 
-COMPILING_SECONDS = 20.0  # s, duration of the first call of the reference on a machine, which compiles it
+COMPILING_SECONDS = 20.0  # s, time that compiling the reference takes, at its first call on a machine
 STARTING_SECONDS, WRITING_SECONDS = 4.0, 4.0  # s, durations of loading modules and workers, and of writing a report
-USUAL_DURATION, USUAL_BODIES = 20.0, 2  # s and number of bodies of the scenes that the models' stated seconds refer to
-# Processor time, s, of a motion by the equations: a constant part; then parts per second of motion and per knot of the
-# record, both times the number of bodies + 1.
+USUAL_DURATION, USUAL_BODIES = 20.0, 2  # s of motion and number of bodies for which Model.seconds is stated
+# Estimated processor time, s, of one motion computed by the reference: a constant part; then, both times the number of
+# bodies + 1, the parts per second of motion and per sample of the record.
 MOTION_COST, MOTION_SECOND_COST, MOTION_KNOT_COST = 0.02, 4e-4, 3.7e-6
-MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3  # s, by Exudyn, per rad of the fastest link (and per body)
-DEFAULT_FREQUENCY = 7.0  # rad/s, smallest frequency assumed for the fastest link
+# Estimated processor time, s, of Exudyn per radian that the fastest link vibrates; of the spatial model, also per body.
+MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3
+DEFAULT_FREQUENCY = 7.0  # rad/s, lower bound on the frequency of the fastest link in the estimate
 
 
 def estimate_motion_seconds(scene: Scene, model: Model) -> float:
@@ -34,12 +35,12 @@ def estimate_motion_seconds(scene: Scene, model: Model) -> float:
 
 
 def estimate_wall_seconds(seconds: Sequence[float], jobs: int) -> float:
-    """Return the rough time of tasks of so much processor time on idle cores, s: workers do not share a task."""
+    """Return the rough elapsed time, s, of tasks on `jobs` idle cores; seconds: processor time of each, never split."""
     return max(sum(seconds) / jobs, max(seconds, default=0.0))
 
 
 def estimate_point_seconds(scene: Scene, model: Model) -> float:
-    """Return the rough processor time of a phase pair, s."""
+    """Return the rough processor time, s, that a model needs for one phase pair of a scene."""
     return model.seconds * scene.duration / USUAL_DURATION * len(scene.bodies) / USUAL_BODIES
 
 

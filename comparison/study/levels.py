@@ -7,7 +7,7 @@ from math import gcd
 from comparison.study.models import Model
 from comparison.study.study import Study, nested_grids
 
-# Largest number of phases per axis at the first and second level, by side; the third level is the whole study.
+# Largest number of phases per axis at the first and second level, by kind of model; the third is the whole study.
 MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
     {"reference": 16, "engine": 8, "spatial": 4, "user": 8},
     {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "user": float("inf")},
@@ -16,7 +16,7 @@ MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
 
 @dataclass(frozen=True)
 class StudyLevel:
-    """One level: its study, its number, and the number of levels."""
+    """One level of a study: what it computes (a study), its number from coarse to fine, and the number of levels."""
 
     study: Study
     number: int
@@ -24,7 +24,7 @@ class StudyLevel:
 
     @property
     def last(self) -> bool:
-        """Return whether it is the whole study."""
+        """Return whether this is the last level, which is the whole study."""
         return self.number == self.of
 
     @property
@@ -34,7 +34,7 @@ class StudyLevel:
 
 
 def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
-    """Return the levels of a study from coarse to fine; first: first level of each analysis, by its key."""
+    """Return the levels of a study from coarse to fine; first: number of each analysis's first level, by key."""
     made = [key for key in first if study.restrict_to(key).scenes]
     studies: list[Study] = []
     for number, most in enumerate(MAX_PHASES_OF_LEVEL, start=1):
@@ -51,17 +51,17 @@ def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
 
 
 def _describe_work(study: Study) -> tuple[object, ...]:
-    """Return what is computed in a study, to compare levels."""
+    """Return grid, strides and analyses of a study, to find out whether two levels compute the same."""
     return study.grid, tuple(study.strides.items()), study.selection
 
 
 def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
-    """Return the study with every model on its finest nested grid of at most `most` phases per axis; most: by side."""
+    """Return the study with every model on its finest nested grid of at most `most` phases per axis; most: by kind."""
     strides = {
         model.key: _find_stride(study, model, most["spatial" if model.is_spatial else model.side])
         for model in study.hierarchy
     }
-    shared = gcd(*strides.values())  # The equations have every phase at this stride.
+    shared = gcd(*strides.values())  # The reference computes every phase of a grid thinned by this factor.
     if study.grid % shared:
         return study
     grid = study.grid // shared
@@ -73,9 +73,9 @@ def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
 
 
 def _find_stride(study: Study, model: Model, most: float) -> int:
-    """Return the stride of a model's phases at a level with at most `most` phases per axis."""
+    """Return k where a model computes every k-th phase of the study at a level with at most `most` phases per axis."""
     stride, phases = study.strides[model.key], len(study.phase_indices(model))
-    # No coarser grid is nested in phases whose last is closer to the first, one period later, than the others are.
+    # Unevenly spaced phases, the last closer to the first of the next period, contain no coarser even grid.
     if stride * phases != study.grid:
         return stride
     chain = nested_grids(phases)

@@ -14,9 +14,9 @@ from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
 from reference.problem.reductions import is_mirror_symmetric
 
-# default speeds v_reg and v_c as texts of models state them
+# Texts of two default speeds: v_reg of regularized friction, and v_c, below which accelerations of sliding do not count
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
-# Largest relative error asked of the equations in any study: they are cheap, and their error shall blur no difference.
+# Largest relative error asked of the reference in any study: it is cheap, and its error shall blur no difference.
 REFERENCE_TOLERANCE = 1e-6
 SOFTENED = "softened-"  # prefix of the key of a model whose bars are softened
 
@@ -37,18 +37,18 @@ def applies_to_every_scene(scene: Scene) -> bool:
 
 
 def has_smooth_friction(scene: Scene) -> bool:
-    """Return whether no friction is dry and rigid, so that both readings of (5.1) are the same."""
+    """Return whether no friction is dry and rigid, so that both definitions of the peak (readings of (5.1)) agree."""
     return not has_dry_friction(scene)
 
 
 def applies_to_no_scene(scene: Scene) -> bool:
-    """Return False: no scene has this property of the model."""
+    """Return False for every scene: the default for a property that a model does not have."""
     return False
 
 
 def _spatial_data(scene: Scene) -> dict[str, object]:
     """
-    Return what a scene says, by key, of where its supports are and how high and large its bodies; None if not stated.
+    Return a scene's places of supports, sphere radius, and heights and sizes of bodies, by key; None if not stated.
     """
     isolator = scene.isolator
     data: dict[str, object] = {
@@ -67,29 +67,29 @@ def has_spatial_data(scene: Scene) -> bool:
 
 
 def why_not_spatial(scene: Scene) -> str:
-    """Return why a scene with a part of the spatial model's data goes without that model; "" otherwise."""
+    """Return why the spatial model is not used for a scene that states only part of its data; "" otherwise."""
     data = _spatial_data(scene)
     missing = [key for key, value in data.items() if value is None]
-    # The radius of a sphere alone does not ask for bodies that rotate.
+    # A sphere radius that is stated alone does not mean that the spatial model is wanted.
     if not missing or set(data) - set(missing) <= {"isolator.sphere_radius"}:
         return ""
     return f"no spatial model, as it lacks {', '.join(missing)}"
 
 
 def has_only_planar_unloaded_bars(scene: Scene) -> bool:
-    """Return whether bars are stated without load in a scene that the spatial model cannot take."""
+    """Return whether a scene states the stiffness of unloaded bars, but not the data that the spatial model needs."""
     return scene.has_unloaded_bars and not has_spatial_data(scene)
 
 
 def has_spatial_unloaded_bars(scene: Scene) -> bool:
-    """Return whether bars are stated without load in a scene that the spatial model can take."""
+    """Return whether a scene states the stiffness of unloaded bars and the data that the spatial model needs."""
     return scene.has_unloaded_bars and has_spatial_data(scene)
 
 
 @dataclass(frozen=True)
 class Model:
     """
-    One model of the hierarchy. `adds`: the sentence the report prints. `settings`: arguments of its functions.
+    One model of the study. `adds`: the report's sentence on what it adds. `settings`: arguments of its functions.
     `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
     `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
     whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they are not computed again.
@@ -111,9 +111,9 @@ class Model:
     trajectory: str
     settings: Mapping[str, object]
     assumptions: Mapping[str, str]
-    batch: int  # phase pairs solved in one call: about a second of work
+    batch: int  # number of phase pairs solved in one call, which then takes about a second
     most: int | None = None
-    # Function that tells whether a scene has a symmetry that the model has, too
+    # Function that tells whether, in this model of a scene, mirrored phases give the mirrored motion
     symmetric: Callable[[Scene], object] = field(default=applies_to_no_scene)
     applies: Callable[[Scene], bool] = field(default=applies_to_every_scene)
     refusal: str | None = None
@@ -132,7 +132,7 @@ class Model:
 
     @property
     def motion_settings(self) -> dict[str, object]:
-        """Return the keyword arguments of the model's trajectory, without `cutoff`, which changes no motion."""
+        """Return the keyword arguments for computing a motion: settings without `cutoff`, which affects peaks only."""
         return {key: value for key, value in self.settings.items() if key != "cutoff"}
 
     def scene_of(self, scene: Scene) -> Scene:
@@ -140,12 +140,12 @@ class Model:
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
-        """Return the keyword arguments of its amplification in a study of this tolerance."""
+        """Return keyword arguments of its amplification in a study of this tolerance; full: it leaves nothing out."""
         asked = {"full": True} if full else {}
         return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
 
     def tolerance(self, asked: float) -> float:
-        """Return the relative error that this model asks of its numbers when the study asks for `asked`."""
+        """Return the relative error required of this model's amplification when the study requires `asked`."""
         return min(asked, REFERENCE_TOLERANCE) if self.side == "reference" else asked
 
 
@@ -167,18 +167,18 @@ class Pair:
 
 
 def label_of(model: Model, scene: Scene) -> str:
-    """Return the title of a model with the reading of (5.1) that its mu has; without it where both are the same."""
+    """Return the title of a model with its definition of the peak (reading of (5.1)), where the definitions differ."""
     title, readings = model.title.removesuffix(f", {model.reading}"), readings_of([model], scene)
     return f"{title}, {model.reading}" if readings else title
 
 
 def readings_of(models: Sequence[Model], scene: Scene) -> list[str]:
-    """Return the readings of (5.1) that models of a scene have, each once; none where both are the same."""
+    """Return the readings of (5.1) (definitions of the peak) of models in a scene, each once; none where both agree."""
     return [*dict.fromkeys(each.reading for each in models if not has_smooth_friction(each.scene_of(scene)))]
 
 
 def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
-    """Return the hierarchy with this many steps of the engine allowed for a phase pair."""
+    """Return the models with the engine's number of steps per phase pair limited to `max_work`."""
     return tuple(
         replace(model, settings={**model.settings, "max_work": max_work}) if model.side == "engine" else model
         for model in hierarchy
@@ -191,7 +191,7 @@ def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
 
 
 def chain_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
-    """Return the scene's chain of models: each adds one effect to the one before, all in one reading of (5.1)."""
+    """Return the scene's chain of models: each adds one effect to the one before; all define the peak alike."""
     return [model for model in models_of(scene, hierarchy) if model.side != "user" and model.in_chain(scene)]
 
 
@@ -247,10 +247,10 @@ def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return the pairs of models whose differences are single effects: along the chain, outside it, and of the reading.
+    Return the pairs of models that differ by one effect: neighbors in the chain, others, and two peak definitions.
 
-    An effect as integrated is a share of mu of the first model of the chain, so that the effects of the chain add up to
-    the total. Between literal suprema it is a share of the literal supremum of the small equations.
+    An effect as integrated is a share of the amplification of the chain's first model, so that the effects of the chain
+    add up to the total. Between literal suprema it is a share of the literal supremum of the small equations.
     """
     known = {model.key: model for model in models_of(scene, hierarchy) if model.key not in left_out}
     chain = [model for model in chain_of(scene, hierarchy) if model.key in known]
@@ -272,19 +272,19 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
-    """Return the pair of models whose difference is `effect`, over mu of `base`; where: law or reading in its key."""
+    """Return the pair of models that differ by `effect`, as a share of `base`'s amplification; where: end of key."""
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
 
 
-# Assumption "mu_i" of a model, in words: what counts as the peak. First for models that count all of their motion.
+# Texts on what counts as a model's peak acceleration: first, all of its motion; second, only rest and faster sliding.
 _PEAK = "largest value the computed motion reaches"
 _RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
 
 def _model_after(before: Model, changed_assumptions: Mapping[str, str], **changes: Any) -> Model:
-    """Return the model after `before`: the same but for other assumptions, by key, and other fields, by name."""
+    """Return a copy of the model `before` with some assumptions changed, by key, and some fields, by name."""
     return replace(before, assumptions={**before.assumptions, **changed_assumptions}, **changes)
 
 
@@ -423,7 +423,7 @@ SPATIAL = _model_after(
 MODEL_HIERARCHY: tuple[Model, ...] = (  # all models for rigid friction and stiff bars, from simple to complete
     SMALL, EXACT, SMALL_AS_INTEGRATED, EXACT_AS_INTEGRATED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# Effects between models outside the chain: name, law or reading that its key adds, first and second model
+# Effects between models outside the chain: name of the effect, end of the pair's key, first and second model
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
     (EXACT_AS_INTEGRATED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
@@ -432,7 +432,7 @@ BESIDE_THE_CHAIN = (
 
 
 def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
-    """Return the model after `model`, whose bars are softened by the weight above, in scenes that `applies` accepts."""
+    """Return `model` with bars softened by the weight that they carry, for scenes that `applies` accepts."""
     return _model_after(
         model,
         {"links": "bars as soft as the weight that they carry makes them"},
@@ -445,7 +445,7 @@ def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-# Models of the engine with bars softened by the weight above, for scenes that state bars without load
+# Models of Exudyn with bars softened by the weight that they carry, for scenes that state stiffnesses of unloaded bars
 SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_bars)
 SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
 
@@ -465,8 +465,8 @@ _YIELDS = "elastic up to mu N before it slides, mu constant or of the slip veloc
 
 
 def _tell_of_yielding(model: Model, only: bool) -> Model:
-    """Return `model` with texts that also describe friction that yields; only: whether it yields in every scene."""
-    if model.applies is has_dry_friction:  # models of rigid friction stay
+    """Return `model` with texts that mention elastic yielding of friction; only: whether it yields in every scene."""
+    if model.applies is has_dry_friction:  # used with rigid friction only: its texts stay
         return model
     friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"
     told = _model_after(model, {"friction": friction} | ({"mu_i": _PEAK} if only else {}))
@@ -480,9 +480,9 @@ def _tell_of_yielding(model: Model, only: bool) -> Model:
 
 def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
     """
-    Return the hierarchy with the models added that only some of the scenes have.
+    Return the models with those added that only some scenes need: softened bars, and rigid friction where it yields.
 
-    Those are the one that softens bars, at the end, and friction that yields, which the first model is without.
+    Models with softened bars are added at the end. The one whose friction stays rigid comes first.
     """
     functions = {model.amplification for model in hierarchy}
     steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)

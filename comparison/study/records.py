@@ -17,7 +17,7 @@ def describe_records(scenes: Sequence[Scene], names: Sequence[str] = ()) -> list
     read: dict[Hashable, RecordDescription] = {}
     for scene, name in zip(scenes, names or [""] * len(scenes), strict=True):
         if isinstance(record := scene.excitation, Record):
-            # Files of one name may stand in several folders.
+            # Names alone do not identify a record: files in different folders may have the same name.
             what = record.files, record.detrend, record.samples.tobytes()
             if what not in read:
                 one = describe_record(scene)

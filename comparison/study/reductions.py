@@ -17,7 +17,7 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-# What is skipped, the function that tells for which scenes, and which models skip it: a key of their settings, values
+# What is skipped, function that tells whether a scene allows it, and the setting and its values in models that skip it
 SKIPPED_COMPUTATIONS = (
     ("every run but one per harmonic", is_linear, "equations", ("small",)),
     ("motion across its plane", is_planar, "equations", ("small", "exact")),
@@ -45,7 +45,7 @@ def list_skipped_computations(study: Study) -> list[SkippedComputation]:
 
 
 def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
-    """Yield each computation that a scene does not require, as for its symmetry: what, by which models, and why."""
+    """Yield each computation that a scene makes needless, for example by symmetry: what, by which models, and why."""
     models = [model for model in study.hierarchy if model.applies(scene)]
     shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
     for share in sorted(set(shares) - {1.0}, reverse=True):

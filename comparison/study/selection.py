@@ -30,7 +30,7 @@ class Selectable(NamedTuple):
 @dataclass(frozen=True)
 class Selection:
     """
-    Analyses selected for every scene.
+    Choice of the analyses that are run for each scene, and the reasons why others are run for none.
 
     analyses: all that can be selected. by_scene: those asked for, by name of the scene; a scene that is not in it has
     all but those on request. later: those that only a later level of the study has. of_the_paper: those that are run
@@ -58,12 +58,12 @@ class Selection:
         return f"on request; --also {analysis} makes it" if analysis in self.on_request else "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
-        """Return the selection without these analyses, which a later level makes."""
+        """Return the selection without these analyses, which a later level of the study runs."""
         return replace(self, later=tuple(analyses))
 
     def has(self, analysis: str, scene: str) -> bool:
         """
-        Return whether the analysis is run for the scene; one that cannot be selected always is.
+        Return whether the analysis is run for the scene; an analysis that is not in `names` always is.
         """
         usual = [each.name for each in self.analyses if not each.on_request]
         return analysis not in self.later and (
@@ -102,7 +102,7 @@ def select_names(
     skip: Sequence[str] | None,
     also: Sequence[str] = (),
 ) -> tuple[str, ...]:
-    """Return the selected analyses: `only`, or all but those on request, with what they need, less `skip`."""
+    """Return names of selected analyses: `only` or the usual ones, and `also`, with all their needs, less `skip`."""
     needs = {each.name: each.needs for each in analyses if each.needs}
     kept = {each.name for each in analyses if not each.on_request} if only is None else set(only)
     kept |= set(also)

@@ -17,7 +17,7 @@ from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
 
-# Relative error of every mu without --tolerance, and of analyses by the engine; it is also the engine's own default
+# Relative error asked of every amplification without --tolerance, and of analyses by Exudyn; default of multibody, too
 STUDY_TOLERANCE = 1e-3
 
 
@@ -34,7 +34,7 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
 @cache
 def nested_grids(grid: int) -> tuple[int, ...]:
     """
-    Return grid sizes from coarse to fine, each dividing the next; the factors 2 come first.
+    Return the phases per axis of nested grids, from coarse to `grid`: each divides the next; factors 2 come first.
 
     >>> nested_grids(48), nested_grids(96), nested_grids(7)
     ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
@@ -113,7 +113,7 @@ class Study:
         return [model for model in chain_of(scene, self.hierarchy) if model.key not in left_out]
 
     def left_out(self, scene: Scene) -> Collection[str]:
-        """Return the keys of models without results on a scene; none while nothing is computed."""
+        """Return the keys of models that comparisons on a scene leave out; none in a study that is not yet computed."""
         return ()
 
     def pairs(self, scene: Scene) -> list[Pair]:
@@ -121,12 +121,12 @@ class Study:
         return pairs_of(scene, self.hierarchy, self.left_out(scene))
 
     def stride(self, model: Model, scene: Scene | None = None) -> int:
-        """Return the model's stride; in a scene without phases the whole grid."""
+        """Return k where the model computes every k-th phase of either axis; in a scene without phases, `grid`."""
         return self.grid if scene is not None and scene.recorded else self.strides[model.key]
 
     def phase_indices(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
         """
-        Return which of the `grid` phases of either axis a model computes, in a scene with phases if none is given.
+        Return the indices of the phases of either axis that a model computes; scene: None stands for any with phases.
         """
         return np.arange(0, self.grid, self.stride(model, scene))
 
@@ -140,11 +140,11 @@ class Study:
         return (self.grid * axis[:, None] + axis).ravel()
 
     def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """Return for each of `places` the phase pair whose mirror image it is by symmetry, or itself."""
+        """Return for each of `places` the phase pair whose motion is mirrored to give its own; itself if none is."""
         places = self.places(model, scene)
         if scene.recorded:
             return places
-        # In an uneven grid the last phase is closer to the first, one period later, than others: no mirror images.
+        # Unevenly spaced phases, the last closer to the first of the next period, are no mirror images of others.
         even = self.grid % self.strides[model.key] == 0
         return (
             places[indices_of_solved_pairs(scene, len(self.phase_indices(model)))]
@@ -153,7 +153,7 @@ class Study:
         )
 
     def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
-        """Return the phase pairs that the model is asked for, as indices, by the first nested grid with them."""
+        """Return the phase pairs to compute, as indices on the whole grid: for each nested grid those that it adds."""
         solved, stride = np.unique(self.symmetric_sources(scene, model)), self.stride(model, scene)
         level = levels_of_phases(len(self.phase_indices(model, scene)))
         first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))

@@ -35,7 +35,7 @@ REFERENCE_MODEL_KEYS = [model.key for model in MODEL_HIERARCHY if model.side == 
 MAX_PHASES = 8  # largest number of phases per axis for an engine, because the cost of its calls is unknown
 TIME_LIMIT = 60.0  # s, default limit of processor time for one call with one phase pair
 OFFERED_ARGUMENTS = ("tolerance", "regularization", "equations")  # arguments that a function receives if it names them
-# packages of this project, and names of folders of installed packages: lines in them are no lines of the user
+# Packages of this project and folders of installed packages: a note on an error of the user points to no line in them
 OWN_PACKAGES, INSTALLATION_FOLDERS = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # error of an engine that states none
 MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status that a message repeats
@@ -43,14 +43,14 @@ MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status t
 
 @dataclass(frozen=True)
 class EngineAnswer(Amplification):
-    """Answer of a user's engine. error_message: statuses in its own words; "" without any."""
+    """Answer of a user's engine. error_message: quotes statuses that are no known outcome; "" without any."""
 
     error_message: str = ""
 
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> EngineAnswer:
     """
-    Return the answer of a user's function in the form of `multibody.amplification`, with the settings it names.
+    Call a user's function with the settings that it names; return its answer in the form of `multibody.amplification`.
     """
     with silence_output():
         function = load_user_function(engine["function"])
@@ -67,7 +67,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """Add a note to an exception: the last line of the user's files that it passed; file: the file of the engine."""
+    """Note in an exception the last line of the user's own code that it passed through; file: that of the engine."""
     if file is None:
         return
     folder = file.parent
@@ -140,7 +140,7 @@ def list_argument_names(function: Callable[..., Any]) -> str:
 
 
 def _select_settings(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings that a function names among its arguments, or all if it takes any."""
+    """Return the settings whose names are arguments of a function; all of them if it takes any keyword."""
     try:
         parameters = inspect.signature(function).parameters.values()
     except ValueError:
@@ -153,7 +153,7 @@ def _select_settings(function: Callable[..., Any], settings: Mapping[str, Any]) 
 
 
 def _read_answer(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
-    """Return an answer of any accepted form (object with `mu`, array mu, tuple (mu, error)) as EngineAnswer."""
+    """Return an answer in any accepted form (object with `mu`, array, tuple of arrays (mu, error)) as EngineAnswer."""
     if hasattr(answer, "mu"):
         mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
         outcomes = getattr(answer, "status", None)
@@ -182,7 +182,7 @@ def _read_answer(answer: Any, points: int, bodies: int, seconds: float) -> Engin
 
 
 def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """Return a new array of this shape; NaN without a value."""
+    """Return `value` as a new array of floats, NaN if None. Raises an error if not numeric or not of this shape."""
     if value is None:
         return np.full(shape, np.nan)
     array = np.array(value)
@@ -195,7 +195,7 @@ def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
 
 
 def _read_outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
-    """Return the outcomes that the engine states, "solver failed" for its own words, and a message with these."""
+    """Return the outcome of each phase pair, "solver failed" for the engine's own words, and a message with them."""
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")

@@ -42,7 +42,7 @@ class Limit:
 
     @property
     def breach_texts(self) -> list[str]:
-        """Return one text for each breach, without the scene."""
+        """Return a text for each breach, with body, value found and value allowed, without the scene's name."""
         return [word_breach(self, breach) for breach in self.breaches]
 
     @computed_field  # type: ignore[prop-decorator]
@@ -60,7 +60,7 @@ def list_pairs_without_limit(study: Study, scene: Scene) -> list[str]:
 
 
 def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
-    """Return the keys of a user's engines without a limit in the scene: they must agree with their own equations."""
+    """Return the keys of the user's engines for which the scene states no limit, so that the default limits hold."""
     stated = {pair for _, pair, _, _ in scene.acceptance.list_limited_differences()}
     models = models_of(scene, study.hierarchy)
     return [model.key for model in models if model.side == "user" and model.key not in stated]
@@ -93,7 +93,7 @@ def _check_differences(bodies: Sequence[BodyComparison], gaps: Sequence[MissingV
 
 
 def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValues]) -> Iterator[Limit]:
-    """Yield the limit on points without an answer; by default a user's engine may lack none."""
+    """Yield the limit on the number of phase pairs without an answer; by default it is 0 for a user's engine."""
     stated, engines = scene.acceptance, _engines_without_limits(study, scene)
     allowed_points = 0 if engines and stated.allowed_failures is None else stated.allowed_failures
     if allowed_points is not None:
@@ -123,7 +123,7 @@ def _list_breaches(
 
 
 def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
-    """Return the key of a pair; "total" for "translational" where a single engine model makes both the same."""
+    """Return the key of a pair of models, but "total" for "translational" where these are the same two models."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and engines == [compared["total"].second.key]

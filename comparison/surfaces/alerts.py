@@ -13,8 +13,8 @@ from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.surfaces import find_largest_cap_share, find_largest_travel_share
 
-LARGE_TRAVEL_SHARE = 0.9  # share of the isolator's travel from which a displacement raises an alert
-LARGE_DISPLACEMENT_SHARE = 0.5  # share of rho from which a displacement raises an alert
+LARGE_TRAVEL_SHARE = 0.9  # share of the isolator's travel above which a displacement of the platform raises an alert
+LARGE_DISPLACEMENT_SHARE = 0.5  # share of the pendulum radius rho above which a displacement raises an alert
 
 # What a user can do about a limit of the scene that is not met
 STATED_LIMIT_HELP = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
@@ -96,7 +96,7 @@ def _limit_alerts(limits: Sequence[Limit]) -> list[Alert]:
 
 
 def _alerts_of_large_displacements(study: Study, surfaces: xr.Dataset) -> Iterator[Alert]:
-    """Yield an alert for each model whose platform moves by more than a share of rho or of the travel."""
+    """Yield an alert for each model whose platform moves by a large share of the pendulum radius or of the travel."""
     swing = "the model assumes a cap that reaches so far: compare with the isolator that is to be built"
     travel = "a larger displacement ends the motion as travel reached"
     for scene in study.scenes:

@@ -18,7 +18,7 @@ from reference.problem import Outcome, Scene
 
 @dataclass(frozen=True)
 class BodyComparison:
-    """Comparison of the models of one body in one scene; differences and rows are computed on first use."""
+    """Comparison of the models' results for one body of a scene; differences are computed when first used."""
 
     study: Study
     surfaces: xr.Dataset
@@ -27,7 +27,7 @@ class BodyComparison:
 
     @cached_property
     def model_sequence(self) -> list[Model]:
-        """Return the models with values in their sequence, in which each adds one effect."""
+        """Return the models that have values, in the order in which each adds one effect."""
         return self.study.compared(self.scene)
 
     @cached_property
@@ -37,7 +37,7 @@ class BodyComparison:
 
     @cached_property
     def effect_pairs(self) -> list[Pair]:
-        """Return a pair of models for each effect: successive models, other models, then readings of (5.1)."""
+        """Return the pairs of models that differ by one effect: successive ones, others, and two peak definitions."""
         return effect_pairs_of(self.scene, self.study.hierarchy, self.study.left_out(self.scene))
 
     @cached_property
@@ -52,21 +52,21 @@ class BodyComparison:
 
     @cached_property
     def rows(self) -> dict[str, Difference]:
-        """Return the table row of every pair by its key, first those that answer the question."""
+        """Return by key the difference statistics of every pair of models, each a row of the report's table."""
         return {pair.key: self._row(pair) for pair in (*self.pairs, *self.effect_pairs)}
 
     @property
     def total(self) -> Difference:
-        """Return the table row of the difference between the first and the last model."""
+        """Return the statistics of the difference between the first and the last model."""
         return self.rows["total"]
 
     @property
     def consecutive_rows(self) -> list[Difference]:
-        """Return the rows of the consecutive pairs in the order of the sequence."""
+        """Return the difference statistics of each pair of successive models, in order."""
         return [self.rows[pair.key] for pair in self.consecutive_model_pairs]
 
     def difference(self, pair: Pair) -> ModelDifference:
-        """Return the difference of a pair, point by point."""
+        """Return the difference of a pair of models at every phase pair."""
         known: dict[tuple[str, str, str], ModelDifference] = self.__dict__.setdefault("_differences", {})
         key = pair.first.key, pair.second.key, pair.base.key
         if key not in known:
@@ -93,7 +93,7 @@ def compare_bodies(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Bod
 def count_independent_phases(
     study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
 ) -> int:
-    """Return the number of `known` phase pairs (K, K), counting once those that symmetries of all models relate."""
+    """Return the number of phase pairs in `known` (K, K); those that symmetries of all models relate count once."""
     if scene.recorded:
         return int(known.any())
     reduced = replace(study, full=False)  # A full study also computes mirrored phases, which are not independent.

@@ -2,7 +2,7 @@
 Budget of the total difference of a surface: what each model of the hierarchy adds, with its uncertainty.
 
 Steps are taken between neighboring models that apply to the scene, so that they add up to the total by construction.
-All are relative to mu of the first model: their sum is then the relative total.
+All are relative to the amplification by the first model: their sum is then the relative total.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,7 +22,7 @@ TOTAL = "total"  # key of the difference between the first and the last model
 @result
 class BudgetEntry(DifferenceStatistics):
     """
-    Difference statistics of one step between models, or of the total, for one body, over the first model's mu.
+    Statistics of the difference of two successive models, or of the total, for one body; base: the chain's first model.
 
     Its signed mean is the bar in `waterfalls`.
     """
@@ -38,7 +38,7 @@ class BudgetEntry(DifferenceStatistics):
 
 
 def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEntry]:
-    """Return every entry of the table, in the order scene, body, step."""
+    """Return the entries of the table of differences, by scene, body, and step from a model to the next."""
     return [
         _budget_entry(comparison, pair, key)
         for comparison in comparisons
@@ -50,7 +50,7 @@ def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEnt
 
 
 def compute_closure_error(comparison: BodyComparison) -> float:
-    """Return the largest |sum of steps - total| of all phase pairs, over mu of the first model; NaN without values."""
+    """Return the largest |sum of steps - total| of all phase pairs, relative to the first model; NaN if unknown."""
     total = comparison.difference(comparison.total_pair)
     differences = [comparison.difference(pair) for pair in comparison.consecutive_model_pairs]
     coarsest = max([total.stride, *(each.stride for each in differences)])
@@ -68,7 +68,7 @@ def compute_torus_distance(first: Sequence[float], second: Sequence[float]) -> f
 
 
 def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEntry:
-    """Return the statistics of one step between two models, with the share of it that is resolved."""
+    """Return the statistics of the difference of two models, with the share of phase pairs where it is resolved."""
     scene, difference = comparison.scene.name, comparison.difference(pair)
     known = difference.known
     about: dict[str, Any] = {
@@ -82,7 +82,7 @@ def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEnt
     pairs = (pair.first, pair.second, pair.base), (pair.second, pair.first, pair.base)
 
     def values(name: str) -> list[Array]:
-        """Return a variable of both models where both have a value, NaN elsewhere."""
+        """Return the variable `name` of each of the two models; NaN where either has no value."""
         columns = (select_values(comparison.surfaces, name, scene, *each)[difference.body - 1] for each in pairs)
         return [np.where(known, column, np.nan) for column in columns]
 
@@ -103,7 +103,7 @@ def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEnt
 
 
 def _correlation(first: Array, second: Array) -> float:
-    """Return Pearson's correlation, NaN for a flat surface."""
+    """Return Pearson's correlation of two arrays, NaN if one of them is constant."""
     a, b = first - first.mean(), second - second.mean()
     scale = float(np.sqrt((a @ a) * (b @ b)))
     return float(a @ b) / scale if scale > 0.0 else float("nan")

@@ -36,11 +36,11 @@ Indices = NDArray[np.intp]  # index of each phase pair on the whole grid
 
 MIN_SPATIAL_PER_AXIS = 9  # phases per axis of the spatial model, below which its values are drawn as points
 MIN_VALUES = 16  # smallest number of phase pairs from which a surface is interpolated
-CONFIDENCE = 0.95  # probability with which the stated share of errors holds
-# Number of phase pairs held out per model and scene: 1 - 0.05^(1/59) = 5 % of all may exceed their largest error.
+CONFIDENCE = 0.95  # probability that at most the stated share of phase pairs is off by more than the stated error
+# Phase pairs held out per model and scene: with CONFIDENCE at most 1 - 0.05^(1/59) = 5 % exceed their largest error.
 HELD_OUT_PAIRS = 59
-# Largest share of phase pairs whose error may exceed the stated one: no error is stated where held-out values are too
-# few for it.
+# Largest share of phase pairs that may be off by more than the stated error: none is stated where the held-out values
+# are too few to show this share.
 MAX_SHARE_BEYOND_ERROR = 0.1
 POINTS_PER_TASK = 8  # largest number of held-out phase pairs in one task
 CERTIFICATE_VARIABLES = {  # meaning of each variable that surfaces.nc stores with a completed surface
@@ -114,13 +114,13 @@ class Completion:
 
 
 class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
-    """Analysis of the held-out phase pairs of every model whose surface is completed."""
+    """Analysis that computes held-out phase pairs, as a check of each surface that is completed by interpolation."""
 
     key, stage, level = "completion", "held-out phases", 2
     seconds = 3.5
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return the tasks, each of a few phase pairs."""
+        """Return the tasks, each of which computes a few held-out phase pairs."""
         return [task for _, _, tasks in self._list_tasks(study) for task in tasks]
 
     def collect(
@@ -137,7 +137,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
         return found or None
 
     def _list_tasks(self, study: Study) -> Iterator[tuple[Scene, Model, list[Task]]]:
-        """Yield each scene and model with its tasks."""
+        """Yield each scene and model whose surface is completed, with the tasks for its held-out phase pairs."""
         for scene in study.phased:
             for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
                 # The spatial model's surface is not smooth enough to be interpolated, as its supports stop one by one.
@@ -181,7 +181,7 @@ def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
 
 def bound_share_beyond_error(held_out: int) -> float:
     """
-    Return the largest share of phase pairs, with CONFIDENCE, whose error exceeds that of so many held-out ones.
+    Return a bound, with CONFIDENCE, on the share of phase pairs whose error exceeds that of all `held_out` ones.
 
     >>> round(bound_share_beyond_error(59), 3), bound_share_beyond_error(0)
     (0.05, 1.0)
@@ -192,7 +192,7 @@ def bound_share_beyond_error(held_out: int) -> float:
 def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """Return a completion for every body of every model that lacks phases, or is spatial on few, in their order."""
+    """Return a completed surface, or why none, for each body of each model that lacks phases or is spatial on few."""
     if scene.recorded:
         return []
     listed = []
@@ -206,7 +206,7 @@ def complete_surfaces(
 
 
 def add_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
-    """Return the surfaces with `completed`, mu where a completed surface may be drawn, and its certificate."""
+    """Return `surfaces` with `completed`, the amplification on all phases where it may be drawn, and a certificate."""
     nothing, meaning = np.full(surfaces["mu"].shape, np.nan), "mu on all phases, completed through a finer model"
     about = {"units": "1", "long_name": meaning, "confidence": CONFIDENCE}
     found = surfaces.assign(completed=(surfaces["mu"].dims, nothing, about))
@@ -283,7 +283,7 @@ def _complete_body(
 
 
 def _explain_refusal(study: Study, finer: Model | None, model: Model, computed: int, unused: HeldOut | None) -> str:
-    """Return why the difference of two models is not interpolated, "" where it is; computed: values of both."""
+    """Return why the difference of two models is not interpolated, "" if it is; computed: number of values of both."""
     count = len(study.phase_indices(model))
     if finer is None:
         return "no model before it has all phases"
@@ -297,13 +297,13 @@ def _explain_refusal(study: Study, finer: Model | None, model: Model, computed: 
 
 
 def interpolate_on_phases(values: Array, phase: Array, every: Array) -> Array:
-    """Return values (K, K) at phases (K,), NaN where unknown, by thin-plate splines at the phases `every` (L,), rad."""
+    """Interpolate values (K, K) at phases (K,), NaN if unknown, by thin-plate splines to phases `every` (L,), rad."""
     known = np.isfinite(values.ravel())
     made: Array = RBFInterpolator(_map_onto_torus(phase)[known], values.ravel()[known])(_map_onto_torus(every))
     return made.reshape(len(every), len(every))
 
 
 def _map_onto_torus(phase: Array) -> Array:
-    """Return the phase pairs of a square grid on a torus in four dimensions, (K^2, 4): functions there are periodic."""
+    """Return cosine and sine of both phases of every pair of a square grid, (K^2, 4), to interpolate periodically."""
     alpha1, alpha2 = (axis.ravel() for axis in np.meshgrid(phase, phase, indexing="ij"))
     return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)

@@ -14,12 +14,12 @@ from reference.measures.distribution import fractile
 from reference.problem import Scene
 from reference.problem.readings import BOTH_READINGS
 
-MAX_AGREEING_RATIO = 2.0  # largest difference of two models that agree, over its uncertainty u_D
+MAX_AGREEING_RATIO = 2.0  # models agree if their difference is at most so many times its uncertainty u_D
 
 
 @result
 class DifferenceStatistics:
-    """Sizes of the difference of two models in one body, over the phase pairs where both have a value."""
+    """Statistics of the relative difference of two models in one body, over the phase pairs where both have a value."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -35,7 +35,7 @@ class DifferenceStatistics:
 
 @result
 class GridMean:
-    """The mean difference on one of the nested grids of phases."""
+    """Mean and largest difference of two models on one of the nested grids of phases."""
 
     phases_per_axis: Annotated[int, "phases per axis"]
     mean: Annotated[Number, "mean of the signed size"]
@@ -45,8 +45,7 @@ class GridMean:
 @result
 class Difference(DifferenceStatistics):
     """
-    The difference of two models in one body: second minus first, relative to the base, on the finest grid of phases
-    that both models have.
+    Difference of two models in one body: second minus first, relative to the base, on the finest common grid of phases.
     """
 
     pair: Annotated[str, "key of the pair: total, translational, like-for-like, supremum, reading, or of an effect"]
@@ -74,12 +73,12 @@ class Difference(DifferenceStatistics):
 
     @property
     def error(self) -> float:
-        """Return the error of the mean, numerical and of sampling; NaN where one is not known."""
+        """Return the error of the mean difference, numerical and from the choice of phases; NaN if one is unknown."""
         return float(np.hypot(self.numerical_error, self.sampling_error))
 
     @property
     def largest(self) -> float:
-        """Return the signed size of the largest absolute difference, which is at `phases`."""
+        """Return the difference whose absolute value is largest, with its sign; it occurs at `phases`."""
         return self.low if abs(self.low) > abs(self.high) else self.high
 
     @property
@@ -91,12 +90,12 @@ class Difference(DifferenceStatistics):
 
     @property
     def mean_is_resolved(self) -> bool:
-        """Return whether the mean exceeds its sampling error, and five times the numerical one."""
+        """Return whether the mean difference exceeds its sampling error, and five times its numerical error."""
         return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED_RATIO * self.numerical_error
 
 
 def compute_difference_statistics(scene: str, difference: ModelDifference) -> dict[str, Any]:
-    """Return the fields of `DifferenceStatistics`."""
+    """Return the fields of `DifferenceStatistics` (median, largest, and others) for a difference of two models."""
     size = np.abs(difference.size[difference.known])
     median, percentile95, maximum = (fractile(size, p) if size.size else np.nan for p in (0.5, 0.95, 1.0))
     return {
@@ -114,7 +113,7 @@ def compute_difference_statistics(scene: str, difference: ModelDifference) -> di
 
 
 def make_difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
-    """Return the row of a difference; independent, not_ok: see the fields of `Difference`."""
+    """Return the statistics of a difference of two models; independent, not_ok: see the fields of `Difference`."""
     pair, size, known = difference.pair, difference.size, difference.known
     grid = len(size)
     stated = known & np.isfinite(difference.uncertainty)
@@ -147,6 +146,6 @@ def make_difference_row(scene: Scene, difference: ModelDifference, independent: 
 
 
 def _grid_mean(sizes: np.ndarray) -> GridMean:
-    """Return mean and largest size of a difference on one grid of phases."""
+    """Return the mean of a difference and its largest absolute value on a phase grid; sizes: (n, n), NaN if unknown."""
     known = np.abs(sizes[np.isfinite(sizes)])
     return GridMean(len(sizes), compute_mean_of_known(sizes), float(known.max()) if known.size else float("nan"))

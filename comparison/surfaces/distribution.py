@@ -81,7 +81,7 @@ def find_grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]
 def _usable_values(
     surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]
 ) -> Iterator[tuple[Model, int, Array, Array]]:
-    """Yield every model and body with its usable values and their errors, on the phases asked of the model."""
+    """Yield model, body, usable amplification and its error, both (K, K) at the model's phases, for every body."""
     for model in models:
         of_bodies = zip(usable_mu(surfaces, scene.name, model), select_values(surfaces, "error", scene.name, model))
         for body, (mu, error) in zip(range(1, len(scene.bodies) + 1), of_bodies):

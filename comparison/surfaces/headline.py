@@ -16,18 +16,18 @@ from comparison.surfaces.waterfall import NAN, Waterfall
 # Share of the total difference above which an effect is named as a cause, and of an effect above which its interaction
 # with another effect is stated
 NAMED_SHARE = 0.2
-# For an effect of the model sequence: key of the pair with the same effect in another order of steps; order in words
+# By effect: key of the pair of models that adds it where effects come in another order, and that order in words
 SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
 }
-# For an effect of the model sequence: key of the pair with the same effect between literal suprema
+# By effect: key of the pair of models that differ by it if the peak is the literal supremum
 SUPREMUM_PAIRS = {"geometry": "geometry-supremum"}
 
 
 @result
 class Effect:
-    """Mean difference that one step of the model sequence adds for a body, and that in another order of the steps."""
+    """Mean difference that one effect makes for a body, and that if effects are added in another order."""
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]
@@ -42,7 +42,7 @@ class Effect:
 
     @property
     def depends_on_order(self) -> bool:
-        """Return whether the interaction exceeds a fifth of the effect."""
+        """Return whether the effect changes by more than a fifth if effects are added in another order."""
         return abs(self.interaction) > NAMED_SHARE * abs(self.mean)
 
 
@@ -53,9 +53,9 @@ NO_EFFECT = Effect("", "", 0.0, 0.0, NAN, True, NAN, "", NAN, NAN)
 @result
 class Headline:
     """
-    Total difference of one body in numbers and in one sentence.
+    Total difference of one body between the first and the last model, in numbers and in one sentence.
 
-    All sizes are as integrated and relative to mu of the first model, unless they say otherwise.
+    All sizes are as integrated and relative to the amplification by the first model, unless they say otherwise.
     """
 
     scene: Annotated[Text, "name of the scene"]
@@ -107,7 +107,7 @@ class Headline:
 
     @property
     def statement(self) -> str:
-        """Return the sentence for a place below a heading that names the scene."""
+        """Return the sentence on the total difference without the scene's name, for use below a heading that has it."""
         return self.sentence.removeprefix(f"{self.scene}, ")
 
     @property
@@ -121,7 +121,7 @@ class Headline:
 
 
 def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
-    """Return the headline of one body; bars: its waterfall."""
+    """Return the total difference of one body in numbers and words; bars: its waterfall of effects."""
     total, pair, largest = comparison.total, comparison.total_pair, bars.largest
     scene = comparison.scene
     effects = compute_effects(comparison)
@@ -191,7 +191,7 @@ def word_engines(comparison: BodyComparison) -> tuple[str, ...]:
 
 
 def compute_effects(comparison: BodyComparison) -> tuple[Effect, ...]:
-    """Return what every step of the model sequence adds, in its order."""
+    """Return the effect that each model adds to the one before, in the order of the models."""
     total, rows = comparison.total, comparison.rows
     effects = []
     for row in comparison.consecutive_rows:
@@ -215,7 +215,7 @@ def compute_effects(comparison: BodyComparison) -> tuple[Effect, ...]:
 
 
 def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
-    """Return the resolved effects above a fifth of a resolved total, in either direction, largest first."""
+    """Return resolved effects of either sign above a fifth of the total, largest first; none if that is unresolved."""
     if not total.mean_is_resolved:
         return []
     named = [effect for effect in effects if effect.resolved and abs(effect.mean) > NAMED_SHARE * abs(total.mean)]
@@ -223,7 +223,7 @@ def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
 
 
 def find_main_cause(effects: Sequence[Effect], causes: Sequence[Effect]) -> str:
-    """Return the largest of all effects if it is a cause; "" if their errors leave open which is larger."""
+    """Return the name of the largest effect if it is a cause; "" if errors leave open which effect is the largest."""
     first, second = (sorted([*effects, NO_EFFECT, NO_EFFECT], key=lambda effect: -abs(effect.mean)))[:2]
     told = abs(first.mean) - abs(second.mean) > math.hypot(first.error, second.error)
     return first.effect if told and first in causes else ""

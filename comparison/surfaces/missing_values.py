@@ -55,7 +55,7 @@ class MissingValues:
 
     @property
     def description(self) -> str:
-        """Return the sentence without the name of the scene."""
+        """Return the model, its missing values and their outcomes in one line, without the name of the scene."""
         rest = "" if self.used else ". Comparisons leave this model out"
         return f"{self.title}: {self.where}{f': {self.why}' if self.why else ''}{rest}"
 
@@ -139,5 +139,5 @@ def _find_answered_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> N
 
 
 def _find_usable_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
-    """Return for the phase pairs asked of a model whether the error of every value is below half of the value."""
+    """Return for the phase pairs asked of a model whether every body has a value with no error above half of it."""
     return np.asarray(np.isfinite(usable_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

@@ -11,16 +11,16 @@ from comparison.result_types import Array
 from comparison.study.models import Model, Pair
 from comparison.surfaces.surfaces import find_common_stride, select_values
 
-MAX_USABLE_ERROR = 0.5  # share of a value: with a larger error estimate the value is unusable
+MAX_USABLE_ERROR = 0.5  # largest error estimate of a usable value, as a share of the value
 RESOLVED_RATIO = 5.0  # multiple of its uncertainty u_D above which a difference counts as resolved: known to a fifth
 
 
 @dataclass(frozen=True)
 class ModelDifference:
     """
-    Relative difference in mu of a pair's two models, at the phases (alpha1, alpha2), rad, that its models share.
+    Relative difference in amplification of a pair of models, at the phases (alpha1, alpha2), rad, that they share.
 
-    It is (mu of the second model - mu of the first) / mu of the base.
+    It is (amplification by the second model - amplification by the first) / amplification by the base.
 
     size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
     same unit, NaN where one is not stated. stride: they are every stride-th of the study's phases. recorded: the scene
@@ -53,7 +53,7 @@ class ModelDifference:
 
     @property
     def ratio(self) -> Array:
-        """Return the size of the difference over its uncertainty, 0 where both vanish."""
+        """Return the absolute difference divided by its uncertainty, 0 where the difference vanishes."""
         size = np.abs(self.size)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio: Array = np.where(size == 0.0, 0.0, size / self.uncertainty)
@@ -61,18 +61,18 @@ class ModelDifference:
 
     @property
     def largest_place(self) -> tuple[int, int] | None:
-        """Return row and column of the largest absolute size on the study's grid, None without any size."""
+        """Return row and column, on the study's grid, of the largest absolute difference; None if none is known."""
         return self.find_largest(np.abs(self.size))
 
     def find_largest(self, values: Array) -> tuple[int, int] | None:
-        """Return row and column of the largest of the values on the study's grid, None without any size."""
+        """Return row and column, on the study's grid, of the largest of `values` with a known difference, or None."""
         if not self.known.any():
             return None
         row, column = np.unravel_index(np.argmax(np.where(self.known, values, -np.inf)), self.size.shape)
         return int(row) * self.stride, int(column) * self.stride
 
     def phases_at(self, place: tuple[int, int] | None) -> tuple[float, float]:
-        """Return (alpha1, alpha2) at an index pair of the study's grid, NaN without one, or under a record."""
+        """Return (alpha1, alpha2), rad, at a row and column of the study's grid; NaN for None, and under a record."""
         if place is None or self.recorded:
             return float("nan"), float("nan")
         row, column = place
@@ -80,22 +80,22 @@ class ModelDifference:
 
     @property
     def phases(self) -> tuple[float, float]:
-        """Return (alpha1, alpha2) of the largest absolute size, NaN without any size, or under a record."""
+        """Return (alpha1, alpha2), rad, of the largest absolute difference; NaN if none is known, or under a record."""
         return self.phases_at(self.largest_place)
 
     def at(self, values: Array, place: tuple[int, int] | None) -> float:
-        """Return the entry of `values` at an index pair of the study's grid; NaN if it is not computed there."""
+        """Return the entry of `values` at a row and column of the study's grid; NaN if not computed there."""
         if place is None or place[0] % self.stride or place[1] % self.stride:
             return float("nan")
         return float(values[place[0] // self.stride, place[1] // self.stride])
 
     def at_stride(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
-        """Return `values` of the difference, such as its size, at every `stride`-th phase of the study only."""
+        """Return those of `values`, an array like `size`, that are at every `stride`-th phase of the study."""
         return values[:: stride // self.stride, :: stride // self.stride]
 
 
 def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> ModelDifference:
-    """Return the pair's difference in one body; values whose error is above half of them are missing."""
+    """Return the difference of a pair of models in one body; amplifications with errors above half count as missing."""
     models = pair.first, pair.second, pair.base
     stride = find_common_stride(surfaces, scene, *models)
 
@@ -120,7 +120,7 @@ def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) 
 
 
 def usable_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
-    """Return mu of the first model by body, as `select_values`; NaN where its error is above half of it."""
+    """Return the first model's amplification by body, at phases of all models; NaN if its error is above half of it."""
     return drop_unusable_values(*(select_values(surfaces, name, scene, *models) for name in ("mu", "error")))
 
 

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 from comparison.study.study import nested_grids
 
-SCATTER_FACTOR = 1.5  # factor on the scatter of the means over shifted grids, for the error of the mean over all phases
+SCATTER_FACTOR = 1.5  # estimated error of a mean over all phases, divided by the scatter of means on shifted grids
 MIN_INDEPENDENT_PHASES = 4  # smallest number of independent phase pairs from which a mean over all phases is estimated
 
 
 def estimate_sampling_error(sizes: Array, independent: int) -> float:
     """
-    Return the estimated absolute error of the mean of `sizes` as a mean over all phases; NaN where nothing is known.
+    Estimate the absolute error of a mean over all phases that is taken over the grid of `sizes`; NaN if unknown.
 
     sizes: (n, n), NaN where a value is missing. independent: phase pairs with a value that no symmetry relates.
     """

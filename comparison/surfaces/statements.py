@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from comparison.surfaces.headline import Effect, Headline
 
 
-# Relative difference below which two amplification mu count as equal: the error asked of the equations
+# Relative difference below which two amplifications count as equal: the error asked of the reference
 EQUAL_DIFFERENCE = 1e-6
 UNRESOLVED_TEXT = "less than five times the numerical error"  # words for a difference that is not resolved
 MAX_NAMED_SCENES = 4  # largest number of scenes that a sentence names
@@ -107,7 +107,7 @@ def word_effect(effect: Effect) -> str:
 
 
 def word_agreement(numbers: Headline) -> str:
-    """Return the largest difference of the two codes for the same equations and friction law."""
+    """Return a sentence on the largest difference of reference and Exudyn for the same equations and friction law."""
     if math.isnan(numbers.like_for_like):
         return ""
     verdict = {
@@ -120,12 +120,12 @@ def word_agreement(numbers: Headline) -> str:
 
 
 def _word_multiple(ratio: float) -> str:
-    """Return the ratio of a difference to the errors of both codes together, in words."""
+    """Return "twice " if ratio, a difference over the errors of both codes together, exceeds 1; else ""."""
     return "" if ratio <= 1.0 else "twice "
 
 
 def word_supremum(numbers: Headline) -> str:
-    """Return how much higher the literal supremum of the first model's equations is than mu as integrated."""
+    """Return how much the literal supremum of the first model's equations exceeds the amplification as integrated."""
     if math.isnan(numbers.supremum_mean):
         return ""
     if numbers.supremum_maximum < EQUAL_DIFFERENCE:
@@ -160,7 +160,7 @@ def word_engine(row: Difference, title: str, like: str) -> str:
 
 
 def word_engine_verdict(row: Difference, title: str) -> str:
-    """Return whether an engine of the user agrees with its partner wherever both have a value."""
+    """Return whether a user's engine agrees with the equations that it solves wherever both have a value."""
     what = "agreement within twice the errors"
     if row.agrees is None:
         return f"{what} not compared, as {title} does not state every error"
@@ -234,7 +234,7 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
 
 
 def _word_largest(known: Sequence[Headline]) -> str:
-    """Return the largest mean difference of all bodies, the next, and smallest and largest at single phase pairs."""
+    """Return a sentence on the largest and next mean difference of all bodies, and extremes at single phase pairs."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
     size = word_difference(abs(largest.mean), largest.error).removeprefix("+")
@@ -248,7 +248,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
         single = f", and by {word_difference(*low)} to {word_difference(*high)} at single phase pairs"
     first = " or ".join(sorted({each.first_name for each in known}))
     second = " or ".join(sorted({each.second_name for each in known}))
-    # Scenes in which both readings are equal count for the second reading as well.
+    # A scene in which both definitions of the peak give the same adds no reading of its own.
     readings = sorted({each.reading for each in known} - {BOTH_READINGS}) or [BOTH_READINGS]
     return (
         f"The largest accelerations that {first} give, read {' or '.join(readings)}, differ from those of "
@@ -291,7 +291,7 @@ def _capitalize(text: str) -> str:
 
 
 def word_difference_cell(numbers: Headline) -> str:
-    """Return the cell of the first screen's table with the mean difference."""
+    """Return the text on the mean difference for the table at the top of the report."""
     if numbers.first == numbers.second or not numbers.points:
         return "no value in common"
     if math.isnan(numbers.error) and numbers.phases_per_axis > 1:
@@ -300,12 +300,12 @@ def word_difference_cell(numbers: Headline) -> str:
 
 
 def word_range_cell(numbers: Headline) -> str:
-    """Return the cell of the first screen's table with the range over the phases; "" under a record."""
+    """Return the text on the range of differences over the phases for the report's top table; "" under a record."""
     return word_range(numbers) if numbers.points and numbers.phases_per_axis > 1 else ""
 
 
 def word_causes_cell(numbers: Headline) -> str:
-    """Return the cell of the first screen's table with the causes of the difference."""
+    """Return the text on the causes of the difference for the table at the top of the report."""
     if not numbers.resolved:
         return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED_TEXT}"
     words = word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
@@ -313,7 +313,7 @@ def word_causes_cell(numbers: Headline) -> str:
 
 
 def word_agreement_cell(numbers: Headline) -> str:
-    """Return the cell of the first screen's table with the difference of the codes for the same equations."""
+    """Return the text on the codes' difference for the same equations, for the table at the top of the report."""
     if math.isnan(numbers.like_for_like):
         return "not compared"
     verdict = {True: "met", False: "not met", None: "error unknown"}[numbers.like_for_like_met]
@@ -321,7 +321,7 @@ def word_agreement_cell(numbers: Headline) -> str:
 
 
 def word_supremum_cell(numbers: Headline) -> str:
-    """Return the cell of the first screen's table with the excess of the literal supremum."""
+    """Return the text on the excess of the literal supremum for the table at the top of the report."""
     if math.isnan(numbers.supremum_mean):
         return "no difference" if numbers.reading == BOTH_READINGS else "not compared"
     if numbers.supremum_maximum < EQUAL_DIFFERENCE:
@@ -331,7 +331,7 @@ def word_supremum_cell(numbers: Headline) -> str:
     return f"{signed(numbers.supremum_mean)}, up to {signed(numbers.supremum_maximum)}"
 
 
-CELL_WORDINGS = SimpleNamespace(  # wording of each cell of the first screen's table
+CELL_WORDINGS = SimpleNamespace(  # functions that word the cells of the table at the top of the report
     difference=word_difference_cell,
     range=word_range_cell,
     causes=word_causes_cell,

@@ -19,7 +19,7 @@ from reference.problem import Scene
 from reference.problem.phases import phase_axis
 
 NOT_APPLICABLE = "not applicable"  # status of a model that does not apply to a scene
-MEANING_OF_VARIABLE = {  # unit and meaning of each variable
+MEANING_OF_VARIABLE = {  # unit and meaning of each variable that `label_surfaces` states on the phases
     "mu": {"units": "1", "long_name": "dynamic amplification factor (5.1)"},
     "error": {"units": "1", "long_name": "estimated absolute error of mu"},
     "instant": {"units": "s", "long_name": "time when the outcome arose"},
@@ -59,7 +59,7 @@ def collect_batch_results(tasks: Sequence[Task], results: TaskResults) -> list[B
 
 def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
-    Return the answers on dimensions scene, model, body, alpha1, alpha2 (rad).
+    Return the models' answers as a data set with dimensions scene, model, body, alpha1, alpha2 (rad).
 
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
     scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
@@ -101,7 +101,7 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
 def _place_answers(
     study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult], bodies: int
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.float64]]:
-    """Return the answers by name, (scene, model, [body,] index on the grid), and the cost of each surface, s."""
+    """Return an array of each variable, (scene, model, [body,] index on the grid), and the cost of each surface, s."""
     names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
     square, points = (len(names), len(models)), study.grid**2
     values: dict[str, NDArray[Any]] = {name: np.full((*square, bodies, points), np.nan) for name in ("mu", "error")}
@@ -133,19 +133,19 @@ def copy_to_mirror_images(study: Study, arrays: Sequence[NDArray[Any]]) -> None:
 
 
 def find_largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
-    """Return the largest displacement of the platform over rho among the phases; NaN without an answer."""
+    """Return the platform's largest displacement, as a share of the pendulum radius rho; NaN without an answer."""
     return float(surfaces["cap_share"].sel(scene=scene, model=model).max())  # max() skips NaN
 
 
 def find_largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> float:
-    """Return the largest displacement of the platform over the isolator's travel; NaN without either."""
+    """Return the platform's largest displacement as a share of the isolator's travel; NaN without either."""
     travel = scene.isolator.travel
     displacement = surfaces["displacement"].sel(scene=scene.name, model=model)
     return math.nan if travel is None else float(displacement.max()) / travel
 
 
 def find_common_stride(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
-    """Return the stride of the study's phases that all these models were asked for."""
+    """Return k where every k-th phase of the study was asked of all these models."""
     strides = surfaces.variables["stride"].values
     return int(max(strides[_find_model_index(surfaces, scene, model)] for model in models))
 

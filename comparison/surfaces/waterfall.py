@@ -1,8 +1,8 @@
 """
 Waterfall of one body: the total difference as signed bars that add up, one for each effect of the model sequence.
 
-A bar is the mean over the finest grid of phases that both of its models have, relative to mu of the first model. The
-total has the grid of the coarsest model; what the means of the finer grids leave of it is a bar of its own.
+A bar is the mean over the finest grid of phases that both of its models have, relative to the sequence's first model.
+The total has the grid of the coarsest model; what the means of the finer grids leave of it is a bar of its own.
 """
 
 from dataclasses import replace
@@ -21,7 +21,7 @@ MAX_ROUNDING_SHARE = 1e-9  # share of the amplification mu: a smaller remainder 
 
 @result
 class WaterfallBar:
-    """One effect of the model sequence, or the total; relative to mu of the first model."""
+    """Size of one effect, by which successive models differ, or of the total; relative to the first of all models."""
 
     model: Annotated[str, "key of the model that the effect leads to; phases for phase pairs that not all models have"]
     size: Annotated[Number, "signed size; null where a model has no value"]
@@ -43,7 +43,7 @@ class LargestDifference:
 
 @result
 class Waterfall:
-    """The total difference of one body as signed bars that add up."""
+    """Total difference of one body between the first and the last model, as signed bars that add up to it."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -54,7 +54,7 @@ class Waterfall:
 
 
 def make_waterfall(comparison: BodyComparison) -> Waterfall:
-    """Return the waterfall of one body."""
+    """Return the total difference of one body as bars, one for each effect, that add up to it."""
     total = comparison.total
     bars = [_mean_bar(row) for row in comparison.consecutive_rows]
     left = total.mean - sum(bar.size for bar in bars)
@@ -87,12 +87,12 @@ def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
 
 
 def _mean_bar(row: Difference) -> WaterfallBar:
-    """Return the bar of a step between models by its mean over the phases."""
+    """Return the bar of two successive models: their mean difference over the phases."""
     return WaterfallBar(row.second, row.mean, row.error, row.mean_is_resolved)
 
 
 def _bar_at(comparison: BodyComparison, pair: Pair, place: tuple[int, int]) -> WaterfallBar:
-    """Return the bar of a step between models at one phase pair."""
+    """Return the bar of a pair of models: their difference at one phase pair."""
     difference = comparison.difference(pair)
     size, error = difference.at(difference.size, place), difference.at(difference.uncertainty, place)
     return WaterfallBar(pair.second.key, size, error, bool(abs(size) > RESOLVED_RATIO * error))

@@ -14,14 +14,14 @@ MAX_TICKS = 5  # largest number of ticks of the axis
 
 @dataclass(frozen=True)
 class LinearScale:
-    """Horizontal axis: `low` and `high` are relative sizes at its ends, `ticks` round values between them."""
+    """Horizontal axis of a waterfall chart: relative differences at its ends, and round values between as ticks."""
 
     low: float
     high: float
     ticks: tuple[float, ...]
 
     def at(self, size: float) -> float:
-        """Return the position of a size on the axis, percent of its length from the left."""
+        """Return the position of a relative difference on the axis, percent of its length from the left."""
         return round(100.0 * (size - self.low) / (self.high - self.low), 3)
 
 
@@ -29,7 +29,7 @@ class LinearScale:
 class ChartBar:
     """One bar of the chart, with positions in percent of the width."""
 
-    model: str  # key of the model that the step leads to, or "total"
+    model: str  # key of the model that adds the bar's effect, or "total"
     kind: str  # "up", "down", "total", "unresolved" (not beyond its error) or "none" (no value)
     left: float
     width: float
@@ -57,13 +57,13 @@ def make_common_scale(waterfalls: Iterable[tuple[Sequence[WaterfallBar], Waterfa
 
 @dataclass(frozen=True)
 class LogScale:
-    """Logarithmic axis of relative sizes; `ticks` are the positions of the powers of ten, percent."""
+    """Logarithmic axis of relative differences; `ticks`: positions of the powers of ten, percent of its length."""
 
     low: float
     high: float
 
     def at(self, size: float) -> float:
-        """Return the position of a size, percent of the length; sizes beyond an end are at that end."""
+        """Return the position of a relative difference, percent of the length; beyond an end it is at that end."""
         if not size > self.low:
             return 1.0
         return round(min(99.0, 1.0 + 98.0 * math.log(size / self.low) / math.log(self.high / self.low)), 3)

@@ -46,10 +46,10 @@ FIRST_DIVISIONS = 2
 # Largest ratio of the numbers of steps in two successive chunks at the largest step: a chunk never grows faster.
 MAX_CHUNK_GROWTH = 2
 
-# Newton iterations that count as one step of work: a step with more of them counts as several.
+# Number of Newton iterations that count as one step of the budget: a step that needs more counts as several.
 ITERATIONS_PER_STEP_OF_WORK = 2
 
-# Number of rows at the end of a chunk whose step ratios decide whether the next step may be larger.
+# Number of steps at the end of a chunk, on whose accuracy it depends whether the next step may be larger.
 RECENT_ROWS = 8
 
 # If a step from sliding fails after DIVISIONS_BEFORE_REST divisions of the largest step, all contacts are put to rest,
@@ -125,13 +125,13 @@ def continue_run(
 
 
 class _AdaptiveRun:
-    """Run under way, which integrates chunks of steps and accepts the accurate rows of each."""
+    """Run in progress, which integrates the motion in chunks of equal steps and accepts the accurate steps of each."""
 
     # A chunk can end in four ways. If the engine cannot solve a step, the chunk is repeated in smaller steps. If a step
     # is larger than the motion allows, the rows before it are accepted, and the run continues there in smaller steps,
     # with the contact force set by the gap alone. If a support opens or closes, the rows before the event are accepted,
     # the event is located, and the run continues behind it. Otherwise all rows are accepted, and the step may grow by
-    # one division if the last rows would have allowed that. Every step size is the largest one over a power of
+    # one division if the last rows would have allowed that. Every step size is the largest one divided by a power of
     # STEP_RATIO, so that runs of successive levels take comparable steps at the same instants, which their error
     # estimate needs.
 
@@ -145,7 +145,7 @@ class _AdaptiveRun:
         self.openings = None if impact is None else Openings(solver, impact, level.penetration)
 
     def advance(self) -> bool:
-        """Integrate one chunk of steps and accept its accurate rows; return whether the run goes on."""
+        """Integrate one chunk of steps and accept those that are accurate; return whether the run goes on."""
         at, level, springs = self.at, self.level, self.model.springs
         asked, step, count = self._choose_steps()
         motion = self._integrate(step, count)
@@ -188,7 +188,7 @@ class _AdaptiveRun:
         return (last, too_large, None, None) if change is None else (change.row, None, None, change)
 
     def _choose_steps(self) -> tuple[int, float, int]:
-        """Return the number of steps wanted in the next chunk, and length and number of steps up to the next knots."""
+        """Return the number of steps wanted, and length and number of those taken, which end at record samples."""
         at, level, end, ground = self.at, self.level, self.integration.end, self.model.ground
         at.divisions = max(at.divisions, level.min_divisions(at.time))
         step = level.step / STEP_RATIO**at.divisions
@@ -231,7 +231,7 @@ class _AdaptiveRun:
         return True
 
     def _accept_steps(self, motion: EngineMotion, size: Array, *, settle: bool = False, read: bool = True) -> bool:
-        """Accept steps up to the end of the model's validity, advance the checkpoint; return if the run goes on."""
+        """Accept steps as far as the model is valid, and put the checkpoint there; return whether the run goes on."""
         outcome, row, instant = find_termination(motion, self.model)
         if self.integration.keep:
             self.run.chunks.append(motion.cut_at(row))
@@ -245,7 +245,7 @@ class _AdaptiveRun:
         return True
 
     def _pass_event(self, event: Event, step: float) -> bool:
-        """Integrate up to an opening or closing within the next step, and apply it; return whether the run goes on."""
+        """Integrate to the instant at which a contact opens or closes, and apply it; return whether the run goes on."""
         at, run, openings = self.at, self.run, self.openings
         assert openings is not None
         motion = openings.locate_event(at.state, at.time, step, event)
@@ -307,9 +307,9 @@ class _AdaptiveRun:
         return True
 
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:
-        """Enlarge the step, or the number of largest steps, as the last rows of a chunk of `asked` steps allow."""
-        # The next number of steps grows from the number asked for, not from the smaller one up to a knot: restarts cost
-        # accuracy, and a chunk of one step up to a knot would make the next chunks as short.
+        """Enlarge the step, or the next chunk of largest steps, if the end of a chunk of `asked` steps allows it."""
+        # The next chunk grows from the number of steps asked for, not from a smaller one that ended at a sample of the
+        # record: otherwise one short chunk would make the next ones short, and restarts cost accuracy.
         at = self.at
         before = asked if at.divisions == 0 else min(asked, MIN_CHUNK_STEPS)
         if at.divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:

@@ -45,7 +45,7 @@ CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current  # the engine's name fo
 def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """Return the equilibrium near `start` under the plate's acceleration, None if none; `start` if no body turns."""
+    """Return the equilibrium near `start` under the plate's acceleration, or None; `start` if no body rotates."""
     if model.kinematics is None:
         return start
     static_penetration = model.bearing_penetration or penetration
@@ -67,7 +67,7 @@ def find_balanced_start(
 
 
 def follows_decay(model: EngineModel, penetration: float) -> bool:
-    """Return whether a contact with this penetration under the weight oscillates before the loading has decayed."""
+    """Return whether a contact with this penetration under the weight oscillates faster than the loading decays."""
     return model.ground.decay_rate * math.sqrt(penetration) <= 1.0
 
 
@@ -128,7 +128,7 @@ class _EquilibriumSolver:
         return [0, 1, 5] if self.model.rim == math.inf else []
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
-        """Solve for coordinates, moved from `begin` along `moved` (n, s), where forces along `held` (n, t) balance."""
+        """Find coordinates in balance, moved from `begin` along `moved` (n, s), with reactions along `held` (n, t)."""
         # Newton's method is applied to the engine's own forces and their Jacobian. The unknowns are displacements along
         # `moved` and forces along `held`, which hold the slow motions in place. The gap of every open contact must be
         # zero, so that a contact that would have to pull carries no force. The matrix may be singular where friction

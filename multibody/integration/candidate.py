@@ -59,7 +59,7 @@ class Candidate:
 
     @property
     def misses_compliance_error(self) -> bool:
-        """True if the error that the contact's compliance leaves is still missing."""
+        """True if the error from the contact's finite stiffness is not estimated yet."""
         return self.shares_contact and self.compliance is None
 
     @property
@@ -86,12 +86,12 @@ class Candidate:
         return bool((self.level.rounding > left).any())
 
     def is_worse_by_rounding(self, best: Candidate) -> bool:
-        """Return whether this error exceeds that of the coarser level `best`, and rounding may be the cause."""
+        """Return whether this error exceeds that of `best`, from a coarser level, and rounding may be the cause."""
         larger = not self.relative_error < best.relative_error
         return larger and bool((self.level.rounding > best.errors).any())
 
     def add_compliance_error(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
-        """Return the answer with the error by the contact's compliance, which a run on a softer contact shows."""
+        """Return the answer with the error from the contact's finite stiffness, by a run on a softer contact."""
         if not self.misses_compliance_error:
             return self
         level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)

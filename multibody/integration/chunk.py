@@ -44,7 +44,7 @@ def smallest_loaded_slip(contact: Array, row: int) -> float:
 def slip_change_ratios(
     accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
 ) -> Array:
-    """Return the ratio (T,) of the slowest loaded contact's change of slip velocity in a step to the allowed one."""
+    """Return the ratio (T,) of the slowest loaded contact's change of slip velocity in a step to the allowed change."""
     step_ratio = np.empty(len(accelerations))
     before_x = before_y = before_z = 0.0
     for row in range(len(accelerations)):
@@ -61,7 +61,7 @@ def slip_change_ratios(
 
 @cache_on_disk(__file__, nogil=True)
 def find_rim_exit_rows(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
-    """Find the first row with the coordinate `height` at `rim`, and the first with all contacts open; T if none."""
+    """Find the first row in which coordinate `height` reaches `rim`, and the first with all contacts open, or T."""
     steps = len(coordinates)
     beyond, lost = steps, steps
     for row in range(steps):
@@ -78,7 +78,7 @@ def find_rim_exit_rows(coordinates: Array, height: int, rim: float, contact: Arr
 
 @cache_on_disk(__file__, nogil=True)
 def vector_lengths(coordinates: Array, axes: NDArray[np.int_]) -> Array:
-    """Return the lengths (T,) of the vectors of the two coordinates `axes`."""
+    """Return the length, in each row, of the vector of the two coordinates `axes`, (T,)."""
     length = np.empty(len(coordinates))
     for row in range(len(coordinates)):
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
@@ -103,7 +103,7 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
 
 @cache_on_disk(__file__, nogil=True)
 def find_last_row_near_peak(size: Array, sizes: Array, distance: Array, far: float) -> int:
-    """Find the last row with any `size` (T, N) >= its `sizes` (N,), or with `distance` (T,) >= `far`; -1 if none."""
+    """Find the last row in which a `size` (T, N) reaches `sizes` (N,), or `distance` (T,) reaches `far`; -1 if none."""
     for row in range(len(size) - 1, -1, -1):
         if distance[row] >= far:
             return row

@@ -35,7 +35,7 @@ INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT_INTEGRATORS)  # int
 
 class EngineMotion(NamedTuple):
     """
-    Rows of one run, one for each step, in units of the model and relative to the plate; the first row is the start.
+    Motion in one run, one row for each step, in units of the model, relative to the plate; the first row is the start.
 
     time: instants, (T,). coordinates, velocities, accelerations: values of all coordinates, (T, n). contact: gap, slip
     speed and two unused entries of each contact, (T, 4 K). force: force vector and normal of each contact, (T, 6 K), or
@@ -61,7 +61,7 @@ class EngineMotion(NamedTuple):
 
     @property
     def load(self) -> Array | None:
-        """Normal force of each contact over its share of the weight, (T, K); None unless forces are recorded."""
+        """Normal force of each contact in units of its share of the weight, (T, K); None unless forces are recorded."""
         if not self.force.shape[1]:
             return None
         vectors = self.force.reshape(len(self.time), -1, 2, 3)
@@ -124,7 +124,7 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
 
 class EngineSolver:
     """
-    Solver of the engine for one model.
+    Exudyn's solver for one model, with its integrator and tolerances.
 
     newton: tolerance of a step's equations, relative to their first residual. residual: absolute tolerance of these
     equations, in units of force. integrator: one of INTEGRATORS. discontinuous: tolerance of the iteration over
@@ -139,14 +139,14 @@ class EngineSolver:
         integrator: str = "generalized alpha",
         discontinuous: float | None = None,
     ) -> None:
-        """Make the engine's solver and its settings for `model`."""
+        """Make Exudyn's solver, with its settings, for `model`."""
         self.model = model
         self.settings = _solver_settings(newton, residual)
         if model.coordinates > MAX_DENSE_COORDINATES:
             self.settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         if discontinuous is not None:
             self.settings.timeIntegration.discontinuous.iterationTolerance = discontinuous
-        # where contacts may open, the engine must not shorten a step in which one opens or reverses: it might never end
+        # where contacts may open, the engine must shorten no step with an opening or slip reversal: it might never end
         self.settings.timeIntegration.discontinuous.useRecommendedStepSize = not model.allows_liftoff
         self.settings.timeIntegration.generalizedAlpha.useNewmark = integrator == "trapezoidal"
         self.explicit = EXPLICIT_INTEGRATORS.get(integrator)

@@ -26,10 +26,10 @@ Array = NDArray[np.float64]
 # Acceleration (T, 3) of the plate as a function of times (T,), in units of the model.
 Ground = Callable[[Array], Array]
 
-# If later values of a run stay below this share of its largest value, they exceed the largest at no other level either.
+# A value of a run below this share of its largest one is not the largest at any other level of accuracy either.
 SETTLED_FRACTION = 0.9
 
-# Time within which warping of the supports dies out after they close, over the square root of the warping compliance.
+# Time in which warping of supports dies out after they close, as a multiple of the square root of its compliance.
 WARPING_RELAXATION = 20.0
 
 

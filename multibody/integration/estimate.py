@@ -32,24 +32,24 @@ Array = NDArray[np.float64]
 # docs/records/multibody.md records how often stated errors hold.
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25
 
-# Safety factor on the rounding error that the difference to a run on a softer contact, in the same steps, shows: the
-# change of compliance may cancel a part of it (measured: a factor of 2.4 was needed at most, in 1 of 48 cases).
+# Safety factor on the rounding error that is estimated by a run on a softer contact in the same steps: the change of
+# compliance may cancel a part of it (measured: a factor of 2.4 was needed at most, in 1 of 48 cases).
 SAFETY_OF_ROUNDING = 3.0
 
-# Noise of the contact force over the bound of its rounding error: of a platform that does not turn (measured: up to
-# 0.27), and of one that turns (measured: up to 0.10).
+# Noise of the contact force as a share of the bound of its rounding error, if the platform does not rotate (measured:
+# up to 0.27; up to 0.10 if it rotates).
 FORCE_NOISE_RATIO = 0.5
-FORCE_NOISE_RATIO_OF_TURNING = 0.2  # noise of the contact force over its rounding bound, if the platform turns
+FORCE_NOISE_RATIO_OF_TURNING = 0.2  # the same share if the platform rotates
 
-# Force on the platform of a flat slider, over Newton's residual, up to which all runs may miss a force as large as the
-# residual, because the engine takes a step without an iteration (measured: up to 34).
+# Up to this force on the platform of a flat slider, as a multiple of Newton's residual, all runs may miss a force as
+# large as the residual, because the engine takes a step without an iteration (measured: up to 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
 # Safety factor on how much bearings of finite stiffness change the peaks, if only a run in larger steps has shown it
 SAFETY_OF_BEARINGS = 2.0
 
-# Time from the start, over the square root of the penetration, within which stiff links oscillate (measured: peaks at
-# 1.7).
+# Time from the start in which stiff links oscillate, as a multiple of the square root of the penetration (measured:
+# their peaks come at 1.7).
 STARTING_TIME = 4.0
 
 # Factor by which one level reduces the error: smallest, at stops, and largest, in smooth motion. A factor above
@@ -57,16 +57,16 @@ STARTING_TIME = 4.0
 MIN_RATE, MAX_RATE = 2.0, 4.0
 MAX_CREDIBLE_RATE = 5.0  # factor of error reduction by one level, above which two errors count as canceling
 
-# Relative error of a peak over the largest warping load while all supports are closed (measured: up to 0.22, where
+# Relative error of a peak per largest warping load while all supports are closed (measured: up to 0.22, where
 # supports reach the slip speed v_reg one by one).
 ERROR_PER_WARPING_LOAD = 0.25
 
-# Smallest relative error at the first level of a motion with impacts, halved by every level on the same springs:
+# Smallest relative error at the first level of a motion with impacts, halved by every level of equally stiff supports:
 # rounding decides in which order supports close, and two levels may agree better by chance (measured: 1.1e-3 between
 # levels 1 to 4).
 MIN_ERROR_WITH_IMPACTS = 4e-3
 
-# Typical error of a level where friction yields over that of rigid friction (measured at level 2: 2.0).
+# Ratio of a level's typical error with friction that yields to that with rigid friction (measured at level 2: 2.0).
 ERROR_FLOOR_RATIO_OF_YIELDING = 3.0
 
 # Smallest relative error that any peak is given: no smaller one has been verified.
@@ -155,12 +155,12 @@ def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: Engin
 
 
 def impact_error_floor(before: int) -> float:
-    """Return the smallest relative error with impacts; before: number of coarser levels on the same springs."""
+    """Return the smallest relative error after impacts; before: number of coarser levels on equally stiff supports."""
     return MIN_ERROR_WITH_IMPACTS / 2.0**before
 
 
 def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
-    """Return errors (N,); after impacts they are at least a share of the peaks, and the spread of scattered levels."""
+    """Return errors (N,), after impacts at least a share of the peaks and, if levels scatter, the peaks' range."""
     if not run.impacts:
         return errors
     widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)
@@ -173,7 +173,7 @@ def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, bef
 
 
 def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
-    """Return errors (N,), at least as large as the peaks if any of them shows that levels do not converge."""
+    """Return errors (N,); if one is too large for levels that converge, all are at least as large as the peaks."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
         return errors
@@ -200,5 +200,5 @@ def error_share_of_change(other: Level, model: EngineModel) -> float:
 
 
 def contact_lag(level: Level, model: EngineModel) -> float:
-    """Return the contact lag x, the response time of the contact over the relaxation time of friction."""
+    """Return the contact lag x: response time of the contact divided by the relaxation time of friction."""
     return math.sqrt(level.penetration) / model.relaxation

@@ -4,9 +4,9 @@ Levels of accuracy: from one level to the next everything that the answer depend
 The step and the change of the slip velocity in one step fall by two. The compliance of the contact and the tolerance
 of Newton's iteration fall by four. The contact follows a change of the force that it must carry within
 sqrt(penetration) units of time. At a stop that force changes within the time in which regularized friction relaxes,
-share * v_reg / mu with the platform's share of the mass. A slower contact would apply the friction limit of an earlier
-instant. Then its error at the corner of the law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation:
-the response of a first-order lag to an exponential.
+share * v_reg / f with the platform's share of the mass and the friction coefficient f. A slower contact would apply the
+friction limit of an earlier instant. Then its error at the corner of the law is in proportion to x / (1 + x), where
+x = sqrt(penetration) / relaxation: the response of a first-order lag to an exponential.
 """
 
 from __future__ import annotations
@@ -37,25 +37,25 @@ ERROR_FLOOR_OF_LEVEL_0 = 8e-4
 # Largest relative change of the slip velocity in one step at level 0: a step with a larger change is divided.
 MAX_SLIP_CHANGE = 0.14
 
-# Largest penetration of the contact under the weight at level 0, in units of rho.
+# Largest penetration of the contact under the weight at level 0, as a share of the pendulum radius rho.
 MAX_PENETRATION = 1e-6
 
-# Largest response time of the contact over the relaxation time of friction at level 0, unless rounding needs a softer
-# contact: below it each level halves the contact's error (measured).
+# Largest response time of the contact, as a share of the relaxation time of friction, at level 0, unless rounding needs
+# a softer contact: below it each level halves the contact's error (measured).
 MAX_CONTACT_LAG = 0.3
 
 # Largest response time of the contact at level 0, times the largest angular frequency of the motion. A slower contact
 # would vibrate with stiff links on the slope of the sphere, and its damper would end this vibration at every level.
-# Where bodies turn, the moment of the links also presses the supports, so that the time is shorter.
+# Where bodies rotate, the moment of the links also presses the supports, so that the time is shorter.
 MAX_CONTACT_RESPONSE_TIME = 0.25
-MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04  # as MAX_CONTACT_RESPONSE_TIME, where bodies turn
+MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04  # the same where bodies rotate
 
-# Largest response time of the contact over the duration, where the contact force changes: a slower contact has not
-# followed the change when the motion ends, and a run on a softer contact would not show that error.
+# Largest response time of the contact as a share of the duration, where the contact force changes: a slower contact has
+# not followed the change when the motion ends, and a run on a softer contact would not show that error.
 MAX_CONTACT_RESPONSE_TIME_OVER_DURATION = 0.05
 
-# Largest change of the contact force, over the peak, at which the contact need not follow: the change is vertical and
-# adds to the horizontal acceleration as a square.
+# Largest change of the contact force, as a share of the peak, that the contact need not follow: it is vertical and adds
+# to the horizontal acceleration as a square.
 MAX_NEGLIGIBLE_FORCE_CHANGE = 0.03
 
 # Relative tolerance of the forces in Newton's iteration at level 0. No level has one below MIN_NEWTON_TOLERANCE,
@@ -66,7 +66,7 @@ MIN_NEWTON_TOLERANCE = 1e-12  # smallest relative tolerance of the forces in New
 # Factor on Newton's tolerance where friction yields: a wrong force of a spring at its limit makes a contact slip.
 NEWTON_TOLERANCE_RATIO_OF_SPRINGS = 1e-3
 
-# Largest squared step over the penetration at which Newton's tolerance is not reduced: the tolerance is relative to the
+# Largest squared step / penetration at which Newton's tolerance is not reduced: the tolerance is relative to the
 # first residual of a step, which is the error of the predicted position times the contact stiffness.
 MAX_SQUARED_STEP_OVER_PENETRATION = 1e3
 
@@ -81,7 +81,7 @@ MAX_TOLERANCE_FOR_ROUNDING = 1e-3
 # A loading below WEAK_LOADING, in units of g, hardly changes the contact force. Rounding is then compared with the
 # loading, not with MIN_PEAK, and a contact may be so soft that the weight presses it in by MAX_WEAK_PENETRATION rho.
 WEAK_LOADING = 1e-4
-MAX_WEAK_PENETRATION = 4e-4  # in units of rho, largest penetration under the weight at a weak loading
+MAX_WEAK_PENETRATION = 4e-4  # largest penetration under the weight at a weak loading, as a share of rho
 
 # Smallest peak, in units of g, by which the penetration is divided, so that it stays finite.
 MIN_PEAK_AS_DIVISOR = 1e-300
@@ -101,13 +101,13 @@ SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0
 # divisions, and as many as MIN_STEP_AT_STOP needs.
 STEP_RATIO = 4
 MIN_DIVISIONS = 7  # smallest number of divisions of the largest step by STEP_RATIO that a level allows
-MIN_STEP_AT_STOP = 0.05  # smallest step over the step that the change of the slip velocity allows at a stop
+MIN_STEP_AT_STOP = 0.05  # smallest step at a stop, as a share of that allowed by the change of the slip velocity
 
 
 @dataclass(frozen=True)
 class Level:
     """
-    Step, contact and tolerances of one level of accuracy, in units of total mass, rho and sqrt(rho / g).
+    Step, contact and tolerances of one level of accuracy, in units of total mass, pendulum radius rho, sqrt(rho / g).
 
     A level with another step or contact is made by `dataclasses.replace`.
 
@@ -195,7 +195,7 @@ class Level:
         )
 
     def min_divisions(self, time: float) -> int:
-        """Return the smallest number of divisions of the largest step at `time` that resolves the brief motions."""
+        """Return how often the largest step must be divided at `time` to resolve motions that soon decay."""
         if not self.decays:
             return 0
         allowed = min((step for until, step in self.decays if time < until), default=self.step)
@@ -217,7 +217,7 @@ def levels(
     scene : Scene
     model : {"translational", "spatial"}
     tolerance : float
-        Relative error of mu that is asked for; 0.001 (`DEFAULT_TOLERANCE`) if not given. A looser one permits a softer
+        Relative error asked of amplifications; 0.001 (`DEFAULT_TOLERANCE`) if not given. A looser one permits a softer
         contact at the first levels.
     regularization : float or None
         v_reg, m/s, as in `amplification`; 0.001 (`DEFAULT_V_REG`) if not given.
@@ -293,7 +293,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return the penetrations, over rho, of the softest and the stiffest contact; slowest: longest response time."""
+    """Return the penetrations, in rho, of the softest and the stiffest contact; slowest: longest response time."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
     # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that
@@ -325,7 +325,7 @@ def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> L
 
 
 def bound_contact_force_change(scene: Scene, model: EngineModel) -> float:
-    """Return a bound, in weights, of the contact force's change in a motion from rest, from its speed and path."""
+    """Return a bound, in weights, on the change of contact force in a motion from rest; inf with vertical loading."""
     if model.ground.accelerates(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time

@@ -44,22 +44,22 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-# Outcomes of a run that stops before the end of the motion without an event.
+# Outcomes of a run that stops before the end of the motion without an event, such as a platform at the rim.
 UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 
 # Largest error that the warping load of closed supports may cause, as a share of the tolerance.
 MAX_WARPING_ERROR_SHARE = 0.2
 
-# Largest share of the work of a phase pair that the first run may take where supports may rattle.
+# Largest share of the engine steps allowed for a phase pair that the first run may take if supports may rattle.
 MAX_WORK_SHARE_OF_TRIAL = 0.2
 
-# Largest ratio of the work of two successive levels, with which work is predicted: steps become half as long.
+# Largest ratio of the numbers of steps of two successive levels, to predict the work: steps become half as long.
 MAX_WORK_GROWTH = 2.0
 
 # Number of largest steps from the last large value of a run to the early stop of the next run.
 STEPS_AFTER_SETTLING = 20.0
 
-# Largest change of a peak between two levels at which a run may stop early, over how far later values stay below it.
+# Largest change of a peak between two levels at which a run may stop early, as a share of its excess over later values.
 MAX_CHANGE_FOR_EARLY_STOP = 0.2
 
 # Later runs may stop early only if the first run keeps this margin: a share of the distance to the rim or of the
@@ -101,11 +101,11 @@ class LevelRuns:
         return self.keep or self.pair.in_full
 
     def can_run_next(self) -> bool:
-        """Return whether there is another level, and enough work left for its runs."""
+        """Return whether there is another level of accuracy, and enough engine steps are left for its runs."""
         number = len(self.runs)
         if number == len(self.levels):
             return False
-        # a contact no stiffer than at the level before needs one more run for its error; stiff springs need another
+        # one more run shows the error of a contact no stiffer than at the level before, and one that of stiff supports
         runs = 1.0 + self.shares_contact(number) + (self.real_bearings_run is not None)
         # one level alone has no error estimate, so that a second level is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
@@ -118,12 +118,12 @@ class LevelRuns:
         return number > 0 and self.levels[number].penetration >= self.levels[number - 1].penetration
 
     def run_next_level(self) -> EngineRun:
-        """Run the next level, and adapt the levels to come to its result."""
-        # The run at the level may be replaced in three cases. If supports may rattle, the first run is a trial with a
-        # share of the work, because rattling on stiff springs would use up all work. A run that stops early counts only
-        # if its largest values confirm those of the run before, so that no later value can be larger; otherwise the
-        # level is run to the end. If a support opens, the springs of real bearings are tried, because the misfit of a
-        # platform alone lifts it off rigid supports (docs/records/multibody.md, supports).
+        """Run the model at the next level of accuracy, and adjust all later levels to the result."""
+        # The run at the level may be replaced in three cases. 1. If supports may rattle, the first run is a trial with
+        # a share of the work, and fails: rattling on stiff springs would use up all work. 2. The run stopped early,
+        # and its largest values do not confirm those of the run before, so that a later value may be larger: the level
+        # is run to the end. 3. A support opens. In cases 1 and 3 supports as stiff as real bearings are tried, because
+        # the misfit of a platform alone lifts it off rigid supports (docs/records/multibody.md, supports).
         number, level = len(self.runs), self.levels[len(self.runs)]
         trial = number == 0 and self.pair.model.warping_displacement is not None
         run = self._run_trial(level) if trial else self._run_level(level, self.stop)
@@ -143,7 +143,7 @@ class LevelRuns:
         return run
 
     def make_candidate(self) -> Candidate | None:
-        """Return the answer of the last level with its error; None if the run on springs of real bearings has none."""
+        """Return the last level's answer with its error; None if a run on supports as stiff as real bearings failed."""
         # The error is a sum of parts that different comparisons show: step, iteration and contact from the levels
         # before, rounding of contact forces from the stiffness of two levels, load sharing from the load that warping
         # takes, and the springs of real bearings from a run on them. Two rules keep the parts from hiding each other.
@@ -198,17 +198,17 @@ class LevelRuns:
         )
 
     def _count_levels_on_same_springs(self) -> int:
-        """Return the number of earlier levels from level 0 on that have the warping compliance of the last level."""
+        """Return how many earlier levels, from level 0 on, have the same warping compliance as the last level."""
         *before, last = self.levels[: len(self.runs)]
         springs = last.warping_compliance
         return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
 
     def _run_level(self, level: Level, stop: float = math.inf) -> EngineRun:
-        """Run the model at one level of accuracy, up to `stop`, within the work left."""
+        """Run the model at one level of accuracy, up to `stop`, within the engine steps that are left."""
         return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
     def _run_trial(self, level: Level) -> EngineRun:
-        """Run the first level of a model whose supports may rattle, with a share of the work."""
+        """Run the first level of a model whose supports may rattle, with a part of the engine steps that are left."""
         trial = Budget(MAX_WORK_SHARE_OF_TRIAL * self.budget.steps_left)
         self.budget.steps_left -= trial.steps_left
         run = self.pair.run_level(level, trial, keep=self.keep)
@@ -216,7 +216,7 @@ class LevelRuns:
         return run
 
     def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
-        """Return `run`, in which a support opens, or in its place a run on springs of real bearings."""
+        """Return `run`, in which a support opens, or a run in its place on supports as stiff as real bearings."""
         # A support on stiff springs may open only because of the misfit of the platform, which real bearings
         # compensate. So the level is repeated on the springs of real bearings. If a support opens in this run, too, and
         # no peak changes by more than the tolerance, the stiff run stays the answer and the change becomes a part of
@@ -238,14 +238,14 @@ class LevelRuns:
         return real
 
     def _run_on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
-        """Run a level on springs of real bearings; return this run and the differences (N,) of its peaks from `run`."""
+        """Run a level on supports as stiff as real bearings; return it and the changes (N,) of peaks from `run`."""
         real = self._run_level(_with_physical_warping_compliance(level))
         if real.outcome in UNFINISHED_OUTCOMES or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
 
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
-        """Repeat the last level on springs of real bearings; return the change (N,) of peaks, and if the run ended."""
+        """Repeat the last level on supports as stiff as real bearings; return change (N,) of peaks, and if it ended."""
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._run_on_real_bearings(self.levels[number], run)
         if real.outcome in UNFINISHED_OUTCOMES:
@@ -260,12 +260,12 @@ class LevelRuns:
         return change, True
 
     def _use_real_bearings(self, number: int) -> None:
-        """Set the springs of real bearings for all levels from `number` on."""
+        """Make supports as stiff as real bearings at all levels from `number` on."""
         self.levels[number:] = [_with_physical_warping_compliance(level) for level in self.levels[number:]]
         self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
-        """Soften supports and contact of the levels to come as the warping load and the peaks of `run` require."""
+        """Soften supports and contact of all later levels as the warping load and the peaks of `run` require."""
         done = len(self.runs)
         if run.lifts_off:
             self.max_warping_compliance = PHYSICAL_WARPING_COMPLIANCE
@@ -296,7 +296,7 @@ def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, so
 
 
 def _compute_work_until(run: EngineRun, stop: float, end: float) -> float:
-    """Return the work that `run` would have taken up to `stop`, without the scan of later motion."""
+    """Return the number of engine steps that `run` would have taken up to `stop`, without the scan of later motion."""
     own = min(run.scanned_from, end)
     shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return shorter * run.work

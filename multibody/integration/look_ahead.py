@@ -35,7 +35,7 @@ QUIET_TIME_BEFORE_SCAN = 2.0 * math.pi
 
 
 def can_look_ahead(model: EngineModel, level: Level) -> bool:
-    """Return whether a scan in larger steps saves work and is possible, as it is not with heat or a dense record."""
+    """Return whether a scan in larger steps saves work and is possible: not with frictional heat or a dense record."""
     return (
         not (model.friction is not None and model.friction.law.heat)
         and float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
@@ -43,7 +43,7 @@ def can_look_ahead(model: EngineModel, level: Level) -> bool:
 
 
 def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
-    """Return `level`, or the coarser level of its scan where a run may look ahead; whole: whether it may not."""
+    """Return `level`, or the coarser level of its scan where a run may look ahead; whole: look-ahead is not allowed."""
     return level.coarsen() if can_look_ahead(model, level) and not whole else level
 
 

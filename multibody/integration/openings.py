@@ -23,17 +23,17 @@ from multibody.models.state import EngineState
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Largest gap at a closing, over the penetration, at which the closing counts as located.
+# Largest gap, as a share of the penetration, at which the instant of a closing counts as located.
 GAP_TOLERANCE = 1e-4
 
-# Gap, over the penetration, beyond which a contact is open. It is larger than the gap of a located closing, so that a
+# Gap / penetration beyond which a contact is open. It is larger than the gap of a located closing, so that a
 # contact that has just closed stays closed.
 OPENING_GAP = 2.0 * GAP_TOLERANCE
 
 # Time, in units of the model, within which contacts that close share one impact.
 SIMULTANEOUS_CLOSING_TIME = 1e-7
 
-# Gap, over the penetration, up to which open contacts share the impact of one that closes: a platform leaves compliant
+# Gap / penetration up to which open contacts share the impact of one that closes: a platform leaves compliant
 # contacts with uneven loads at a tilt, which rigid contacts would not cause.
 MAX_GAP_OF_JOINT_IMPACT = 1.0
 
@@ -43,7 +43,7 @@ MIN_IMPACT_SPEED = 1e-5
 # Force of the contact's damper at a closing, in weights, beyond which no peak counts until contact forces have settled.
 MAX_QUIET_FORCE = 1e-3
 
-# After a closing no peak is read until contact forces have settled: for this time over the square root of the
+# After a closing no peak is read until contact forces have settled: for this multiple of the square root of the
 # penetration, or for BEARING_SETTLING_TIME if that is longer.
 CONTACT_SETTLING_TIME = 40.0
 BEARING_SETTLING_TIME = 0.04  # in units of time, time in which real bearings spring back after a closing
@@ -51,7 +51,7 @@ BEARING_SETTLING_TIME = 0.04  # in units of time, time in which real bearings sp
 # Numbers by which a step is divided to find a flight that begins and ends within the step.
 FLIGHT_SEARCH_DIVISORS = 2.0 ** np.arange(1, 8)
 
-# First step after an impact over the response time of the contact, which is the square root of the penetration.
+# First step after an impact, as a share of the contact's response time, which is the square root of the penetration.
 FIRST_STEP_OVER_RESPONSE = 0.25
 
 
@@ -84,7 +84,7 @@ class Openings:
         self._mark_open(np.zeros(len(self.law.depressions.ring), bool))
 
     def _mark_open(self, is_open: Mask) -> None:
-        """Take the open contacts out of the engine's system, and put the closed ones in."""
+        """Remove the open contacts from the engine's system, and put the closed ones in."""
         self.is_open = is_open
         take_out_open_contacts = self.solver.model.take_out_open_contacts
         assert take_out_open_contacts is not None
@@ -95,7 +95,7 @@ class Openings:
         return self.law.depressions.clearance(coordinates) - self.penetration
 
     def fill_gaps_of_open_contacts(self, motion: EngineMotion) -> EngineMotion:
-        """Return `motion` with the gaps of open contacts computed here: the engine's contact sphere has no rim."""
+        """Return `motion` with the gaps of open contacts recomputed, since the engine's contact sphere has no rim."""
         if not self.is_open.any():
             return motion
         contact = motion.contact.copy()
@@ -117,12 +117,12 @@ class Openings:
         return Event(row, closing, closes[row] if closing else opens[row])
 
     def open_contacts(self, event: Event) -> None:
-        """Take the contacts that have opened out of the engine."""
+        """Remove the contacts that have opened from the engine's system."""
         self._mark_open(self.is_open | event.contacts)
 
     def locate_event(self, state: EngineState, time: float, step: float, event: Event) -> EngineMotion | None:
         """
-        Integrate one step from `state`, of length `step` or less, to the instant at which the first contact changes.
+        Integrate one step from `state`, of at most `step`, to the instant at which the first contact opens or closes.
 
         Returns None if the event lies at the start of the step.
         """
@@ -165,7 +165,7 @@ class Openings:
         return done.get(length)
 
     def close_contacts(self, motion: EngineMotion, which: Mask) -> EngineMotion:
-        """Return `motion` in whose last row the contacts that touch there, among those of `which`, are closed."""
+        """Return `motion` with those contacts of `which` that touch in the last row marked there as closed."""
         motion = self.fill_gaps_of_open_contacts(motion)
         touched = which & (self.gaps(motion.coordinates[-1:])[0] <= GAP_TOLERANCE * self.penetration)
         motion.contact[-1, 0::4][touched] = -GAP_TOLERANCE * self.penetration

@@ -30,7 +30,7 @@ CARRIED_SAMPLES = 6
 # Largest ratio of neighboring steps across which a parabola is fitted: step control alone makes no larger ratio.
 MAX_STEP_CHANGE = 20.0
 
-# Largest distance, in steps, from the last sample to an instant to which samples before it are extrapolated.
+# Largest number of steps by which samples are extrapolated beyond the last one, to an instant of impact.
 MAX_STEPS_EXTRAPOLATED = 1.5
 
 # Number of samples behind a corner of the friction law that are needed to extrapolate the acceleration back to it.
@@ -122,7 +122,7 @@ class PeakReader:
             self._last_read_corner = float(time[ready[-1]])
 
     def _find_corners(self, slip: Array) -> list[int]:
-        """Find the rows behind which a slip speed (T, C) passes the threshold before the next row."""
+        """Find the rows after which a slip speed (T, C) passes the threshold v_reg before the next row."""
         beyond = slip > self._threshold
         rows: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
         return rows

@@ -90,7 +90,7 @@ def refine(
 
 class _AnswerSearch:
     """
-    Search for the answer of one phase pair among its levels.
+    Search for the answer of one phase pair among its levels of accuracy.
 
     candidate: answer of the last level, if it has one. complete: the last answer whose error misses no part. best: the
     complete answer with the smallest error. different_motions: number of the last levels with impacts that were another
@@ -133,7 +133,7 @@ class _AnswerSearch:
         if self.runs.pair.model.springs is not None and len(done) < MIN_LEVELS_OF_YIELDING:
             return
         self.candidate = self.runs.make_candidate()
-        if done[-1] is not run:  # a run on springs of real bearings has replaced `run`
+        if done[-1] is not run:  # a run on supports as stiff as real bearings has replaced `run`
             self.complete = self.best = None
         if self.candidate is not None:
             self._judge(self.candidate)
@@ -209,7 +209,7 @@ def _refuse_unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
 
 
 def _make_answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refinement:
-    """Return peaks with their errors, and the instant of the worst of them if they miss the tolerance."""
+    """Return peaks with their errors; if they miss the tolerance, also the instant of the least accurate peak."""
     peaks, errors, unit = candidate.run.peaks, candidate.errors, model.units.acceleration
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
     instant = math.nan if outcome == Outcome.OK else worst

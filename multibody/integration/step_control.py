@@ -28,12 +28,12 @@ Array = NDArray[np.float64]
 # Smallest and largest number of steps in a chunk at the largest step.
 MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256
 
-# Number of steps in a chunk of steps below the largest, times the allowed change of the slip velocity. Chunks of all
-# levels then end, and steps grow, at the same instants.
+# Number of steps in a chunk whose steps are below the largest, times the allowed change of the slip velocity: chunks of
+# all levels then end, and steps grow, at the same instants.
 SLIP_CHANGE_PER_SMALL_CHUNK = 4.48
 MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096  # bounds of the steps in a chunk of small steps
 
-# Largest first step behind a kink of the loading, over the relaxation time of friction and `Level.slip_change`.
+# Largest first step after a kink of the loading, divided by the relaxation time of friction and `Level.slip_change`.
 KINK_STEP_RATIO = 4.0
 
 # Largest step times the rate at which friction that depends on the slip speed changes this speed (`SpeedFriction`): as
@@ -77,7 +77,7 @@ class StepControl:
         return changes
 
     def _kink_step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, per_change: float) -> Array:
-        """Return the ratio (T,) of the first step behind a kink to the allowed one, near peaks; zero in other rows."""
+        """Return the ratio (T,) of the first step after a kink of the loading to that allowed near peaks; else 0."""
         # While the platform creeps, its acceleration follows that of the ground within the relaxation time of friction.
         # Behind a kink the slope changes within that time, and longer steps would show an oscillation. Bodies that turn
         # with the platform, and dampers, follow the acceleration of the platform. So the first step behind a kink is
@@ -98,7 +98,7 @@ class StepControl:
         return step_ratio
 
     def count_small_steps(self) -> int:
-        """Return the number of steps in a chunk whose steps are smaller than the largest."""
+        """Return how many steps a chunk has if they are smaller than the largest step."""
         steps = SLIP_CHANGE_PER_SMALL_CHUNK / self.level.slip_change
         return round(min(max(steps, MIN_SMALL_CHUNK_STEPS), MAX_SMALL_CHUNK_STEPS))
 

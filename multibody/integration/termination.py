@@ -17,7 +17,7 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-# Rise of the platform in the translational model, in units of rho, at which it reaches the rim.
+# Rise of the platform in the translational model, in units of the pendulum radius rho, at which it reaches the rim.
 RIM_HEIGHT = 1.0
 
 # Number of bisections for the instant at which the travel is passed: they exhaust the digits of a time.

@@ -17,7 +17,7 @@ STEPS_PER_PERIOD = 150
 # Number of steps at level 0 in the shortest period of elastic bars, whose vibration is a small part of the
 # accelerations.
 STEPS_PER_BAR_PERIOD = 40
-MAX_BAR_DIVISION = 20.0  # largest number by which elastic bars divide the step: faster bars are not resolved
+MAX_BAR_DIVISION = 20.0  # largest factor by which elastic bars reduce the step: faster bars are not resolved
 
 # Number of steps at level 0 in a decay time, in which a brief motion decays by a factor e.
 STEPS_PER_DECAY = 24
@@ -25,7 +25,7 @@ DECAY_TIMES = 28.0  # number of decay times in which a brief motion decays by 1e
 
 
 def largest_step(period: float, model: EngineModel) -> float:
-    """Return the largest step of level 0, in units of time, for this shortest period and that of elastic bars."""
+    """Return the largest step at level 0, in units of time, for this shortest period; elastic bars may need less."""
     step = period / STEPS_PER_PERIOD
     if model.fastest_bar_frequency > 0.0:
         of_bars = 2.0 * math.pi / model.fastest_bar_frequency / STEPS_PER_BAR_PERIOD

@@ -31,7 +31,7 @@ def assemble(
     contact_force: bool = False,
     **options: int,
 ) -> EngineModel:
-    """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or a wrong v_reg."""
+    """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or a wrong regularization."""
     check_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
         regularization = check_number("regularization", regularization, REGULARIZATION_RANGE)

@@ -29,7 +29,7 @@ LUBRICATED_SPEED_LIMIT = 1e6
 
 class ContactLaw(NamedTuple):
     """
-    Friction coefficient of the engine's contact, and the slip speed below which the contact reduces it linearly.
+    Friction coefficient of the engine's contact, and the slip speed below which friction falls linearly to zero.
 
     The threshold is in units of velocity. Where friction depends on slip speed or load, the coefficient is the largest
     under the weight: `SpeedFriction` sets it before every step.
@@ -88,7 +88,7 @@ def place_on_sphere(
     offset: Array, speed: Array, ground: Array, penetration: float
 ) -> tuple[Array, Array, float, float]:
     """
-    Return position, velocity, gap and slip speed of the platform on the sphere, in contact as a single body would be.
+    Return position, velocity, gap and slip speed of the platform on the sphere, pressed in like a single body.
 
     offset, speed: horizontal (2,). ground: the plate's acceleration (3,). Returns displacement (3,), velocity (3,),
     gap and slip speed, all in units of the model. For several bodies off the vertical the penetration is not exact; the

@@ -31,7 +31,7 @@ class Depressions:
     vertical: NDArray[np.int_]
 
     def sphere_positions(self, coordinates: Array) -> tuple[Array, Array]:
-        """Return positions (T, K, 3) of spheres in their depressions, in the axes of the plate and of the platform."""
+        """Return positions (T, K, 3) of spheres from the centers of depressions, in axes of plate and platform."""
         turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
@@ -72,7 +72,7 @@ class Depressions:
         return np.asarray(outside.any(axis=1))
 
     def contact_normals_and_jacobian(self, coordinates: Array) -> tuple[Array, Array]:
-        """Return the contact normals (K, 3), and the Jacobian (K, 3, 6) of contact points over platform velocities."""
+        """Return contact normals (K, 3), and Jacobians (K, 3, 6) of contact points for the platform velocities."""
         normals = self._platform_normals(coordinates)
         levers = self._sphere_centers(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
@@ -107,7 +107,7 @@ class FlatUnderside(Depressions):
         return np.zeros(len(coordinates), dtype=bool)
 
     def _platform_normals(self, coordinates: Array) -> Array:
-        """Return the vertical axis of the turned platform, a unit vector, once for each support: (K, 3)."""
+        """Return the unit vector along the rotated platform's own vertical axis, once for each support, (K, 3)."""
         upright = rotation_matrices(coordinates[3:6])[:, 2]
         return np.tile(upright, (len(self.ring), 1))
 

@@ -28,5 +28,5 @@ symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymboli
 
 
 def reset_when_unused(owner: Any, container: Any) -> None:
-    """Reset the system container when `owner` is no longer used: until then the engine keeps its memory allocated."""
+    """Reset Exudyn's system container when `owner` is no longer used: until then its memory stays allocated."""
     weakref.finalize(owner, container.Reset).atexit = False

@@ -29,26 +29,26 @@ from reference.problem import DryFriction, Scene
 
 Array = NDArray[np.float64]
 
-# Moment of inertia of all spheres over the square of their radius and the total mass: it adds as little to the mass
-# that vibrates on the springs.
+# Moment of inertia of all spheres, divided by the square of their radius and the total mass: so small a share is added
+# to the mass that vibrates on the springs.
 ROTATIONAL_MASS = 1e-9
 
 # Mass and stiffness, in units of the model, with which a sphere's center stays in place: it sinks by 1e-10 rho under
 # the weight and does not resonate.
 CENTER_MASS, CENTER_STIFFNESS = 1e8, 1e10
 
-# Ratio of the friction coefficient of a contact at rest to the scene's: the contact creeps at v_reg over this ratio.
+# Ratio of the friction coefficient of a contact at rest to the scene's: it creeps at v_reg divided by this ratio.
 RESTING_COEFFICIENT_RATIO = 1e6
 
-# Slip speed at which a slide ends at level 0, over sqrt(mu g u_y) (friction coefficient mu, yield displacement u_y): in
-# short steps noise of the contact force makes as much slip. What is left of the slide stretches the spring beyond its
-# limit, and this does not count as yield.
+# Slip speed at which a slide ends at level 0, as a multiple of sqrt(mu g u_y), with friction coefficient mu and yield
+# displacement u_y: in short steps noise of the contact force makes as much slip. What is left of the slide stretches
+# the spring beyond its limit, and this does not count as yield.
 SLIDE_END_SPEED_RATIO = 0.1
 
-# Elongation of a spring beyond its limit at level 0, over the yield displacement, up to which the contact still rests.
+# Elongation of a spring beyond its limit at level 0, as a share of the yield displacement, up to which a contact rests.
 NEGLIGIBLE_EXCESS = 1e-4
 
-# Slip speed v_reg below which friction of a sliding contact is linear, over the slip speed at which slides end.
+# Ratio of v_reg, the slip speed below which friction of a sliding contact is linear, to the speed at which slides end.
 V_REG_OVER_SLIDE_END = 0.25
 
 # Weight, in `FrictionSprings.step_ratio`, of the platform's change of velocity; the change of springs has weight 1.
@@ -60,7 +60,7 @@ SMALLEST_DISPLACEMENT = 1e-300
 
 class ContactChange(NamedTuple):
     """
-    Begin or end of the slide of a contact, at a share of the step after `row`.
+    Beginning or end of a contact's slide, at the share `step_share` of the step after `row`.
 
     slides: whether the contact begins to slide. limits: elastic displacements (K,) at which contacts slide there, to
     which springs at rest are shortened and the spring that begins to slide is set; None where a slide ends.
@@ -97,11 +97,11 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "dynamicFriction", factor * self.law.largest)
 
     def coefficient_ratios(self, state: EngineState) -> list[float]:
-        """Return the friction coefficients (K,) of the contacts over the scene's: large for a contact at rest."""
+        """Return the ratios (K,) of the contacts' friction coefficients to the scene's: large for a contact at rest."""
         return [1.0 if slides else RESTING_COEFFICIENT_RATIO for slides in self._mark_sliding(state)]
 
     def set_slide_end(self, end: float) -> None:
-        """Set v_reg of all contacts for slides that end at the slip speed `end`."""
+        """Set the regularization speed v_reg of all contacts in proportion to the slip speed that ends slides."""
         for contact in self.contacts:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
@@ -153,10 +153,11 @@ class FrictionSprings:
         change: ContactChange | None = None,
     ) -> EngineState:
         """
-        Return the state from which the next step starts; before: earlier state; accelerations (n,); rates (K,).
+        Return `state` with corrected velocities of the spheres, so that the next step can start from it.
 
         The velocities of the spheres follow from rest or slip of their contacts, because those that the engine computes
-        for massless spheres alternate after every kink. change: begin or end of a slide at this instant.
+        for massless spheres alternate after every kink. change: begin or end of a slide at this instant. before: state
+        that tells which contacts slide. accelerations: (n,). rates_of_limits: rates of change of `limits`, (K,).
         """
         sliding = np.array(self._mark_sliding(before))
         if change is not None and change.limits is not None:
@@ -195,7 +196,7 @@ class FrictionSprings:
         )
 
     def state_at_rest(self, state: EngineState) -> EngineState:
-        """Return the state from which a run continues, as `state` but with all contacts at rest."""
+        """Return `state` with all contacts put to rest, for a run to continue from."""
         assert state.accelerations is not None  # restart_state has set them
         return self.restart_state(state, state, state.accelerations, np.zeros(len(self.contacts)), math.inf)
 
@@ -205,7 +206,7 @@ class FrictionSprings:
 
 
 def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
-    """Find the step in which a spring passes its limit; excess: its elongation beyond that, over a negligible one."""
+    """Find the step in which a spring passes its limit; excess: elongation beyond it / a negligible one."""
     rows = np.flatnonzero((excess[1:] > 1.0) & (excess[1:] > excess[:-1]))
     if not len(rows):
         return None
@@ -248,7 +249,7 @@ def slide_end_speed(scene: Scene, units: Units) -> float:
 
 @dataclass(frozen=True)
 class TurningSpheres:
-    """Spheres that turn: their markers, the engine's object on their coordinates, and its matrices (n, n)."""
+    """Spheres that rotate on springs: their markers, the engine's object on their coordinates, its matrices (n, n)."""
 
     markers: list[Any]
     bodies: list[Any]
@@ -265,7 +266,7 @@ def add_turning_spheres(
     mbs: Any, scene: Scene, units: Units, places: Array, radius: float, moved: float = 0.0
 ) -> TurningSpheres:
     """
-    Add spheres that turn on springs at places (K, 2), one length above the depressions; none if friction is rigid.
+    Add spheres that rotate on springs, at places (K, 2) and height one in units of length; none if friction is rigid.
 
     moved: mass of all spheres, if they can move vertically and are pressed upwards by the weight; else 0.
     """

@@ -65,7 +65,7 @@ class ImpactLaw:
     rigid: Mask
 
     def solve_impact(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """Return velocities (n,) after an impact, and the open contacts (K,); hit, closed: contacts before it, (K,)."""
+        """Return velocities (n,) and open contacts (K,) after contacts `hit` collide; closed: others that touch."""
         # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix with
         # rigid links as constraints (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by
         # Newton's restitution, and closed contacts may push without rebounding. Friction and unilateral contact hold
@@ -130,7 +130,7 @@ class ImpactLaw:
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
-        """Return the normal speeds (K,) of the platform from spheres that cannot rise, and from free spheres."""
+        """Return the speeds (K,) at which the platform leaves spheres, if these cannot rise and if they are free."""
         platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
             PLATFORM_SLICE
         ]

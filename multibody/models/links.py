@@ -30,13 +30,13 @@ from reference.problem.bar_links import BarLink
 
 Array = NDArray[np.float64]
 
-# Largest stiffness of elastic bars in tension, in weights over rho, and in bending: stiffer bars act as rigid ones.
+# Largest stiffness of elastic bars in tension, weights / rho, and in bending, weights * rho: stiffer bars act as rigid.
 MAX_BAR_STIFFNESS = 1e7
 
 # Length of the rods of dampers, in units of length: longer rods make larger rounding errors and a wrong Jacobian.
 ROD_LENGTH = 100.0
 
-# Compliance of a stiff link in tension (and, times rho^2, in bending) over that of the contact.
+# Compliance of a stiff link in tension (and, times rho^2, in bending) as a multiple of that of the contact.
 LINK_COMPLIANCE_RATIO = 10.0
 
 
@@ -178,7 +178,7 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Set the stiffness of a link: `shear` (2, 2), `twist`, and `stiff` elsewhere; carried: as in `Link`."""
+    """Set the stiffness of a link: `shear` (2, 2), `twist`, `stiff` in all other directions; carried: as in `Link`."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear

@@ -70,7 +70,7 @@ def make_ground(mbs: Any, scene: Scene, units: Units) -> Ground:
 
 
 def attach_symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:
-    """Set `function` as symbolic expression of `load`, and return it: it must stay alive as long as the system."""
+    """Make `function` a symbolic expression for `load`, and return it: it must stay alive as long as the system."""
     expression = symbolic_function(mbs, function, parameter, load)
     mbs.SetLoadParameter(load, parameter, expression)
     return expression

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 # Smallest extent, in units of length, of the triangle that the engine has for the plane: larger ones round more.
 MIN_TRIANGLE_EXTENT = 1e4
 
-# Extent of the triangle that stands for the plane, over the largest distance that the platform can move on it.
+# Extent of the triangle that stands for the plane, as a multiple of the largest distance that the platform can move.
 TRIANGLE_EXTENT_OVER_TRAVEL = 2.0
 
 

@@ -19,7 +19,7 @@ from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-# Distance in time from a knot, over the shortest interval of the record, within which an instant counts as the knot.
+# Distance in time from a sample of the record, as a share of its shortest interval, within which both count as equal.
 KNOT_TOLERANCE = 1e-6
 
 
@@ -73,7 +73,7 @@ class RecordedGround:
 
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
-    """Return step and number of steps from `time` on, at most `step` and `count`, that end at every knot passed."""
+    """Return length and number of steps from `time`, at most `step` and `count`, that end at each sample passed."""
     # The time to the next knot is divided into equal steps. Further intervals of the same length can have the same
     # step in the same call of the engine; an interval of another length ends the chunk.
     place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0

@@ -273,11 +273,11 @@ class _SpatialSystem:
             link.set_stiffness(self.mbs, penetration)
 
     def bar_damping_times(self, penetration: float) -> Array:
-        """Return damping over stiffness of each link along its bars, (N - 1,), for a penetration of the contacts."""
+        """Return each link's ratio of damping to stiffness along its bars, (N - 1,), at a penetration of contacts."""
         return np.array([link.damping_time(penetration) for link in self.links])
 
     def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
-        """Switch off the contacts `is_open` (K,) in the engine, and set the others to their penetration."""
+        """Switch off the engine's contacts `is_open` (K,), and set up the others for `penetration`."""
         self._set_penetration(penetration)
         for contact in compress(self.contacts, is_open):
             self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
@@ -317,7 +317,7 @@ class _SpatialSystem:
         return EngineState(coordinates, velocities, data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return the state unchanged, because contact forces of bodies that turn settle by themselves."""
+        """Return the state unchanged, because contact forces of bodies that rotate settle by themselves."""
         return state
 
     def warping_displacement(self, coordinates: Array) -> Array:

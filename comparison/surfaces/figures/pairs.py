@@ -29,7 +29,7 @@ PNG_SETTINGS = {"compress_level": 3}
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
-    """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
+    """Write a PNG file: a body's surfaces by two models on one height scale, and a map of their relative difference."""
     both = [extend_surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(

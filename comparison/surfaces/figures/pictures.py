@@ -25,7 +25,7 @@ PictureArguments = tuple[str, Study, xr.Dataset, int, Pair | None]
 
 
 class Pictures(Analysis[dict[str, bytes]]):
-    """Analysis whose result is the files of every picture by name."""
+    """Analysis that draws the pictures of the report; its result is the content of each picture file by name."""
 
     key, stage, needs_surfaces = "pictures", "pictures", True
     seconds = 3.0
@@ -50,7 +50,7 @@ class Pictures(Analysis[dict[str, bytes]]):
         return tasks
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
-        """Return the files; a picture that no worker could draw is tried here, and left out where that raises."""
+        """Return the picture files by name; one that no worker drew is tried here, and left out where that raises."""
         files: dict[str, bytes] = {}
         for task in self.tasks(study, surfaces):
             draw = partial(results.value, task, lambda picture, *failure: draw_picture(picture))
@@ -61,7 +61,7 @@ class Pictures(Analysis[dict[str, bytes]]):
 
 
 def draw_picture(picture: PictureArguments) -> NamedFiles:
-    """Return the files of one picture. Runs inside a worker process."""
+    """Draw one picture; return names and contents of its files. Runs inside a worker process."""
     from comparison.surfaces.figures import pairs, paper  # Plotting libraries are loaded only where a picture is drawn.
 
     kind, study, surfaces, body, pair = picture
