@@ -25,8 +25,8 @@ from reference.support.arguments import Range, check_choice, check_number
 
 # Largest number of steps of a single run, whose motion is held in memory.
 MAX_STEPS = 1e7
-PENETRATION_RANGE = Range(1e-14, 0.1, "of rho")  # penetration of the contact under the weight
-NEWTON_RANGE = Range(1e-14, 1.0)  # relative tolerance of the forces in Newton's iteration
+PENETRATION_RANGE = Range(1e-14, 0.1, "of rho")  # allowed penetration of the contact under the weight
+NEWTON_RANGE = Range(1e-14, 1.0)  # allowed relative tolerance of the forces in Newton's iteration
 
 
 @require_scene
@@ -41,7 +41,7 @@ def trajectory(
     softened: bool = False,
 ) -> Trajectory:
     """
-    Compute one motion in the plate's frame with the engine, to a tolerance.
+    Compute the motion at one phase pair, relative to the ground, with the engine, to a tolerance.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def _check_initial(scene: Scene, initial: State | None) -> State | None:
 
 
 def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:
-    """Return the motion of a run in SI units, with the accelerations of the plate."""
+    """Return a run's motion relative to the ground in SI units, with absolute accelerations."""
     model, motion = pair.model, EngineMotion.concatenate(run.chunks) if run.chunks else EngineMotion.empty(pair.model)
     units, bodies = model.units, model.bodies
     time = motion.time * units.time
@@ -247,7 +247,7 @@ def _measure_attitude(
 
 
 def _find_intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
-    """Return first and last instant of every interval in which `holds` (T,) is true, widened by `around` rows."""
+    """Return start and end of every interval in which `holds` (T,) is true, widened by `around` instants each way."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
     last = len(time) - 1
     return [

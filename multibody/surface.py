@@ -42,7 +42,7 @@ def amplification(
     regularization_effect: bool = False,
 ) -> Amplification:
     """
-    Compute the dynamic amplification factors mu_i of (5.1) with the engine.
+    Compute with the engine the amplification mu_i of each body: its largest acceleration over the ground's, (5.1).
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def amplification(
         v_reg, m/s, below which dry friction is linear in the slip velocity; 0.001 (`DEFAULT_V_REG`) if not given. None
         only where the contact is lubricated or frictionless.
     tolerance : float
-        Relative error that is asked of every mu; 0.001 (`DEFAULT_TOLERANCE`) if not given.
+        Relative error that is asked of every amplification; 0.001 (`DEFAULT_TOLERANCE`) if not given.
     full : bool
         Compute the model that is asked for, even where the scene does not require it (reference.problem.reductions),
         and every run to the end of the motion.
@@ -66,9 +66,9 @@ def amplification(
     softened : bool
         Take links given by `bars` as soft as the weight that they carry makes them (`Scene.softened`).
     regularization_effect : bool
-        Compute every point with a tenth of v_reg, too, and give the change of mu and of the displacement as an estimate
-        of what regularization does: `regularization_effect` (..., N) and `displacement_effect` (...), m, of the result.
-        mu itself stays that of v_reg.
+        Compute every point with a tenth of v_reg, too, and give the change of amplification and displacement:
+        `regularization_effect` (..., N) and `displacement_effect` (...), m, of the result, estimates of what
+        regularization does. The amplification itself stays that of v_reg.
 
     Returns
     -------
@@ -76,8 +76,8 @@ def amplification(
         `mu` and its estimated absolute error `error`, both (..., N); `status` (...,); `instant` (...,), s, at which a
         status other than "ok" arose; `cost`, s; `cap_share` (...,) and `displacement` (...,), m. A point without an
         answer is NaN, with status "rim reached", "travel reached", "contact lost", "overturned", "solver failed",
-        "step limit", "no ground motion" or "non-finite load". "tolerance not met" keeps its mu with the error that was
-        reached.
+        "step limit", "no ground motion" or "non-finite load". "tolerance not met" keeps its amplification with the
+        error that was reached.
 
     Raises
     ------
@@ -91,8 +91,8 @@ def amplification(
 
     The error is estimated from runs at two or more levels. It covers step, contact stiffness, iteration, reading of the
     peaks and rounding, and not what the model itself leaves out. That is first of all the law of friction, which `law`
-    of the result names: dry friction is linear below v_reg, so mu is "as integrated" (`reading`), and a platform just
-    below the limit of friction creeps. `regularization_effect` estimates what this changes.
+    of the result names: dry friction is linear below v_reg, so the amplification is "as integrated" (`reading`),
+    and a platform just below the limit of friction creeps. `regularization_effect` estimates what this changes.
 
     Examples
     --------
@@ -161,7 +161,7 @@ class _ReducedModel:
         self, pairs: Array, ground: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> tuple[Array, Array, NDArray[np.str_], Array, Array]:
         """
-        Return mu and error (M, N), status, instant, s, and displacement, m, (M,) of phase pairs (M, 2), rad.
+        Return amplification and error (M, N); status, time of failure, s, displacement, m, (M,), of pairs (M, 2), rad.
 
         ground: denominators of (5.1), (M,), m/s^2.
         """
@@ -184,7 +184,7 @@ class _ReducedModel:
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
-        """Refine one phase pair (2,), rad; repeat it with the complete model if the reduced one has no answer."""
+        """Refine runs at a phase pair to the tolerance; use the complete model if the reduced one has no answer."""
         pair = PhasePair(self.scene, self.built, phase, in_full=self.in_full)
         point = refine(pair, tolerance, levels=levels, max_work=max_work)
         if self.complete is not None and np.isnan(point.peaks).any():
@@ -195,7 +195,7 @@ class _ReducedModel:
 
 def _reduce_model(scene: Scene, model: str, regularization: float | None, full: bool) -> _ReducedModel:
     """
-    Assemble the cheapest model with the same mu: without coordinates normal to the plane of a planar motion.
+    Assemble the cheapest model with the same amplification: a planar motion needs no coordinate normal to its plane.
 
     `complete` of the result assembles the model that the caller names.
     """

@@ -105,7 +105,7 @@ if TYPE_CHECKING:
     from reference.phase_maximum import PhaseMaximum, worst_phases
     from reference.surface import amplification
 
-LOADED_ON_FIRST_USE = {  # modules of the names that are loaded when first used
+LOADED_ON_FIRST_USE = {  # public names that are imported only when first used, with their modules
     "Building": "reference.building",
     "PhaseMaximum": "reference.phase_maximum",
     "Sensitivity": "reference.derivatives",

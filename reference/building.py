@@ -19,14 +19,14 @@ from reference.support.arguments import name_some
 # Number of modes along each axis in a description; of a tall chain only the lowest modes are computed
 MAX_DESCRIBED_MODES = 10
 MAX_NAMES_PER_LINE = 6  # a line of the description lists at most so many values, or names of buildings
-EQUAL_LOAD_TOLERANCE = 1e-6  # share of the mean within which the dead loads of supports count as equal
+EQUAL_LOAD_TOLERANCE = 1e-6  # largest difference of dead loads, over their mean, at which they count as equal
 MAX_KINDS = 3  # at most so many different buildings, or kinds of friction, are described one by one
 
 
 @dataclass(frozen=True)
 class Building:
     """
-    A building as it was read; axis 0 is x, 1 is y. The result of `describe_building`.
+    Weight, periods, damping and isolator of a building as read from a scene; of each pair, 0 is along x and 1 along y.
 
     Attributes
     ----------
@@ -167,9 +167,9 @@ def largest_horizontal_acceleration(scene: Scene) -> float:
     """Return the largest horizontal acceleration of the ground, m/s^2; for two frequencies over all phases."""
     with np.errstate(over="ignore"):
         if scene.recorded:
-            # The norm of a vector that changes linearly is convex: it is largest at a knot.
+            # Between samples the vector changes linearly, so its length is convex and largest at a sample.
             return float(np.hypot(*scene.record[:, 1:3].T).max())
-        # The norm is convex in the cosines of both phases, too: take 1 or -1. Both harmonics are largest at the start.
+        # The length is convex in the cosines of both phases: take 1 or -1. Both harmonics are largest at the start.
         first, second = scene.amplitudes[:2].T
         return float(max(np.hypot(*(first + second)), np.hypot(*(first - second))))
 
@@ -191,7 +191,7 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
 
 
 def _word_loads(building: Building) -> str:
-    """Return a sentence on how the weight spreads over the supports."""
+    """Return a phrase on how evenly the supports carry the weight at rest."""
     loads, mean = building.support_loads, building.load_per_support
     if loads is None or mean is None or float(np.ptp(loads)) <= EQUAL_LOAD_TOLERANCE * mean:
         return "(equal dead load)"

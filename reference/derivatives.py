@@ -21,24 +21,24 @@ from reference.support.arguments import quote
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]  # function of a scene whose derivatives are computed
 
-STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # steps of central differences, over the key's value; twice each step is used, too
+STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # steps of central differences, as shares of the key's value; twice each is used too
 FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # relative changes of the key's value at which kinks are looked for
 RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)  # evaluations of the quantity for one key
-# A kink is looked for if a mean slope differs from the derivative by at least this share of the largest slope. That of
-# a power x^n over 5 % of x differs by less up to n = 10.
+# A kink is looked for if the mean slope over a finite change differs from the derivative by at least this share of the
+# largest slope. Both differ by less for smooth quantities that vary as x^n up to n = 10, for changes of x by 5 %.
 MIN_CONTRADICTION = 0.05
-MAX_HALVINGS = 12  # the interval that contains a kink is halved at most so many times
-KINK_WIDTH = 1e-4  # width of the interval that locates a kink well enough, over the value of the key
+MAX_HALVINGS = 12  # the interval that contains a kink is halved at most this many times
+KINK_WIDTH = 1e-4  # an interval around a kink is halved down to this share of the key's value
 # Share of a kink's change of slope, or of a jump, that must remain when its interval shrinks: a smooth curve keeps less
 MIN_REMAINING_SHARE = 0.25
-MIN_SHRINKING = 0.125  # largest final width of a kink's interval, over its first: a wider one means that errors hide it
-PROGRESS_AFTER = 2.0  # s, after which the progress of the runs is printed
+MIN_SHRINKING = 0.125  # a kink is found if its interval shrinks to this share of its first width; else errors hide it
+PROGRESS_AFTER = 2.0  # progress is printed if the runs take longer than this, s
 
 
 @dataclass(frozen=True)
 class Sensitivity(Estimates):
     """
-    Derivative of a quantity by one value of the scene.
+    Derivative of a computed quantity with respect to one number in the scene, and a kink of the quantity nearby.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Sensitivity(Estimates):
     warning: str
 
     def __repr__(self) -> str:
-        """Return the derivative, its error, friction law, reading and warning in one line."""
+        """Return the derivative, its error, friction law, interpretation of (5.1) and warning in one line."""
         if np.size(self.value) == 1:
             slope = f"{float(np.squeeze(self.value)):.6g} ± {float(np.squeeze(self.error)):.1g}"
         else:
@@ -89,7 +89,7 @@ class Sensitivity(Estimates):
 
 
 class _ComputedQuantity(NamedTuple):
-    """Value and error of a quantity, with its reading of (5.1) and its friction law."""
+    """Value and error of a quantity, with the friction law and the interpretation of (5.1) that it used."""
 
     value: Array
     error: Array
@@ -100,7 +100,7 @@ class _ComputedQuantity(NamedTuple):
 @require_scene
 def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Sensitivity]:
     """
-    Return derivatives of a quantity by numbers in the scene, from central differences, and kinks nearby.
+    Return derivatives of a quantity with respect to numbers in the scene, by central differences, and kinks nearby.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     for key in keys:
         value = value_at(tables, key)
         if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:
-            scene.with_values({key: value})  # raises an error for an unknown key with the nearest ones
+            scene.with_values({key: value})  # for an unknown key raises an error that names similar ones
             raise ValueError(f"keys: {key} is {value!r} in this scene: must be a number other than zero")
         values[key] = float(value)
     progress = _ProgressLines(RUNS_PER_KEY * len(values))
@@ -184,7 +184,7 @@ class _ProgressLines:
         self._line = line
 
     def count(self, seconds: float) -> None:
-        """Add one run and the time that it took."""
+        """Count a run that took `seconds`; print the progress line when it is due."""
         self._left, self._done, self._spent = max(self._left - 1, 0), self._done + 1, self._spent + seconds
         shown = multiprocessing.parent_process() is None and sys.stderr is not None
         if self._line and shown and time.monotonic() - self._began > PROGRESS_AFTER:
@@ -194,7 +194,7 @@ class _ProgressLines:
 
 
 class _VariedQuantity:
-    """The quantity as a function of one key of the scene, with all values computed so far."""
+    """The quantity as a function of one number in the scene, with all values computed so far."""
 
     def __init__(
         self,
@@ -205,7 +205,7 @@ class _VariedQuantity:
         middle: _ComputedQuantity,
         progress: _ProgressLines,
     ) -> None:
-        """Take over the value of the key in the scene and the quantity there, `middle`."""
+        """Store the key, its value in the scene, and the quantity computed for that value, `middle`."""
         self.scene, self.key, self.value, self.middle = scene, key, value, middle
         self._quantity, self._progress = quantity, progress
         self.known: dict[float, _ComputedQuantity] = {value: middle}
@@ -305,7 +305,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     steps = np.abs(value) * np.array(FINITE_CHANGES[len(FINITE_CHANGES) // 2 :])
     below, above = (np.reshape(part, (len(steps), -1)) for part in np.split(change.value, 2))
     low_error, high_error = (np.reshape(part, (len(steps), -1)) for part in np.split(change.error, 2))
-    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # nearest change first
+    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # smallest change of the key's value first
     mean = sign * (above - below) / (2.0 * steps[:, None])
     mean_error = (high_error + low_error) / (2.0 * steps[:, None])
     slope, slope_error = np.ravel(derivative.value), np.ravel(derivative.error)
@@ -355,7 +355,7 @@ class _Bracket(NamedTuple):
 
 
 def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] | None:
-    """Return the bracket of a kink or jump of element `place`, and the jump (0 at a kink); None if neither is clear."""
+    """Return points around a kink or jump of element `place`, and the jump (0 at a kink); None if neither is clear."""
 
     def point(at: float) -> _QuantityAtValue:
         """Return the chosen element of the quantity where the key has the value `at`."""
@@ -376,12 +376,12 @@ def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _
     """Return the two points around the largest change of slope of the quantity; None if errors explain the change."""
     x, f, e = np.array(points).T
     slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
-    excess = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # changes of slope between intervals beyond their errors
+    excess = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # change of slope between intervals, less errors
     node = 1 + int(excess.argmax())
     if not excess[node - 1] > 0.0:
         return None
     low, high = points[node - 1], points[node + 1]
-    if node == 1:  # no slope is known on the far side: a small part of the outer interval gives it
+    if node == 1:  # no interval lies below this one: its own first tenth gives the slope there
         low = point(x[0] + 0.1 * (x[1] - x[0]))
     if node == len(points) - 2:
         high = point(x[-1] - 0.1 * (x[-1] - x[-2]))
@@ -417,7 +417,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
 
 
 def _value_and_provenance(found: Any) -> _ComputedQuantity:
-    """Return a quantity, its error, its reading of (5.1) and its law of friction, as a user's function returns them."""
+    """Return value, error, interpretation of (5.1) and law of friction from the result of a user's function."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:

@@ -102,7 +102,7 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
-    # The looser run ended early, for example at the rim: a more accurate run decides, and the first one gives its error
+    # If the looser run ended early, as at the rim, a tighter run gives the motion, and the first run then its error.
     if other.outcome != Outcome.OK:
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
@@ -119,11 +119,11 @@ class _RecordedRun(NamedTuple):
     """One run of the solver: how and when it ended, all its steps, peak accelerations and their errors."""
 
     outcome: Outcome
-    instant: float  # s, end of the run
+    instant: float  # s, time at which the run ended
     record: StepRecord
     peak: Array  # (N,) m/s^2, largest absolute accelerations
     reading_error: Array  # (N,) m/s^2, errors of the peaks from interpolation inside their steps
-    system: System  # with k_T, the temperature factor of friction, from the heat of this run
+    system: System  # coefficients of the equations, with friction at the temperatures of this run
 
 
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:
@@ -177,7 +177,7 @@ def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
 
 
 def _default_instants(scene: Scene, record: StepRecord) -> Array:
-    """Return the output instants, s: SAMPLES_PER_PERIOD per loading period, evenly spaced, and some in every step."""
+    """Return output instants, s: evenly spaced, SAMPLES_PER_PERIOD per loading period, and some in each solver step."""
     samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
     even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
@@ -194,7 +194,7 @@ def _check_times(scene: Scene, times: ArrayLike) -> Array:
 
 
 def _vertical_motion(x: Array, v: Array, system: System) -> tuple[Array, Array]:
-    """Return the platform's height above its lowest point, m, and vertical velocity, m/s; 0 in the small equations."""
+    """Return the platform's rise, m, and vertical velocity, m/s; both 0 in the equations for small displacements."""
     if system.small:
         return np.zeros(len(x)), np.zeros(len(x))
     squared = (x**2).sum(axis=-1)

@@ -93,7 +93,7 @@ class DampedModes:
 
 
 def linear_stiffness(scene: Scene) -> Array:
-    """Return the stiffness below each body, (N, 2), N/m: m_sum g / rho of (4.3) under the platform, then the links."""
+    """Return the stiffness below each body, (N, 2), N/m: the pendulum's, m_sum g / rho (4.3), first; then links'."""
     pendulum = scene.total_mass * GRAVITY / scene.radius
     return np.vstack([np.full((1, 2), pendulum), scene.stiffness])
 

@@ -46,7 +46,7 @@ class PhaseMaximum:
     Attributes
     ----------
     value : float
-        mu_i, or the displacement in m. It is attained at `phases`.
+        Amplification mu_i, or the displacement in m. It is attained at `phases`.
     error : float
         Estimated absolute error: of the solution there, and of the search.
     phases : tuple of float, rad
@@ -101,7 +101,7 @@ def worst_phases(
     body : int
         From 1, the platform. It has no effect on the displacement.
     quantity : {"amplification", "displacement"}
-        mu_i of (5.1), or the largest horizontal displacement of the platform, m.
+        Amplification mu_i of (5.1), or the largest horizontal displacement of the platform, m.
     equations, regularization, tolerance, cutoff
         As in `amplification`.
     starts : array_like, (K, 2), rad, optional
@@ -118,11 +118,12 @@ def worst_phases(
 
     Notes
     -----
-    As of `amplification`, the default is the literal supremum of (5.1), and ``cutoff=1e-3`` gives mu as integrated.
+    As of `amplification`, the default is the literal supremum of (5.1), and ``cutoff=1e-3`` gives the amplification
+    as integrated.
 
     The maximum is global as far as the grid has a local maximum near it. `climbs`, `reached` and `runner_up` say what
     supports it.
-    The denominator of (5.1) has kinks, and there mu has edges: the largest mu_2 of fig3-I stands on one.
+    The denominator of (5.1) has kinks, and there the amplification has edges: the largest mu_2 of fig3-I is on one.
 
     Examples
     --------

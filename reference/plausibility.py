@@ -13,21 +13,21 @@ from reference.records.description import G_UNIT_QUESTION, RecordDescription
 from reference.support.arguments import Range, name_some
 
 SUPPORT_LOAD_RANGE = Range(1e3, 1e8, "N")  # plausible dead load per support
-MAX_UNIT_MASS_SCENE = 10.0  # kg: a lighter scene is of unit masses, as those of the paper, and is no building
-MIN_FRICTION_RATE = 1.0  # s/m: a smaller rate of the growth of friction with speed is hardly intended
-MAX_SUPPORT_EXTENT = 300.0  # m: a larger extent of the supports is hardly intended
-MAX_EXTENT_OVER_SIZE = 2.0  # a larger extent of the supports over the size of the platform is hardly intended
+MAX_UNIT_MASS_SCENE = 10.0  # kg, total mass: a lighter scene has unit masses, as those of the paper, and is no building
+MIN_FRICTION_RATE = 1.0  # s/m: a smaller rate of change of friction with slip speed is hardly intended
+MAX_SUPPORT_EXTENT = 300.0  # m: supports that are farther apart are hardly intended
+MAX_EXTENT_OVER_SIZE = 2.0  # a larger ratio of the supports' extent to the platform's size is hardly intended
 FIXED_BASE_PERIOD_RANGE = Range(0.05, 5.0, "s")  # plausible period of the first fixed-base mode along either axis
 MAX_RADIUS = 50.0  # m: a larger radius of the pendulum is hardly intended
 MAX_FRICTION = 1.0  # a larger friction coefficient is hardly intended
-MAX_DAMPING_RATIO = 0.2  # a larger damping ratio of a fixed-base mode that matters is hardly intended
-MIN_MODAL_MASS_SHARE = 0.05  # a mode matters if it moves more than this share of the mass above the platform
+MAX_DAMPING_RATIO = 0.2  # a larger damping ratio of a fixed-base mode is hardly intended
+MIN_MODAL_MASS_SHARE = 0.05  # the damping of modes that move less of the mass above the platform is not checked
 MAX_GROUND_PEAK = 3.0  # g: a larger peak acceleration of the ground is hardly intended
-MAX_DRIFT_RATIO = 0.1  # a larger story drift over the story height is hardly intended
-MASS_RATIO_RANGE = Range(0.01, 100.0)  # plausible mass of a body over the mean mass of the other bodies
+MAX_DRIFT_RATIO = 0.1  # a larger ratio of story drift to story height is hardly intended
+MASS_RATIO_RANGE = Range(0.01, 100.0)  # plausible ratio of a body's mass to the mean mass of the other bodies
 MAX_LOAD_RATIO = 1.5  # a larger ratio of the largest to the smallest dead load of a support is hardly intended
 MIN_ACCELERATION_LIMIT = 1.0  # m/s^2: a smaller limit on the acceleration of a floor is hardly intended
-MIN_PEAK_RATIO = 0.2  # a smaller peak of a motion over the median peak of its suite is hardly intended
+MIN_PEAK_RATIO = 0.2  # a smaller ratio of a motion's peak to the median peak of its suite is hardly intended
 
 
 def implausible_values(scene: Scene, building: Building) -> list[str]:
@@ -41,7 +41,7 @@ def implausible_values(scene: Scene, building: Building) -> list[str]:
     if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > MAX_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
     lines += _implausible_limits(scene, building)
-    # `describe_record` warns of a record's own peak: here only a peak counts that `scale` makes too large.
+    # `describe_record` warns of a record's own peak. Here a warning is due only if `scale` makes the peak too large.
     as_read = scene.largest_acceleration / (scene.excitation.scale or 1.0) if scene.recorded else 0.0
     if (peak := building.ground_peak / GRAVITY) > MAX_GROUND_PEAK and as_read <= MAX_GROUND_PEAK * GRAVITY:
         lines.append(f"the peak of the ground is {peak:.4g} g, above {MAX_GROUND_PEAK:g} g: unit or scale?")
@@ -194,5 +194,5 @@ def _name_body(scene: Scene, place: int) -> str:
 
 
 def _word_end_beyond(value: float, allowed: Range, word: Callable[[float], str]) -> str:
-    """Return "below" with the lowest or "above" with the highest value of a range that `value` lies outside."""
+    """Return "below" and the lowest, or "above" and the highest value of a range outside which `value` lies."""
     return f"below {word(allowed.lowest)}" if value < allowed.lowest else f"above {word(allowed.highest)}"

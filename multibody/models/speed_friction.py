@@ -26,35 +26,35 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-# Number of data coordinates of a contact, and index of the slip speed among them.
+# Number of values that the engine stores for a contact, and index of the slip speed among them.
 DATA_PER_CONTACT, SLIP_INDEX = 4, 1
 
 
 class SpeedFriction:
-    """Friction law that sets the coefficients of `contacts` before every step, in units of the model."""
+    """Friction law that sets the friction coefficient of every contact before every step, in units of the model."""
 
     def __init__(
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
     ) -> None:
-        """Set up the law of `contacts`; threshold: slip speed below which their friction is linear."""
+        """Set up the law of `contacts`; threshold: slip speed below which their friction is linear in it."""
         law = self.law = scene.dry_friction.in_unit_of_speed(units.velocity)
         self._heat: SurfaceHeat | None = None
         if law.heat is not None:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
-        # coefficient of each contact over that of the law: above 1 where friction yields and the contact rests
+        # ratio of each contact's coefficient to that of the law: above 1 if friction is elastic and the contact rests
         self.coefficient_ratios = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        # at _start of the step that ends at _end: slip speeds, loads over shares of the weight, and rates of both
+        # state of the contacts at _start of the step up to _end: slip speeds, loads over shares of weight, their rates
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)
         self._load = [1.0] * len(contacts)
         self._start = self._end = 0.0
         mbs.SetPreStepUserFunction(self._before_step)
 
     def begin(self, mbs: Any, state: EngineState, time: float) -> None:
-        """Set slip speeds, loads and coefficients for a run from `state` at `time`."""
+        """Set slip speeds, normal forces and friction coefficients for a run that starts at `time` from `state`."""
         nothing = [0.0] * len(self._add_contacts)
         self._slip = self._read_speeds(state.contact, state.velocities)
         self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
@@ -73,16 +73,16 @@ class SpeedFriction:
         self._set_coefficients(mbs, 0.0)
 
     def friction_feedback_rate(self, slip: Array) -> Array:
-        """Return the largest rate (T,), of all contacts, at which friction by slip speeds (T, K) changes the slip."""
+        """Return the largest rate (T,), of K contacts, at which speed-dependent friction changes slip speeds (T, K)."""
         rate: Array = (self._mass_ratio * self.law.steepness(slip) * np.minimum(slip / self._threshold, 1.0)).max(
             axis=1
         )
         return rate
 
     def _before_step(self, mbs: Any, end: float) -> bool:
-        """Set the coefficients for the step that ends at `end`; the engine calls this before every step."""
-        # The engine repeats a step that it cannot solve with another length. Only after a step that it has solved, the
-        # slip speeds differ from those before, and only then the state of the contacts advances.
+        """Set friction coefficients for the step that ends at `end`; the engine calls this before every step."""
+        # If the engine cannot solve a step, it repeats the step with another length. The slip speeds differ from the
+        # stored ones only after a solved step: only then the stored state of the contacts is replaced.
         self._ground.before_step(mbs, end)
         data = mbs.systemData
         slip = self._read_speeds(data.GetDataCoordinates(), data.GetODE2Coordinates_t())
@@ -104,21 +104,21 @@ class SpeedFriction:
         return True
 
     def _read_speeds(self, contact: Array, velocities: Array) -> list[float]:
-        """Return the speeds on which the coefficients depend: of slip, or of the platform where friction yields."""
+        """Return the speeds on which coefficients depend: slip speeds; the platform's if friction is elastic."""
         if self.law.elastic:
             return [math.hypot(*velocities[:3])] * len(self._add_contacts)
         speeds: list[float] = contact[SLIP_INDEX::DATA_PER_CONTACT].tolist()
         return speeds
 
     def _read_loads(self, mbs: Any) -> list[float]:
-        """Return the normal forces of the contacts over their shares of the weight, from the engine."""
+        """Return each contact's normal force, read from the engine, divided by its share of the weight."""
         kind, count = exudyn.OutputVariableType, len(self._add_contacts)
         pairs = [(mbs.GetObjectOutput(each, kind.Force), mbs.GetObjectOutput(each, kind.Director1))
                  for each in self._add_contacts]  # fmt: skip
         return [count * abs(float(force @ normal)) for force, normal in pairs]
 
     def _set_coefficients(self, mbs: Any, span: float) -> None:
-        """Set the coefficients for the extrapolated slip speeds and loads of the contacts after `span`."""
+        """Set the friction coefficients for slip speeds and loads that are extrapolated by the time `span`."""
         coefficients = self._coefficients_without_heat(span)
         if self._heat is not None:
             end = self._start + span
@@ -129,7 +129,7 @@ class SpeedFriction:
             mbs.SetObjectParameter(contact, "dynamicFriction", factor * coefficient)
 
     def _coefficients_without_heat(self, span: float) -> list[float]:
-        """Return the coefficients of the contacts after `span`, without the effect of heat."""
+        """Return the friction coefficients after the time `span` from the stored state, without the effect of heat."""
         contacts = zip(self._slip, self._rate, self._load, self._load_rate, strict=True)
         return [
             self.law.coefficient_at(max(slip + span * rate, 0.0), load + span * load_rate)
@@ -137,7 +137,7 @@ class SpeedFriction:
         ]
 
     def _friction_power(self, cold: list[float], span: float) -> Array:
-        """Return the power of friction, W, of each contact after `span`; cold: its coefficients without heat."""
+        """Return each contact's friction power, W, after the time `span`; cold: coefficients without effect of heat."""
         slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
         speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)
         held = np.minimum(speed / self._threshold, 1.0)
@@ -146,6 +146,6 @@ class SpeedFriction:
 
 
 def _compute_rate_of_length(vector: Array, rates: Array | None) -> float:
-    """Return the rate of the length of a vector (3,) with given rates (3, ...); 0 if the rates are None."""
+    """Return the rate of the length of a vector (3,) from its rates, the first three of (n,); 0 if these are None."""
     length = math.hypot(*vector)
     return 0.0 if rates is None or length == 0.0 else float(vector @ rates[:3]) / length

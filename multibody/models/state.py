@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class EngineState:
     """
-    Coordinates, velocities and contact data of the engine at one instant, in its own units, relative to the plate.
+    Coordinates, velocities and contact data of the model at one instant, in its units and relative to the ground.
 
     Attributes:
     - coordinates, velocities: Values of all coordinates and their rates, (n,).

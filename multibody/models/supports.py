@@ -28,13 +28,13 @@ Array = NDArray[np.float64]
 # Largest number of supports whose vertical forces follow from statics alone.
 MAX_DETERMINATE_SUPPORTS = 3
 
-# Stiffness of the springs under the spheres against heave and tilt over that of the contacts.
+# Stiffness of the springs under the spheres, against heave and tilt, divided by the stiffness of the contacts.
 SPHERE_STIFFNESS_RATIO = 10.0
 
-# Compliance of the supports against warping under the weight, in units of rho, until a level of accuracy sets another.
+# Displacement by warping, in units of rho, of a support under its share of the weight; levels of accuracy set others.
 MIN_WARPING_COMPLIANCE = 2e-5
 
-# Mass of all spheres together over the total mass: the spheres hardly take part in the motion.
+# Mass of all spheres together as a share of the total mass: so small that it hardly affects the motion.
 SPHERES_MASS = 1e-2
 
 # Rotation matrix that turns the x axis, along which a 1-D mass moves, upwards.
@@ -44,7 +44,7 @@ UPRIGHT_ROTATION = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
 @dataclass(frozen=True)
 class Supports:
     """
-    Spheres under the platform, fixed or on springs.
+    Spheres on which the platform slides, fixed or on springs.
 
     Attributes:
     - markers: Markers at the spheres' centers.
@@ -64,19 +64,19 @@ class Supports:
     set_stiffness: Callable[[float, float], None]
 
     def static_settlement(self, penetration: float) -> float:
-        """Return the settlement of the spheres under the weight, for the contacts' penetration; 0 for fixed spheres."""
+        """Return how far the weight lowers spheres on springs, 0 for fixed ones; penetration: of the contacts."""
         return penetration / SPHERE_STIFFNESS_RATIO if len(self.vertical) else 0.0
 
 
 def warping_projection(ring: Array) -> Array:
-    """Return the projection (K, K) of forces at places (K, 2) onto their warping part, without heave and tilt."""
+    """Return the projection (K, K) of vertical forces at places (K, 2) onto warping: no resultant force or moment."""
     patterns, _ = np.linalg.qr(np.column_stack([np.ones(len(ring)), ring]))
     projection: Array = np.eye(len(ring)) - patterns @ patterns.T
     return projection
 
 
 def add_fixed_supports(mbs: Any, ring: Array) -> Supports:
-    """Add spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
+    """Add spheres fixed to the plate at horizontal places (K, 2), centers at height 1 in the model's unit of length."""
     plate = mbs.AddObject(items.ObjectGround())
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate, localPosition=[*place, 1.0])) for place in ring]
     return Supports(
@@ -85,7 +85,7 @@ def add_fixed_supports(mbs: Any, ring: Array) -> Supports:
 
 
 def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
-    """Add spheres at places (K, 2) that share the load elastically, each with a vertical coordinate."""
+    """Add spheres at horizontal places (K, 2) on vertical springs, by which they share the load elastically."""
     # K vertical forces at places (x_k, y_k) can be split into the patterns 1, x_k, y_k, which balance heave and tilt,
     # and K - 3 others, which balance nothing: only the stiffness of the supports decides them. `warping_projection` is
     # the projection onto these. The springs are stiff against its complement, so that the contact alone decides how the
@@ -108,7 +108,7 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set the springs from penetration and warping compliance under the weight, both in units of rho."""
+        """Set springs by how far contacts penetrate and supports warp, each under the weight, in units of rho."""
         stiffness, damping = _sharing_springs(count, penetration, warping_compliance)
         mbs.SetObjectParameter(springs, "stiffnessMatrix", _combine_tilt_and_warping(warped, *stiffness))
         mbs.SetObjectParameter(springs, "dampingMatrix", _combine_tilt_and_warping(warped, *damping))
@@ -119,7 +119,7 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
 def _sharing_springs(
     count: int, penetration: float, warping_compliance: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return stiffness and critical damping of the springs under the spheres: against heave and tilt, and warping."""
+    """Return two pairs, stiffness and critical damping of the springs: (against heave and tilt, against warping)."""
     stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * warping_compliance)
     return (stiff, soft), (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
@@ -130,13 +130,13 @@ def _combine_tilt_and_warping(warped: Array, stiff: float, soft: float) -> Array
 
 
 def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared: bool) -> Supports:
-    """Return supports of turning spheres at places (K, 2); shared: whether they share the load elastically."""
+    """Return supports at places (K, 2) whose spheres can turn; shared: whether they share the load elastically."""
     count, size = len(ring), turning.coordinates
     vertical = 2 + BODY_COORDINATES * np.arange(count) if shared else np.empty(0, np.int_)
     warped = warping_projection(ring) if shared else np.zeros((0, count))
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set the springs from penetration and warping compliance under the weight, both in units of rho."""
+        """Set springs by how far contacts penetrate and supports warp, each under the weight, in units of rho."""
         if not shared:
             return
         block = np.ix_(vertical, vertical)

@@ -17,19 +17,19 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-# Temperature is a sum of decays with rates x^2. Spacing of ln x: relative error exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
+# Temperature is a sum of decays exp(-x^2 t). Spacing of ln x in it: relative error exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
 LOG_SPACING = 0.3
 
-# Smallest root of a decay rate in the sum for the temperature, times the root of the duration.
+# Smallest x in this sum, times the square root of the duration: still slower decays hardly add to the temperature.
 MIN_DECAY_RATE_ROOT = 1e-5
 
-# Time, over the duration, below which the kernel is cut off: heat released so shortly before has no effect yet.
+# Share of the duration: heat that was released less than this time before has no effect on the temperature yet.
 KERNEL_CUTOFF_TIME = 1e-6
 
 
 class _HeatState(NamedTuple):
     """
-    Heat of the contacts at one instant.
+    Heat in the contact surfaces at one instant, as shares of exponential decays in time.
 
     time: instant, in units of time. shares: heat in each of the decays, W s, (K, X). power: power of friction, W, (K,),
     whether the platform covers the contact or not. distance: of the platform from the center, in units of length.
@@ -45,7 +45,7 @@ class SurfaceHeat:
     """Temperature of `count` contacts in a run; unit_time, s, and unit_length, m: units of the model."""
 
     def __init__(self, heat: Heat, count: int, duration: float, unit_time: float, unit_length: float) -> None:
-        """Set up the decays whose sum is the temperature; duration: s."""
+        """Set up the exponential decays whose sum is the temperature; duration: length of the motion, s."""
         self._initial, self._rise, self._cover = heat.initial, count * heat.rise, heat.cover / unit_length
         self._unit_time, self._count = unit_time, count
         low, high = math.log(MIN_DECAY_RATE_ROOT), math.log(3.0 / math.sqrt(KERNEL_CUTOFF_TIME * 1e-3))
@@ -54,7 +54,7 @@ class SurfaceHeat:
         self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
-        """Delete the states after `time`, where a run begins; return whether the power at `time` is known."""
+        """Delete heat states after `time`, where a run begins; return whether the friction power then is known."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
             self._kept = [_HeatState(0.0, nothing, nothing[:, 0], 0.0)]
@@ -67,11 +67,11 @@ class SurfaceHeat:
         return known
 
     def step_to(self, time: float, power: Array, distance: float) -> None:
-        """Store the state after a step up to `time` with power (K,), W, and distance of the platform at its end."""
+        """Store the heat state after a step up to `time`; power (K,), W, and the platform's distance: at its end."""
         self._kept.append(self._advance(time, power, distance))
 
     def temperature(self, time: float, power: Array, distance: float) -> Array:
-        """Return the temperature (K,), degrees C, at the end of a step up to `time` with power (K,), W, there."""
+        """Return the temperature (K,), degrees C, after a step up to `time`, where the friction power is (K,), W."""
         shares = self._advance(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
         celsius: Array = self._initial + self._rise * (shares @ self._weights)
         return celsius
@@ -84,7 +84,7 @@ class SurfaceHeat:
         return last.distance + (time - last.time) * (last.distance - before[0].distance) / (last.time - before[0].time)
 
     def _advance(self, time: float, power: Array, distance: float) -> _HeatState:
-        """Return the state after a step up to `time` in which power and distance change linearly."""
+        """Return the heat state after a step up to `time` in which friction power and distance change linearly."""
         last = self._kept[-1]
         span = (time - last.time) * self._unit_time
         nearest, way = min(last.distance, distance), abs(distance - last.distance)

@@ -41,7 +41,7 @@ class Recorders:
 @dataclass(frozen=True)
 class EngineModel:
     """
-    Assembled system of the engine that can be run any number of times, in units of `units`.
+    Model assembled in the engine, which can be run any number of times; its quantities are in units of `units`.
 
     Attributes:
     - mbs: The engine's system.
@@ -105,7 +105,7 @@ class EngineModel:
 
     @property
     def container(self) -> Any:
-        """The engine's container of the system."""
+        """The engine's object that owns the system."""
         return self.references[0]
 
     @property

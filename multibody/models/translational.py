@@ -40,7 +40,7 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-# Stiffness matrix of a unit spring between two coordinates.
+# Stiffness matrix of a spring of stiffness 1 between two coordinates.
 UNIT_SPRING_MATRIX = np.array([[1.0, -1.0], [-1.0, 1.0]])
 
 # Moment of inertia of a platform that must not turn, in units of mass times length^2: the largest torque turns it by
@@ -50,7 +50,7 @@ LOCKED_INERTIA = 1e15
 # Radius R of the hollow sphere, in units of rho, chosen freely: in translation only R - r = rho has an effect.
 HOLLOW_RADIUS = 2.0
 
-# Radius r of the sphere, also under a flat slider, in units of length.
+# Radius r of the sphere, in the model's unit of length (rho, if the slider is not flat).
 SPHERE_RADIUS = HOLLOW_RADIUS - 1.0
 
 
@@ -146,7 +146,7 @@ class _TranslationalSystem:
         set_contact_parameters(self.mbs, self.contact, sphere if self.scene.flat else hollow, penetration)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        """Return the engine's state for an initial state (None: at rest) and the plate's acceleration, m/s^2."""
+        """Return the engine's state for an initial state (None: at rest) and the ground's acceleration, m/s^2."""
         coordinates, velocities, gap, slip = start_platform(
             self.scene, self.units, self.bodies, self.coordinates, initial, ground_acceleration, penetration,
             lambda distance: set_plane_extent(self.mbs, self.contact, distance, self.height),
@@ -155,7 +155,7 @@ class _TranslationalSystem:
         return EngineState(coordinates, velocities, contact_data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return the state to continue from with a smaller step, with a settled contact force (`settle_contact`)."""
+        """Return `state` with its contact force settled (`settle_contact`), from which to go on with a smaller step."""
         x, y, z = (0.0, 0.0, 0.0) if self.scene.flat else state.coordinates[:3].tolist()
         to_center_of_hollow_sphere = -x, -y, 1.0 - z
         length = math.hypot(*to_center_of_hollow_sphere)
@@ -167,7 +167,7 @@ def _add_contact(
     mbs: Any, plate: Any, platform: Any, law: ContactLaw, turning: TurningSpheres, flat: bool
 ) -> tuple[Any, Any, float]:
     """
-    Add a sphere inside the platform's hollow sphere, and its data node; `set_contact` sets its stiffness.
+    Add the contact of a sphere in the platform's hollow sphere, and its data node; `set_contact` sets its stiffness.
 
     Under a flat slider the sphere belongs to the platform and lies on the plane of the plate; a sphere that turns
     belongs to the plate, and the plane to the platform. Returns contact, data node and height of the plane.
@@ -191,7 +191,7 @@ def _add_contact(
 
 def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
     """
-    Add all bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
+    Add bodies and weight as one linear object: its coordinates are the platform's and x, y (or x) of each other body.
 
     Returns the nodes and the object.
 
@@ -238,7 +238,7 @@ def _matrix_container(matrix: Array) -> Any:
 
 
 def _list_loaded_coordinates(masses: Array, nodes: list[Any], axes: int) -> list[LoadedCoordinate]:
-    """List the coordinates that the loading accelerates; only the platform has a vertical one, with all masses."""
+    """List the coordinates on which the loading acts; the only vertical one, the platform's, moves the total mass."""
     platform = [LoadedCoordinate(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
     above = [
         LoadedCoordinate(nodes[1], axes * number + axis, float(mass), axis)

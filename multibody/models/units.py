@@ -19,7 +19,7 @@ from reference.problem import GRAVITY, Scene, loading_period
 
 @dataclass(frozen=True)
 class Units:
-    """Units of the model in SI: kg, m, s, and the units derived from them."""
+    """Units of mass, length and time of the model, in kg, m and s, and units that follow from them."""
 
     mass: float
     length: float
@@ -42,7 +42,7 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """Return the units in which total mass, rho and g of `scene` are one; on a plane the loading sets the time unit."""
+    """Return units in which total mass, pendulum length rho and g are one; on a plane loading sets the time unit."""
     if scene.flat:
         time = min(loading_period(scene), scene.duration) / (2.0 * math.pi)
         return Units(scene.total_mass, GRAVITY * time**2, time)
@@ -50,10 +50,10 @@ def units_of(scene: Scene) -> Units:
 
 
 def link_stiffness(scene: Scene, units: Units) -> NDArray[np.float64]:
-    """Return the shear stiffness of the links in units of the model, (N-1, 2)."""
+    """Return the shear stiffness of the links between bodies along x and y, (N-1, 2), in units of the model."""
     return scene.stiffness * (units.time**2 / units.mass)
 
 
 def link_damping(scene: Scene, units: Units) -> NDArray[np.float64]:
-    """Return the shear damping of the links in units of the model, (N-1, 2)."""
+    """Return the shear damping of the links between bodies along x and y, (N-1, 2), in units of the model."""
     return scene.damping * (units.time / units.mass)

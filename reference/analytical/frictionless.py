@@ -1,5 +1,5 @@
 """
-Frictionless small vibration (4.3)-(4.4), mu = 0, from rest, under the damped cosines (5.3), in closed form.
+Frictionless small vibration (4.3)-(4.4) from rest, under the damped cosines (5.3), in closed form.
 
 Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha_k) exp(s_k t)), solved from rest by
     eta = -Gamma (D(s, i omega) - D(s, -i omega)) / (2 i omega),   D(s, z) = (exp(s t) - exp(z t)) / (s - z).
@@ -21,7 +21,7 @@ from reference.problem import Scene, exponents, loading_period
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Time intervals per shortest period. Each has a Taylor series of SERIES_TERMS, with an error below 1e-14 of the motion.
+# Time intervals per shortest period of loading and modes. SERIES_TERMS Taylor terms err by < 1e-14 of the motion there.
 INTERVALS_PER_PERIOD = 12
 SERIES_TERMS = 12  # terms of the Taylor series in time on each interval
 # Largest |s t| at which (exp(s t) - 1 - s t) / s^2 is summed as a series of DRIFT_TERMS terms, to avoid cancellation
@@ -31,7 +31,7 @@ ROUNDING_ERROR = 1e-13  # relative rounding error of a natural frequency and of 
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return peak accelerations, m/s^2, and errors, (M, N); largest displacement, m, and if a limit is near, (M,) bool.
+    Return peak accelerations, m/s^2, and errors, (M, N); largest displacement, m, and if it may reach a limit, (M,).
 
     The scene is one that `is_linear` allows. Travel ends at phase pairs at which the platform may reach the end of its
     travel, or without one the rim (4.1): such a motion has left the range of the small equations.
@@ -62,7 +62,7 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
 def _harmonic_responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
-    """Return complex responses of bodies and their time derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
+    """Return complex displacements (absolute: accelerations) and time derivatives, each (T, N, axes, harmonics)."""
     shape = natural.shape[:, :bodies]
     parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
@@ -87,7 +87,7 @@ def _harmonic_responses(
 
 
 def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
-    """Return a time derivative of (exp(s t) - 1 - s t) / s^2, (T,), s^2: displacement under acceleration exp(s t)."""
+    """Return a time derivative, (T,), of (exp(s t) - 1 - s t) / s^2, the displacement under acceleration exp(s t)."""
     angle = s * time
     if order > 1:
         return np.asarray(s ** (order - 2) * np.exp(angle))
@@ -103,7 +103,7 @@ def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
 
 
 def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
-    """Return (exp(s t) - exp(z t)) / (s - z), (T, N), s: response to exp(s t) of modes with eigenvalues z = `roots`."""
+    """Return (exp(s t) - exp(z t)) / (s - z), (T, N): response to exp(s t) of modes whose eigenvalues z are `roots`."""
     gap = s - roots
     same = gap == 0.0
     growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)

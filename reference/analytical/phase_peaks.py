@@ -23,13 +23,13 @@ Complex = NDArray[np.complex128]
 
 STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # points of an interval; Newton's method starts from the best of them
 NEWTON_STEPS = 5  # iterations of Newton's method that finds the time of the largest |v|
-SERIES_REMAINDER = 1e-14  # error of the truncated series, over the upper bound `envelope` of |v|
+SERIES_REMAINDER = 1e-14  # error of the truncated series, as a share of the upper bound `envelope` of |v|
 
 
 @dataclass(frozen=True)
 class PhaseSeries:
     """
-    Power series in time, on T intervals, of a vector v of each of N bodies, as a function of both initial phases.
+    Displacement or acceleration v of N bodies as power series in time, on T intervals, for any two initial phases.
 
     Attributes
     ----------
@@ -47,9 +47,9 @@ class PhaseSeries:
 
     @classmethod
     def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
-        """Return the series from time derivatives (T, N, axes, 2 harmonics) at midpoints of intervals of 2 `half` s."""
+        """Return the series from time derivatives (T, N, axes, 2 harmonics) at midpoints; half: half an interval, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
-        sizes = np.abs(scaled).sum(axis=-1)  # largest over all phases: both harmonics add up
+        sizes = np.abs(scaled).sum(axis=-1)  # upper bound for all phases: both harmonics add up
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
         envelope = np.sqrt((sizes.sum(axis=0) ** 2).sum(axis=-1)).max(axis=0)
         rest = np.moveaxis(sizes[2:].sum(axis=0), 0, -1)
@@ -76,13 +76,13 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return cos and -sin of both phases of each pair, (M, 4): factors of Re A_1, Im A_1, Re A_2, Im A_2 in v."""
+    """Return cos and -sin of both phases, (M, 4): factors of the amplitudes Re A_1, Im A_1, Re A_2, Im A_2 in v."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
 @cache_on_disk(__file__)
 def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
-    """Set |v|^2 of a body at the middle of each interval, `least`, and an upper bound on the interval, `most`, (T,)."""
+    """Set `least`, a body's |v|^2 at each interval's middle, and `most`, its upper bound on the interval, (T,) each."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
@@ -98,7 +98,7 @@ def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array,
 
 @njit(nogil=True)
 def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
-    """Return the coefficient of x^order of one body's vector along an axis, on interval n at one phase pair."""
+    """Return the coefficient of x^order in the series of a body's v along an axis, interval n; turn: phase factors."""
     total = 0.0
     for part in range(4):
         total += turn[part] * terms[order, body, axis, part, n]
@@ -107,7 +107,7 @@ def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: i
 
 @cache_on_disk(__file__, nogil=True)
 def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
-    """Set the largest |v| over time of every body at each phase pair, `peaks` (M, N), and its `errors` (M, N)."""
+    """Set `peaks` (M, N), the largest |v| over time of every body, and its `errors`; turns: phase factors (M, 4)."""
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
@@ -155,7 +155,7 @@ def _maximize_on_interval(series: Array) -> tuple[float, float]:
 
 @njit(nogil=True)
 def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
-    """Return |v|^2 at the place x in [-1, 1] of an interval, and its first two derivatives by x."""
+    """Return |v|^2 at x in [-1, 1] on an interval, and its first two derivatives by x; series: coefficients of v."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):
         value = slope = curvature = 0.0

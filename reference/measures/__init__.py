@@ -9,7 +9,7 @@ factor_for_spectrum     factor of a ground motion for a target spectrum
 response_spectrum       pseudo-accelerations of a ground motion
 floor_spectra           response spectra of the floors of a motion
 story_forces            story shears, overturning moments and support forces of a motion
-phase_distribution      mean and fractiles of mu over uniform phases
+phase_distribution      mean and fractiles of the amplification over uniform phases
 
 Classes
 -------

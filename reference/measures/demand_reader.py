@@ -15,14 +15,14 @@ from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
 FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts the whole duration
-DURATION_TOLERANCE = 1e-9  # share of the duration: the last rest may end so long before the motion does
+DURATION_TOLERANCE = 1e-9  # share of the duration: a rest counts as final if it ends this close to the end
 DECIMATION = 5  # n: the sampling error is the largest change of a value when only every n-th sample is used
 
 
 @dataclass(frozen=True)
 class Estimate:
     """
-    A number with its error.
+    A number with its estimated error, and the reason if it has no value.
 
     Attributes
     ----------
@@ -52,8 +52,8 @@ def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
 
 
 def squared_lengths_and_interval_maxima(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the squared length of `place` (T, 2), m^2, at the instants, (T,), and its maxima in between, (T - 1,)."""
-    # Between two instants the rate p . v of half the squared length is taken as linear. Where it passes zero downward,
+    """Return squared lengths (T,), m^2, of displacements `place` (T, 2), and maxima between instants, (T - 1,)."""
+    # Between two instants the rate of half the squared length is taken as linear. Where the rate passes zero downward,
     # the length has a maximum: its square exceeds the squared length at the earlier instant by rate^2 over the fall of
     # the rate, times the interval.
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
@@ -111,10 +111,10 @@ ReadNumbers = Callable[[DemandSamples], Sequence[float]]  # function that reads 
 
 
 class DemandReader:
-    """Reader of numbers from a motion, with errors from its decimated samples and from less accurate runs."""
+    """Reader of peaks, energies and counts of a motion, with errors from fewer samples and from less accurate runs."""
 
     def __init__(self, motion: Trajectory) -> None:
-        """Take samples of the motion, every DECIMATION-th of them, and those of its less accurate runs."""
+        """Take the samples of the motion, its subsets of every DECIMATION-th, and samples of less accurate runs."""
         self.motion, self.accuracy = motion, motion.accuracy
         self.answered = motion.status in FULL_LENGTH_OUTCOMES and len(motion.time) > 0
         self.samples = DemandSamples.from_motion(motion)
@@ -145,7 +145,7 @@ class DemandReader:
             return UNKNOWN_ESTIMATE
         scene, stick = self.motion.scene, self.motion.stick
         yields = scene.dry_friction.elastic
-        stick = stick[-1:] if yields else stick  # elastic friction springs back: earlier rests leave no distance
+        stick = stick[-1:] if yields else stick  # elastic friction springs back: no creep of earlier rests remains
         if not stick or stick[-1][1] < (1.0 - DURATION_TOLERANCE) * scene.duration:
             rests = scene.has_dry_friction or yields
             return Estimate(math.nan, math.nan, MOVING_AT_END if rests else NEVER_RESTS)
@@ -171,12 +171,12 @@ class DemandReader:
 
     @cached_property
     def _energies(self) -> tuple[list[Energy], list[Energy]]:
-        """Energies of the motion and of its less accurate runs, and energies from the motion's decimated samples."""
+        """Energies of the motion and of its less accurate runs, and energies from every DECIMATION-th sample."""
         energies = [compute_energy(motion) for motion in (self.motion, *self.others)]
         return energies, energies[0].split_into_subsamples(DECIMATION)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
-        """Return the number of events that `read` counts; its error is the difference of the runs."""
+        """Return the number of events that `read` counts; error: largest difference from less accurate runs."""
         if not self.answered:
             return UNKNOWN_ESTIMATE
         value = read(self.motion)

@@ -96,7 +96,7 @@ def demands(trajectory: Trajectory) -> Demands:
     -----
     Links act between the bodies, so the only horizontal force on all of them together is that of the isolator. By
     Newton's law it is sum_i m_i a_i with the absolute accelerations a_i. It equals friction and restoring force,
-    N (n - mu w) of (3.2).
+    N (n - mu w) of (3.2) with the friction coefficient mu.
 
     An error has two parts. The sampling error is the largest change if only every fifth sample is taken. For energies
     it is a fourth of that, since the error of the trapezoidal rule grows at least like the spacing. The error of the
@@ -167,11 +167,11 @@ def _torsion_reader(body: int) -> ReadNumber:
 def _support_displacement_reader(scene: Scene) -> ReadNumber:
     """Return a function that reads the largest displacement of a support of a platform that rotates."""
     assert scene.support_places is not None
-    # Positions from the center of mass as complex numbers x + i y
+    # Positions of the supports from the platform's center of mass as complex numbers x + i y
     arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]
 
     def largest(samples: DemandSamples) -> float:
-        """Return the largest |u + (exp(i psi) - 1) arm| over supports and time: displacement u, yaw psi."""
+        """Return the largest displacement of a support, |u + (exp(i psi) - 1) arm|; u, psi: platform's place, yaw."""
         place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
         return float(np.abs(place + (turn - 1.0) * arms).max())
 

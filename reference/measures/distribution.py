@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from reference.measures.demand_reader import Estimate
 from reference.support.arguments import check_array
 
-FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # probabilities of not exceeding the value
-# Sampling error over the largest difference from a grid of twice the spacing. Measured on the paper's scenes, 8 to 64
-# phases per axis against 256: the error was at most 1.6 of these differences in 336 values.
+FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # probabilities with which the fractiles are not exceeded
+# Sampling error as a multiple of the largest difference from grids of twice the spacing. On the paper's scenes,
+# 8 to 64 phases per axis against 256, the error was at most 1.6 of these differences in 336 values.
 SAMPLING_FACTOR = 2.0
 
 
@@ -44,7 +44,7 @@ class PhaseDistribution:
     ----------
     mean : Estimate
     fractiles : tuple of Estimate
-        At the probabilities FRACTILES: the value that mu stays below with this probability.
+        At the probabilities FRACTILES: the value that the amplification stays below with this probability.
     points : int
         Number of phase pairs.
     unknown : float
@@ -59,7 +59,7 @@ class PhaseDistribution:
 
 def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     """
-    Return mean and fractiles of mu over all initial phases, from its values on a grid of equally spaced phases.
+    Return mean and fractiles of the amplification over all initial phases, from a grid of equally spaced phases.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     Returns
     -------
     PhaseDistribution
-        Each error is the sum of the sampling error, the errors of mu and the possible effect of unknown values.
+        Each error is the sum of the sampling error, the errors of the values and the possible effect of unknown ones.
 
     Notes
     -----

@@ -16,12 +16,12 @@ from reference.support.constants import GRAVITY
 @dataclass(frozen=True)
 class EffectiveIsolator:
     """
-    Effective properties of the isolator at displacements D, as arrays of their shape; result of `effective_isolator`.
+    Effective stiffness, period, damping and re-centering of the isolator for amplitudes D, arrays of the shape of D.
 
     Attributes
     ----------
     stiffness : ndarray, N/m
-        Secant stiffness W / rho + mu W / D.
+        Secant stiffness W / rho + mu W / D, with the weight W and the friction coefficient mu.
     period : ndarray, s
         Period of the whole mass on that stiffness.
     damping : ndarray

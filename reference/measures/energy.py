@@ -17,9 +17,9 @@ class Energy(NamedTuple):
     time: Array  # (T,) s
     friction: Array  # (T,) W, power of friction: dissipated, except for the part that its elastic deformation stores
     dampers: Array  # (T,) W, power that the dampers of the links dissipate
-    ground: Array  # (T,) W, power of the inertial forces in the plate's frame
-    stored: Array  # (T,) J, kinetic and elastic energy of the bodies, and that of gravity
-    sheared: Array  # (T,) J, elastic energy of friction that yields, which is a part of the work of `friction`
+    ground: Array  # (T,) W, power of inertial forces on the motion relative to the ground
+    stored: Array  # (T,) J, kinetic, elastic and gravitational energy of the bodies
+    sheared: Array  # (T,) J, elastic energy of friction that is elastic before it slides; a part of its work
 
     def friction_energy(self) -> float:
         """Return the energy that friction has dissipated by the end of the motion, J."""
@@ -35,7 +35,7 @@ class Energy(NamedTuple):
         return float(np.trapezoid(power, self.time) - (self.stored[-1] - self.stored[0]))
 
     def split_into_subsamples(self, step: int) -> list[Energy]:
-        """Return `step` parts of the instants: each takes every `step`-th from another start, and both ends."""
+        """Return `step` subsamples: each has every `step`-th instant, from another start, and both end instants."""
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
         return [Energy(*(part[rows] for part in self)) for rows in kept]
@@ -52,7 +52,7 @@ def friction_force(scene: Scene, place: Array, total: Array, contact: Array) -> 
 
 def compute_energy(motion: Trajectory) -> Energy:
     """Return powers and stored energies of a motion; where bodies turn, all but the power of friction are NaN."""
-    # The motions of the small equations have no height. Their restoring force is that of a paraboloid, so its height
+    # Motions by the small-displacement equations have no height. Their restoring force is a paraboloid's: its height
     # p^2 / 2 rho and its slope take part in the energies of gravity and of the vertical ground motion.
     scene, place, velocity = motion.scene, motion.position, motion.velocity
     masses = scene.masses

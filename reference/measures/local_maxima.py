@@ -15,7 +15,7 @@ MAX_STARTS = 12  # largest number of local maxima from which searches start: tho
 
 def find_local_maxima(surface: Array, scene: Scene) -> Array:
     """
-    Return the phase pairs (K, 2), rad, at which a surface is as high as at its eight neighbors.
+    Return the phase pairs (K, 2), rad, at which a surface is at least as high as at all eight neighbors.
 
     `surface` is (n, n), on `phase_grid(n)`; NaN without an answer. Pairs that may rise highest come first, at most
     MAX_STARTS of them, and only one of those that a symmetry of the motion makes equal.

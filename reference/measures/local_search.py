@@ -3,8 +3,8 @@ Local search for the maximum of a surface over the phases whose denominator is k
 
 In a square around the best pair of phases, the numerator is interpolated by a polynomial and divided by the exact
 denominator, and the pair at which this quotient is largest is computed next. The square moves with the best pair, and
-shrinks where that pair lies inside. The exact denominator has kinks, on which maxima of mu may lie and which no
-polynomial of mu itself can show. Next to a jump of the numerator the square closes on a high pair, and `follow_jump`
+shrinks where that pair lies inside. The exact denominator has kinks, on which maxima of the amplification may lie and
+which no polynomial of it can show. Next to a jump of the numerator the square closes on a high pair, and `follow_jump`
 goes along the jump to the highest one.
 """
 
@@ -25,29 +25,29 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
-# Coordinates along each axis of a square at which its interpolant is computed: on the first grid, and on finer grids
+# Coordinates along each axis of a search's square at which a polynomial is evaluated: first grid, and finer grids
 COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids that locate the maximum of the interpolant, each finer than the grid before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
-# A search's square moves and keeps its size if its best phase pair lies beyond this share of the half width
+# A square keeps its size and moves if its best phase pair is farther from its center than this share of its half width
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of a search's square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction of mu, over the range of values in the square
+MAX_GOOD_PREDICTION_ERROR = 0.1  # a prediction is good if it errs by at most this share of the square's value range
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a square's half width after a good and after a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
-# values in its square, or by more than GAIN_FACTOR times the gain of its LATEST_ROUNDS rounds: next to a jump even a
+# values in its square, or by more than GAIN_FACTOR times what its LATEST_ROUNDS rounds gained: next to a jump even a
 # small square has a large range.
-PROMISE_FACTOR = 2.0  # over the range of values
+PROMISE_FACTOR = 2.0  # factor on the range of values in a search's square
 LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0  # rounds over which the gain of a search is taken, and the factor on this gain
-MAX_MERGED_WIDTH = 0.04  # rad: two searches in one square of smaller width have found the same maximum
+MAX_MERGED_WIDTH = 0.04  # rad: two searches within one square of at most this half width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
 JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # number of squares in which a search follows a jump, and of grids in each square
-FALL_DIRECTIONS = 32  # directions in which the fall of the surface from a maximum is computed
+FALL_DIRECTIONS = 32  # number of directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
-# Least fall at NEAR_DISTANCE over that at FAR_DISTANCE of a kink and of a jump (parabola 0.01, edge 0.1, jump 1)
+# Ratio of falls at NEAR_ and FAR_DISTANCE above which a maximum is a kink, a jump (parabola 0.01, edge 0.1, jump 1)
 KINK_FALL, JUMP_FALL = 0.03, 0.3
-CLEAR_FALL = 10.0  # smallest fall, in errors of the value, from which the kind of a maximum can be told
+CLEAR_FALL = 10.0  # a fall shows the kind of a maximum if it is larger than this times the value's error
 
 
 @dataclass(frozen=True)
@@ -55,9 +55,9 @@ class ComputedPhases:
     """Values of a surface computed at M phase pairs, as numerator and denominator; NaN where the run gave no answer."""
 
     phases: Array  # (M, 2), rad
-    numerator: Array  # (M,), numerator of (5.1), m/s^2, or displacement, m
-    denominator: Array  # (M,), denominator of (5.1), m/s^2, or 1
-    error: Array  # (M,), error of numerator / denominator
+    numerator: Array  # (M,), largest acceleration of the body, m/s^2, or displacement, m
+    denominator: Array  # (M,), largest acceleration of the ground, m/s^2; 1 for a displacement
+    error: Array  # (M,), error of the value, numerator / denominator
 
     @cached_property
     def value(self) -> Array:
@@ -65,7 +65,7 @@ class ComputedPhases:
         return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
 
     def select(self, places: slice) -> ComputedPhases:
-        """Return the part at a slice of the M phase pairs."""
+        """Return the values at a slice of the M phase pairs."""
         return ComputedPhases(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
 
 
@@ -82,11 +82,11 @@ class Surface:
     outcome: str = ""  # last outcome that was not ok
 
     def denominator(self, phases: Array) -> Array:
-        """Return the denominator of (5.1) at phase pairs (M, 2), rad, (M,), m/s^2; 1 for a displacement."""
+        """Return the ground's peak acceleration, (M,), m/s^2, at phase pairs (M, 2), rad; 1 for a displacement."""
         return ground_peak(self.scene, phases) if self.quantity == "amplification" else np.ones(len(phases))
 
     def compute(self, phases: Array, **changes: Any) -> ComputedPhases:
-        """Return the surface at phase pairs (M, 2), rad, computed with `changes` of the settings."""
+        """Compute the values of the surface at phase pairs (M, 2), rad; changes: settings that differ from its own."""
         result = self.amplification(self.scene, phases, **{**self.settings, **changes})
         self.evaluations += len(phases)
         self.outcome = next((str(status) for status in result.status[::-1] if status != Outcome.OK.value), self.outcome)
@@ -103,11 +103,11 @@ class Surface:
 class LocalSearch:
     """A search for a maximum: its best phase pair so far, and the square of phases around it to compute next."""
 
-    phases: Array  # (2,), rad
+    phases: Array  # (2,), rad, best phase pair so far
     value: float
     error: float
     half_width: float  # rad, half width of the next square
-    value_range: float = np.inf  # range of the values in the last square
+    value_range: float = np.inf  # largest minus smallest value in the last square
     nodes: int = INTERPOLATION_NODES  # nodes along each axis of the next square
     count: int = 1  # number of searches that were merged into this one
     history: list[tuple[float, float]] = field(default_factory=list)  # half width and value after each round
@@ -127,14 +127,14 @@ class LocalSearch:
 
     @property
     def recent_gain(self) -> float:
-        """Return the gain of the value during the last tenfold reduction of the square."""
+        """Increase of the search's best value while its square shrank by the last factor of ten."""
         width, value = self.history[-1]
         return value - next((before for wide, before in reversed(self.history) if wide >= 10.0 * width), value)
 
 
 @cache
 def make_square_nodes(nodes: int) -> tuple[Array, Array]:
-    """Return interpolation nodes in [-1, 1]^2, (nodes^2, 2), and the matrix from values there to their polynomial."""
+    """Return nodes in [-1, 1]^2, (nodes^2, 2), and the matrix from values there to Chebyshev coefficients."""
     node = np.cos(np.pi * np.arange(nodes) / (nodes - 1))
     places = np.stack(np.meshgrid(node, node, indexing="ij"), axis=-1).reshape(-1, 2)
     return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))
@@ -239,7 +239,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
 
 
 def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
-    """Return searches without repeats of one maximum or its mirror images; shifted: mirror shifts of phases, (K, 2)."""
+    """Return searches, one for each maximum; shifted: shifts of phases, (K, 2), rad, that keep all values."""
     kept: list[LocalSearch] = []
     for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:

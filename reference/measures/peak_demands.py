@@ -54,7 +54,7 @@ def unit_of(quantity: str) -> str:
 @dataclass(frozen=True)
 class Estimates:
     """
-    Arrays of numbers and of their errors.
+    Array of computed numbers, and array of their estimated errors.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Estimates:
 @dataclass(frozen=True)
 class PeakDemands(Mapping[str, Estimates]):
     """
-    Demands at many phase pairs, the result of `peak_demands`.
+    Demands on isolator and structure at many phase pairs, the result of `peak_demands`.
 
     A mapping from the names of the fields of `Demands` to `Estimates`, without those that the model does not have.
 
@@ -109,7 +109,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
     def to_xarray(self) -> xr.Dataset:
         """
-        Return the demands with coordinates and units.
+        Return the demands as one data set, with the phases as coordinates and with units.
 
         Returns
         -------
@@ -168,7 +168,7 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
 
 
 def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
-    """Return arrays of all motions by demand: value and error on the last axis, NaN for a motion without the demand."""
+    """Return for each demand an array over all motions: value and error on the last axis, NaN if a motion lacks it."""
     stacked: dict[str, Array] = {}
     for name in (field.name for field in fields(Demands) if field.name != "status"):
         tables = [None if answer is None else _estimate_table(getattr(answer, name)) for answer in answers]

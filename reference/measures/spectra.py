@@ -20,7 +20,7 @@ from reference.support.arguments import Range, check_array, check_number
 from reference.support.build_cache import cache_on_disk
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, periods of a spectrum by default
-DAMPING_RANGE = Range(0.0, 1.0, "of critical")  # damping ratio of the oscillator
+DAMPING_RANGE = Range(0.0, 1.0, "of critical")  # allowed damping ratio of the oscillator
 SERIES_TERMS = 8  # terms of the power series, in the phase angle, of an oscillator's motion in one step
 MAX_ANGLE = 0.25  # rad, largest phase angle of the oscillator in a step, for which its power series errs by 1e-12
 # The sampling error is SAMPLING_FACTOR times the largest change when only every third sample is used. On the built-in
@@ -281,7 +281,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
 
 def _power_series(damping: float) -> Array:
     """
-    Return coefficients (SERIES_TERMS, 3) of an oscillator's motion from rest in powers of its angle, lowest first.
+    Return coefficients (SERIES_TERMS, 3), lowest first, of oscillator motion from rest in powers of the angle omega t.
 
     Columns: motion under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp
     up to 1, over the square of the angle. All motions of a step are sums of these. The k-th derivative at the start of

@@ -120,7 +120,7 @@ def heights_above_contact(scene: Scene) -> Array | None:
 
 
 def _depression_radius(scene: Scene) -> float:
-    """Return the radius of the depressions, R = rho + r, m."""
+    """Return the radius of the platform's spherical depressions, R = rho + r, m; r: radius of the spheres."""
     return scene.radius + (scene.isolator.sphere_radius or 0.0)
 
 
@@ -150,7 +150,7 @@ def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterato
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
-    """Return a function for the sum of weights times accelerations of a body and all above: force or moment, (T, 2)."""
+    """Return a function for the sum of acceleration times `weights` (kg or kg m) of a body and all above, (T, 2)."""
     return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 
@@ -187,7 +187,7 @@ def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> C
     """
     middle = places.mean(axis=0)
     arms = places - middle
-    # (K, 2), 1/m: force of every support for a unit moment along x and y
+    # (K, 2), 1/m: normal force of every support for a unit moment of forces along x and y
     leverage = arms @ np.linalg.inv(arms.T @ arms)
     lean = 1.0 if scene.flat else _depression_radius(scene) / scene.radius
     shares = scene.masses / scene.total_mass

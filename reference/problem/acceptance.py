@@ -16,7 +16,7 @@ ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # form of the name that
 
 
 class LimitTable(Table):
-    """A table of a scene file with limits for checks: those of its keys that `limited` names."""
+    """A table of a scene file that states acceptance limits; `limited`: its keys whose values are such limits."""
 
     limited: ClassVar[tuple[str, ...]]
 
@@ -26,7 +26,7 @@ class LimitTable(Table):
 
 
 class Limits(LimitTable):
-    """Limits of the relative difference of two models over the phases, for every body."""
+    """Largest allowed differences between the amplifications by two models, over the phases, for every body."""
 
     limited = ("median", "maximum", "ratio")
 
@@ -38,7 +38,7 @@ class Limits(LimitTable):
 
 
 class DemandLimits(LimitTable):
-    """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
+    """Largest allowed demands under the ground motions of an ensemble, for `phase-resonance ensemble --check`."""
 
     displacement: NonNegative | None = key(
         "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
@@ -87,7 +87,7 @@ def _check_table(value: Any) -> Any:
 
 class Acceptance(Limits):
     """
-    Limits for `--check`: tables for pairs of models; keys of `Limits` outside them are those of `like_for_like`.
+    Limits for `--check`: a table for each pair of models; limits outside these tables count for `like_for_like`.
 
     Any other table has the name of an engine of the user: its limits against the equations with the same friction law.
     """

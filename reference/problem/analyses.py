@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from reference.problem.keys import REPORT, Table, key
 
-AnalysisNames = Annotated[list[str], Field(min_length=1)]  # one name of an analysis or more
+AnalysisNames = Annotated[list[str], Field(min_length=1)]  # list of at least one name of an analysis
 
 
 class Analyses(Table):

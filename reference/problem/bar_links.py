@@ -39,7 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """Return the stiffness of every link, lowest first, under its load, N; None: rigid; radius: default `spread`, m."""
+    """Return the stiffness of links, lowest first, each under its load, N; None: rigid; radius: default `spread`, m."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -79,7 +79,7 @@ def stands_upright(
     rotation = np.cumsum([0] + [link is not None for link in links])  # number of each body's rotation, from 1; 0: none
     count = len(links)
     size = count + int(rotation[-1])
-    unit = np.eye(size + 1)[:, :size]  # the last row stands for the platform, which does not move
+    unit = np.eye(size + 1)[:, :size]  # last row: zeros, for the platform, which does not move
     moved = [unit[-1], *unit[:count]]
     rotated = [unit[-1] if number == 0 else unit[count + number - 1] for number in rotation]
     for axis in range(2):

@@ -12,12 +12,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-FRACTION_TERMS = 20  # the continued fraction is exact in double precision up to buckling with so many terms
+FRACTION_TERMS = 20  # terms of the continued fraction of tan x / x: exact in double precision up to buckling
 
 
 @dataclass(frozen=True)
 class StabilityFunctions:
-    """Stiffness of a bar under load over that of the unloaded bar; sway_slope: d sway / dq, q = P l^2 / (4 E J)."""
+    """Stiffness of a bar under axial load P over that without load; sway_slope: d sway / dq, q = P l^2 / (4 E J)."""
 
     sway: float
     sway_slope: float

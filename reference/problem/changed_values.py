@@ -15,7 +15,7 @@ from reference.support.scene_error import SceneError, keys_of_table, unknown_key
 
 # Largest numbers of letters of one changed value, and of all, in a scene's name; "changed" stands for longer ones
 MAX_VALUE_LETTERS, MAX_CHANGES_LETTERS = 40, 80
-TABLES_WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # their changes change no result
+TABLES_WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # keys whose values change no result
 
 
 def value_at(data: Any, key: str) -> Any:
@@ -107,7 +107,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     index = _index_of(scene, place, parts, len(parts) - 1, value, keys)
     if key == "excitation.record":
         place["record"] = value
-        for name in READER_KEYS:  # keys that were read from the record before the change
+        for name in READER_KEYS:  # fields that were filled in from the previous record
             place.pop(name, None)
     elif value is not None:
         place[index] = value

@@ -21,7 +21,7 @@ from reference.support.build_cache import cache_on_disk
 Array = NDArray[np.float64]
 
 SAMPLES_PER_PERIOD = 32  # samples per period of the faster harmonic: 16 per wave of the squared acceleration
-# Share of the largest |u|^2 from which a sample is computed again: rounding may hide which sample is the largest
+# A squared acceleration above this share of the largest is computed again: rounding may hide which is the largest
 MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 
 
@@ -64,7 +64,7 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
 
 def _record_peak(scene: Scene) -> float:
     """Return the largest acceleration of a recorded motion over the duration, m/s^2."""
-    # The norm of a vector that changes linearly in time is convex: it is largest at a knot, or where the motion ends.
+    # The length of a vector that changes linearly in time is convex: largest at a sample, or where the motion ends.
     time = scene.record[:, 0]
     instants = np.append(time[time < scene.duration], scene.duration)
     with np.errstate(over="ignore"):
@@ -73,7 +73,7 @@ def _record_peak(scene: Scene) -> float:
 
 @njit(nogil=True)
 def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> tuple[float, float, float]:
-    """Return |u|^2, the squared ground acceleration, and its first two derivatives at time t, s."""
+    """Return the squared ground acceleration and its first two derivatives at time t; s: exponents of the harmonics."""
     value = slope = curvature = 0.0
     for k in range(3):
         u = du = ddu = 0.0
@@ -92,7 +92,7 @@ def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> t
 
 @njit(nogil=True)
 def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
-    """Return the maximum of |u|^2 on [left, right] around a higher sample, by Newton's method guarded by bisection."""
+    """Return the peak of squared ground acceleration near a high sample in [left, right]; guarded Newton's method."""
     t = 0.5 * (left + right)
     close = 1e-9 * (right - left)
     best = 0.0
@@ -112,7 +112,7 @@ def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, 
 
 @njit(nogil=True)
 def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound: Array) -> None:
-    """Set exp(s t) of both harmonics at sample n, `grown`, and a bound on |u|^2 from there on, for any phases."""
+    """Set `grown`, exp(s t) at sample n, and `bound` on the squared acceleration from there on, for any phases."""
     largest = 0.0
     for harmonic in range(2):
         size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
@@ -123,7 +123,7 @@ def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound
 
 @njit(nogil=True)
 def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
-    """Return |u|^2 at a sample from its exp(s t), `grown`; turn: exp(i phase) of both harmonics, (2, 2)."""
+    """Return the squared ground acceleration at a sample from its exp(s t), `grown`; turn: both exp(i phase)."""
     value = 0.0
     for k in range(3):
         u = 0.0
@@ -136,7 +136,7 @@ def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
 
 @cache_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, duration: float, step: float) -> Array:
-    """Return peaks (M,), m/s^2, for phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): exponents."""
+    """Return ground peaks (M,), m/s^2, for phases (M, 2); weights, m/s^2: sizes of the harmonics; s: exponents."""
     count = math.ceil(duration / step) + 1
     peaks = np.empty(phases.shape[0])
     grown = np.empty((count, 2, 2))  # exp(s t) of both harmonics at the samples, as real and imaginary part

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 @require_scene
 def exponents(scene: Scene) -> NDArray[np.complex128]:
     """
-    Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
+    Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics: decay rates, angular frequencies.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def loading_period(scene: Scene) -> float:
 @require_scene
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
-    Return the acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
+    Return the ground acceleration along x, y and z: (xi'', eta'', zeta'') of (5.3), or that of the record.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], 
 @require_scene
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
-    Return the velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
+    Return the velocity of the ground, the first integral of `ground_acceleration` from rest at t = 0.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
 @require_scene
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
-    Return the displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.
+    Return the displacement of the ground, the second integral of `ground_acceleration` from rest at t = 0.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]
 
 
 def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
-    """Return exp(i alpha) for both initial phases."""
+    """Return the complex factors exp(i alpha_1) and exp(i alpha_2) of a phase pair."""
     turns: NDArray[np.complex128] = np.exp(1j * check_phase(phase))
     return turns
 
@@ -195,12 +195,12 @@ def _check_instants(time: ArrayLike) -> Array:
 
 
 def _integrate_record(knots: Array, time: ArrayLike, order: int) -> Array:
-    """Return the acceleration of a record (K, 4), integrated `order` times from rest, at instants (T,): (T, 3)."""
+    """Return a record's acceleration at instants (T,), integrated `order` times from rest, (T, 3); knots: (K, 4)."""
     t = np.asarray(time, float)
     instant, start = knots[:, 0], knots[:, 1:]
     span = np.diff(instant)[:, None]
-    slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # no slope behind the last knot
-    parts = [start]  # acceleration, then velocity and displacement at the knots
+    slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # zero after the last sample
+    parts = [start]  # acceleration, then velocity and displacement at the samples
     if order > 0:
         parts.append(_cumulative_sums(span * (start[:-1] + 0.5 * span * slope[:-1])))
     if order > 1:
@@ -216,5 +216,5 @@ def _integrate_record(knots: Array, time: ArrayLike, order: int) -> Array:
 
 
 def _cumulative_sums(gains: Array) -> Array:
-    """Return zeros, then the cumulative sums of the gains (K, 3) over the intervals."""
+    """Return the sums of gains (K, 3) of the intervals up to each interval's start and to the end, (K + 1, 3)."""
     return np.vstack([np.zeros(3), np.cumsum(gains, axis=0)])

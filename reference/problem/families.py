@@ -51,13 +51,13 @@ if TYPE_CHECKING:
 ALL_MOTIONS = "all"  # value of the key `motion` that stands for every motion of a suite
 MOTION_KEY = ("excitation", "record", "motion")  # path of the key that chooses a motion of a suite
 COMBINATIONS = ("product", "zip")  # ways to combine keys: all combinations of values, or the n-th values of all keys
-MAX_SCENES = 1000  # a family has at most so many scenes
-MAX_BODIES_IN_ALL = 50_000  # all scenes of a family together have at most so many bodies
-MAX_KEYS = 20  # at most so many keys of a file may have several values
+MAX_SCENES = 1000  # largest number of scenes in a family
+MAX_BODIES_IN_ALL = 50_000  # largest number of bodies in all scenes of a family together
+MAX_KEYS = 20  # largest number of keys of a file that have several values
 BOUNDS_KEY = "isolator.bounds"  # key with two factors of friction, each of which makes a scene
 BOUND_NAMES = ("lower bound", "upper bound")  # names of the scenes with the smaller and the larger friction
-BOUND_FACTOR = Range(0.01, 100.0)  # factor of friction in `isolator.bounds`
-BOUND_DIGITS = 12  # digits to which a bound's coefficient is rounded: 0.075, not 0.07500000000000001
+BOUND_FACTOR = Range(0.01, 100.0)  # allowed factors of friction in `isolator.bounds`
+BOUND_DIGITS = 12  # digits to which a coefficient times a bound's factor is rounded: 0.075, not 0.07500000000000001
 
 Value = float | int | str  # a number or text that a key with several values takes
 FilesByDirection = dict[str, str]  # file names of one record by direction
@@ -67,7 +67,7 @@ NumbersByKey = dict[str, float]  # numbers of one table, such as that of frictio
 @dataclass(frozen=True)
 class Family:
     """
-    The scenes of one file, one for each combination of the values of its keys.
+    Scenes that one file defines: one for each combination of the values of its keys with several values.
 
     Attributes
     ----------
@@ -239,7 +239,7 @@ def _find_running_keys(
     data: dict[str, Any], label: str, wrong: list[SceneError]
 ) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter], dict[str, Any]]:
     """
-    Return the tables of a file, its bounds of friction if given, its keys with several values, and the values' tables.
+    Return a file's tables, its friction bounds, its keys with several values, and the tables that list these values.
 
     Errors of keys with several values are added to `wrong`, and these keys are left out of the list.
     """
@@ -248,7 +248,7 @@ def _find_running_keys(
     running: list[_VariedParameter] = []
     named: dict[str, Any] = {}
     with _collect_errors(wrong):
-        named[".".join(MOTION_KEY)] = ALL_MOTIONS  # has several values, even if the motions cannot be listed
+        named[".".join(MOTION_KEY)] = ALL_MOTIONS  # this key has several values even if its motions cannot be listed
         tables = _expand_motions(tables, label)
         named.clear()
     with _collect_errors(wrong):
@@ -311,7 +311,7 @@ def _add_other_errors(
 def _locate_bound_error(
     error: SceneError, tables: dict[str, Any], data: dict[str, Any], label: str, factors: Sequence[Value]
 ) -> SceneError:
-    """Return the error that the file's friction has, or else, if only a friction bound is wrong, one of the bounds."""
+    """Return the error in the file's own friction; if this is valid, the error in the bounds that multiply it."""
     try:
         make_scene({**tables, "isolator": {**tables["isolator"], "friction": data["isolator"]["friction"]}}, label, "")
     except SceneError as own:
@@ -341,14 +341,14 @@ class _FrictionBoundsKey(_VariedParameter):
     """The lower and upper bound of friction as a varied key, which sets the whole table of friction."""
 
     def __init__(self, factors: Sequence[float], frictions: Sequence[Any]) -> None:
-        """Take over the two factors, and the tables of friction that they make."""
+        """Store the two factors of friction, and the friction values or tables that they make."""
         self.path, self.name, self.listed = ("isolator", "friction"), BOUNDS_KEY, frictions
         self.values = [*factors]
         self.texts = self.labels = self.entries = [*BOUND_NAMES]
 
 
 def _separate_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_VariedParameter]]:
-    """Return the tables without `isolator.bounds`, and a list of the key of these bounds, if any. Raises SceneError."""
+    """Return tables without `isolator.bounds`, and a list with these bounds, if any, as a key. Raises SceneError."""
     isolator = data.get("isolator")
     if not isinstance(isolator, dict) or "bounds" not in isolator:
         return data, []
@@ -365,7 +365,7 @@ def _separate_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], 
 
 
 def _scale_friction(friction: Any, factor: float) -> Any:
-    """Return a friction with its coefficients times a factor and all its other keys unchanged."""
+    """Return the friction of a scene, a number or a table, with its coefficients times a factor."""
     if not isinstance(friction, dict):
         return float(f"{friction * factor:.{BOUND_DIGITS}g}")
     coefficients = {key: friction[key] for key in ("slow", "fast") if _is_number(friction.get(key))}
@@ -373,7 +373,7 @@ def _scale_friction(friction: Any, factor: float) -> Any:
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, Any]) -> None:
-    """Check that `combine` fits the number of keys with several values, and of these values. Raises SceneError."""
+    """Check that `combine` fits the keys with several values and how many values they have. Raises SceneError."""
     if combine is not None and combine not in COMBINATIONS:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")
     if combine is not None and len(places) < 2:
@@ -382,7 +382,7 @@ def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter]
         first, second = islice(places, 2)
         rule = f'{first} runs, too: add combine = "product" or combine = "zip" at the top of the file'
         raise SceneError(label, second, places[second], rule)
-    if len(running) < len(places):  # the number of values of a wrong key is unknown
+    if len(running) < len(places):  # the number of values of an invalid key is unknown
         return
     counts = [len(key.values) for key in running]
     if combine == "zip" and len(set(counts)) > 1:
@@ -479,7 +479,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _word_values(label: str, key: str, values: Sequence[Value | FilesByDirection | NumbersByKey]) -> list[str]:
-    """Return short texts of values for names of scenes, no two alike; a path becomes a file name. Raises SceneError."""
+    """Return short, different texts of values for names of scenes; a path becomes a file name. Raises SceneError."""
     for digits in range(4, 18):
         texts = [
             word_table(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"

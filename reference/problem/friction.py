@@ -19,13 +19,13 @@ from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
 from reference.problem.validation import FRICTION_FORMS
 from reference.support.arguments import Range
 
-LEAST_LOAD = 1e-6  # normal force over the weight below which friction depends on it no further
+LEAST_LOAD = 1e-6  # smallest ratio of normal force to weight: below it the coefficient stays constant
 
 
 @dataclass(frozen=True)
 class Heat:
     """
-    Temperature at the center of a slider's track, degrees C: initial + rise * integral of P(t - s) / sqrt(s) over s.
+    Temperature of the track's center, degrees C: initial + rise * integral of friction power P(t - s) / sqrt(s) over s.
 
     P is the power of friction while the slider covers the center: conduction from its whole contact into a half space.
 
@@ -45,20 +45,20 @@ class Heat:
 
     @classmethod
     def of(cls, radius: float, conductivity: float, diffusivity: float, initial: float, supports: int) -> Heat:
-        """Return the law of equal sliders with round contacts; units of the arguments: m, W/(m K), m^2/s, degrees C."""
+        """Return the temperature law of equal sliders with round contacts; arguments: m, W/(m K), m^2/s, degrees C."""
         area = supports * math.pi * radius**2
         return cls(initial, math.sqrt(diffusivity / math.pi) / (conductivity * area), 0.5 * math.sqrt(math.pi) * radius)
 
     @staticmethod
     def factor(temperature: ArrayLike) -> NDArray[np.float64]:
-        """Return the friction coefficient at a temperature, degrees C, over the stated one."""
+        """Return the ratio of the friction coefficient at a temperature, degrees C, to the stated coefficient."""
         return 0.79 * (0.7 ** (0.02 * np.asarray(temperature)) + 0.4)
 
 
 @dataclass(frozen=True)
 class DryFriction:
     """
-    The coefficient mu(|v|) = fast - (fast - slow) exp(-rate |v|) of Mokha and Constantinou.
+    The friction coefficient mu(|v|) = fast - (fast - slow) exp(-rate |v|) of Mokha and Constantinou.
 
     Under a normal force N in place of the weight W it is mu (N / W)^exponent; heat multiplies it by `Heat.factor`.
 
@@ -75,7 +75,7 @@ class DryFriction:
     heat : Heat, optional
         None for a coefficient that does not depend on the heat of sliding.
     stiffness : float
-        N/m, of friction that yields elastically before it slides; inf for rigid friction.
+        N/m, of friction that is elastic before it slides; inf for rigid friction.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class DryFriction:
 
     @property
     def elastic(self) -> bool:
-        """True if friction yields elastically before it slides."""
+        """True if friction is elastic, not rigid, before it slides."""
         return self.stiffness < math.inf
 
     @property
@@ -128,7 +128,7 @@ class DryFriction:
 
     def at(self, speed: ArrayLike, load: ArrayLike = 1.0) -> NDArray[np.float64]:
         """
-        Return the coefficient at slip speeds.
+        Return the friction coefficient at slip speeds and normal forces.
 
         Parameters
         ----------
@@ -148,12 +148,12 @@ class DryFriction:
         return coefficient if self.exponent == 0.0 else coefficient * np.maximum(load, LEAST_LOAD) ** self.exponent
 
     def coefficient_at(self, speed: float, load: float) -> float:
-        """Return the coefficient at one slip speed, m/s, and load over the weight, for loops over contacts."""
+        """Return the friction coefficient of one contact at a slip speed, m/s, and a normal force over the weight."""
         coefficient = self.slow - (self.fast - self.slow) * math.expm1(-self.rate * speed)
         return coefficient if self.exponent == 0.0 else coefficient * max(load, LEAST_LOAD) ** self.exponent
 
     def steepness(self, speed: ArrayLike) -> NDArray[np.float64]:
-        """Return the size of the derivative of the coefficient by the slip speed, s/m, under the weight."""
+        """Return the absolute derivative of the coefficient by slip speed, s/m, the normal force being the weight."""
         steepness: NDArray[np.float64] = (
             abs(self.fast - self.slow) * self.rate * np.exp(-self.rate * np.asarray(speed, dtype=float))
         )
@@ -185,7 +185,7 @@ class Heating(Table):
 
 class VelocityFriction(Table):
     """
-    Dry friction that yields, or that depends on the slip speed, the normal force or its own heat.
+    Dry friction that is elastic before it slides, or depends on the slip speed, the normal force or its own heat.
 
     The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
@@ -236,7 +236,7 @@ class VelocityFriction(Table):
 
 
 def kind_of_friction(friction: Any) -> str:
-    """Return the form that the user means a friction to have: a constant or a table."""
+    """Return which form of friction the user means: a constant or a table."""
     return FRICTION_FORMS[int(isinstance(friction, dict | VelocityFriction))]
 
 

@@ -23,7 +23,7 @@ from reference.problem.validation import LocatedError
 from reference.support.arguments import Range
 from reference.support.plain_values import as_hashable, as_plain_values
 
-# Error of `Table.model_copy` with values to change
+# Error message of `Table.model_copy` when it is called with values to change
 MODEL_COPY_REFUSAL = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 # What reads a key, in the words of docs/scene.md: all models, the spatial model, or another part of the program
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
@@ -40,7 +40,7 @@ def key(
     other_form: bool = False,
 ) -> Any:
     """
-    Declare a key of a table: its meaning and the models that read it in docs/scene.md, and the range of its numbers.
+    Declare a key of a scene file's table: its meaning, the models that read it, and the range of its numbers.
 
     other_form: the key has another form than a number, whose lists of numbers have ranges of their own.
     """
@@ -116,7 +116,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
-        """Require the numbers of a key to lie in its range, also in lists unless a list is another form of the key."""
+        """Require the numbers of a key, also in lists, to lie in its range; not in lists that are its other form."""
         said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])

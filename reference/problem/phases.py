@@ -11,7 +11,7 @@ from reference.problem.ranges import PHASE_RANGE
 from reference.support.arguments import Range, check_array, check_whole_number
 
 Array = NDArray[np.float64]
-POINTS_PER_AXIS = Range(1, 10_000)  # number of phases per axis
+POINTS_PER_AXIS = Range(1, 10_000)  # allowed number of phases per axis of a grid
 
 
 def check_phases(phases: ArrayLike) -> Array:

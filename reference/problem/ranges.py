@@ -17,16 +17,16 @@ from reference.support.arguments import Range, check_array, quote
 Array = NDArray[np.float64]
 
 MAX_SUPPORTS = 1000  # largest number of supports in a scene
-SUPPORT_POSITION_RANGE = Range(-1e6, 1e6, "m")  # coordinate of a support along x or y
-DAMPING_COEFFICIENT_RANGE = Range(0.0, 1e30, "N s/m")  # coefficient of a link's damper along one axis
-MAX_CYCLES = 1e6  # the duration has at most so many of the shortest periods of loading and pendulum
+SUPPORT_POSITION_RANGE = Range(-1e6, 1e6, "m")  # allowed coordinates of a support along x and y
+DAMPING_COEFFICIENT_RANGE = Range(0.0, 1e30, "N s/m")  # allowed coefficients of a link's damper along one axis
+MAX_CYCLES = 1e6  # largest duration, counted in the shortest of the periods of loading and pendulum
 
-# beyond these phases two neighboring double-precision numbers are 1.2e-10 rad apart, the strictest tolerance
+# allowed phases: beyond these, neighboring double-precision numbers are 1.2e-10 rad apart, the strictest tolerance
 PHASE_RANGE = Range(-1e6, 1e6, "rad")
-REGULARIZATION_RANGE = Range(1e-12, 1e6, "m/s")  # slip speed v_reg, below which friction grows linearly
-CUTOFF_RANGE = Range(1e-15, 1e6, "m/s")  # slip speed v_c, below which an acceleration does not count
-POSITION_RANGE = Range(-1e12, 1e12, "m")  # displacement in an initial state
-VELOCITY_RANGE = Range(-1e9, 1e9, "m/s")  # velocity in an initial state
+REGULARIZATION_RANGE = Range(1e-12, 1e6, "m/s")  # allowed v_reg: slip speed below which regularized friction is linear
+CUTOFF_RANGE = Range(1e-15, 1e6, "m/s")  # allowed v_c: accelerations at lower slip speeds do not count as peaks
+POSITION_RANGE = Range(-1e12, 1e12, "m")  # allowed displacements in an initial state
+VELOCITY_RANGE = Range(-1e9, 1e9, "m/s")  # allowed velocities in an initial state
 TOLERANCE_RANGE = Range(1e-10, 0.1)  # relative error that a caller may ask for
 
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits, so the ground counts as at rest

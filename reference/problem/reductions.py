@@ -1,7 +1,7 @@
 """
 Parts of the computation that a scene does not need, with the reason, decided from the scene alone.
 
-Each reduction is exact: with and without it a point has the same mu within the error estimates. Both sides and the
+Each reduction is exact: with and without it a point has the same amplification within the errors. Both sides and the
 study ask here, and nowhere else; `full=True` (`--full`) asks nothing and computes everything.
 """
 
@@ -37,7 +37,7 @@ class Reduction:
 
 
 def has_half_turn_symmetry(scene: Scene) -> Reduction:
-    """Find whether adding pi to both phases turns the motion by half a turn about the vertical, with the same mu."""
+    """Find whether adding pi to both phases turns the motion by half a turn, which keeps every amplification."""
     if scene.recorded:
         return Reduction(False, RECORDED_REASON)
     if scene.amplitudes[2].any():
@@ -109,14 +109,14 @@ def is_planar(scene: Scene) -> Reduction:
 
 
 def has_planar_chain(scene: Scene) -> Reduction:
-    """Find whether the bodies above the platform need no coordinates across the plane of motion."""
+    """Find whether the bodies above the platform need no coordinates normal to the vertical plane of motion."""
     if len(scene.bodies) == 1:
         return Reduction(False, "one body: none above it whose coordinates could be left out")
     return is_planar(scene)
 
 
 def turn_loading_to_x(scene: Scene) -> Scene:
-    """Return a planar scene turned about the vertical so that its loading acts along x: the same mu for every body."""
+    """Return a planar scene turned about the vertical to load it along x, which keeps every body's amplification."""
     table = scene.model_dump(exclude_none=True)
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # the loading acts along y: what links have along y becomes theirs along x
@@ -133,7 +133,7 @@ def turn_loading_to_x(scene: Scene) -> Scene:
 
 
 def is_mirror_symmetric(scene: Scene) -> Reduction:
-    """Find whether supports and bodies are their own mirror images, which gives mu the symmetries of the loading."""
+    """Find whether supports and bodies equal their mirror images: amplifications then have the loading's symmetries."""
     supports = scene.isolator.supports or 0
     if scene.offsets.any():
         return Reduction(False, "a center of mass off the axis: mirrored, it is another one")
@@ -159,14 +159,14 @@ def find_unused_harmonics(scene: Scene) -> list[int]:
 
 
 def has_no_friction_law(scene: Scene) -> Reduction:
-    """Find whether no friction is left to regularize or to resolve, so that such models repeat the exact equations."""
+    """Find whether a scene has no friction, so that models with regularized friction repeat the exact equations."""
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "friction")
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
 
 
 def is_linear(scene: Scene) -> Reduction:
-    """Find whether the small equations (4.3)-(4.4) are linear, so that the motion is a sum of one per harmonic."""
+    """Find whether the small-displacement equations (4.3)-(4.4) are linear, so that motions by each harmonic add up."""
     # Lubrication is not linear: its main force f_c v is, but (4.3) also keeps a product of displacement and velocity.
     if scene.lubricated and scene.friction_coefficient > 0.0:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")
@@ -184,7 +184,7 @@ def is_linear(scene: Scene) -> Reduction:
 
 
 def bound_fastest_rate(scene: Scene) -> float:
-    """Return an upper bound on every angular frequency and decay rate of the small equations, rad/s."""
+    """Return an upper bound, rad/s, on angular frequencies and decay rates in the equations for small displacements."""
     below = np.vstack([np.full((1, 2), scene.total_mass * GRAVITY / scene.radius), scene.stiffness])
     above = np.vstack([scene.stiffness, np.zeros((1, 2))])
     natural = math.sqrt(float((2.0 * (below + above) / scene.masses[:, None]).max()))  # bound by Gershgorin's circles

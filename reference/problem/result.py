@@ -42,14 +42,14 @@ def _join_facts(facts: Sequence[str]) -> str:
 @dataclass(frozen=True, repr=False)
 class Amplification:
     """
-    Dynamic amplification factors mu_i of (5.1) for N bodies and phase pairs of any shape, (...): (M,) for a list.
+    Amplification mu_i (5.1) of N bodies, peak acceleration over the ground's, for phase pairs of any shape (...).
 
     Attributes
     ----------
     mu : ndarray, (..., N)
-        NaN where a point has no answer.
+        Amplification; NaN where a point has no answer.
     error : ndarray, (..., N)
-        Estimated absolute error of mu.
+        Estimated absolute error of the amplification.
     status : ndarray of str, (...,)
         "ok" or another value of `Outcome`.
     instant : ndarray, (...,), s
@@ -66,13 +66,13 @@ class Amplification:
     scene_name, model : str
         What was computed, and by which equations or model of the engine. "" where that was not stated.
     reading : str
-        Which reading of (5.1) mu has: "as integrated" or "literal supremum". "" without dry friction, where both agree,
+        How the peak in (5.1) is read: "as integrated" or "literal supremum". "" without dry friction, where both agree,
         and where it was not stated: then `law` is "", too.
     law : str
         Law of friction, and what the error leaves out of it.
     regularization_effect : ndarray, (..., N)
-        Change of mu from v_reg to a tenth of it: an estimate of what regularization does. NaN where that was not asked
-        for and where either has no answer; 0 without dry friction.
+        Change of the amplification from v_reg to a tenth of it: an estimate of what regularization does. NaN where that
+        was not asked for and where either has no answer; 0 without dry friction.
     displacement_effect : ndarray, (...,), m
         The same change of `displacement`.
     """
@@ -104,7 +104,7 @@ class Amplification:
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
 
     def __repr__(self) -> str:
-        """Return factors, statuses, reading of (5.1) and friction law in one line."""
+        """Return amplifications, statuses, how the peak in (5.1) is read, and friction law in one line."""
         points, bodies = self.status.size, self.mu.shape[-1]
         if points == 1:
             rows = zip(self.mu.reshape(-1), self.error.reshape(-1))
@@ -133,7 +133,7 @@ class Amplification:
 
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
         """
-        Return the same factors with their phase pairs arranged in another shape.
+        Return the same amplifications with their phase pairs arranged in another shape.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class Amplification:
 
     def to_xarray(self) -> xr.Dataset:
         """
-        Return the result with coordinates and units.
+        Return the result as an xarray data set, with phases as coordinates and with units.
 
         Returns
         -------
@@ -228,7 +228,7 @@ class Amplification:
 @dataclass(frozen=True, repr=False)
 class Trajectory:
     """
-    One motion in the plate's frame at T instants, N bodies, axes x, y, z.
+    One motion of N bodies relative to the ground at T instants, along axes x, y, z.
 
     Attributes
     ----------
@@ -241,7 +241,7 @@ class Trajectory:
     contact_force : ndarray, (T,), N
         Normal reaction of the isolator.
     stick : list of (float, float), s
-        Start and end of every interval of rest; of elastic friction where that yields before it slides.
+        Start and end of every interval of rest; if friction is elastic before it slides, of intervals without sliding.
     status : str
     instant : float, s
         As in `Amplification`.
@@ -250,9 +250,9 @@ class Trajectory:
     extra : dict of str to ndarray
         What only one model has, by name.
     peak : ndarray, (N,), m/s^2
-        Largest absolute acceleration of the run, found between the samples and at one-sided limits; mu of (5.1) follows
-        from it. The samples of `absolute_acceleration` miss it by some percent at a stop or under a record. NaN if
-        nothing was run.
+        Largest absolute acceleration of the run, found between the samples and at one-sided limits; the amplification
+        follows from it. The samples of `absolute_acceleration` miss it by some percent at a stop or under a record. NaN
+        if nothing was run.
     accuracy : Accuracy, optional
         What errors are estimated from. None of a motion that ended early, and of a single run.
     ground : ndarray, (T, 3), m/s^2
@@ -327,7 +327,7 @@ class Trajectory:
 
     def to_xarray(self) -> xr.Dataset:
         """
-        Return the motion with coordinates and units.
+        Return the motion as an xarray data set over time, body and axis, with units.
 
         Returns
         -------
@@ -401,7 +401,7 @@ class Trajectory:
 @dataclass(frozen=True)
 class Accuracy:
     """
-    Basis of the errors of a motion: less accurate runs of the same motion.
+    Less accurate runs of a motion, from which its errors are estimated, and the weights of these runs.
 
     Attributes
     ----------
@@ -444,7 +444,7 @@ class Accuracy:
 @dataclass(frozen=True)
 class State:
     """
-    Initial displacement and velocity relative to the plate, axes x and y.
+    Initial displacement and velocity of all bodies relative to the ground, along x and y.
 
     Attributes
     ----------
@@ -461,7 +461,7 @@ class State:
     velocity: Array
 
 
-require_motion = require_type(  # decorator of functions of a Trajectory: TypeError for any other argument
+require_motion = require_type(  # decorator: the function raises TypeError unless it gets a Trajectory
     Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return"
 )
 """Decorator of functions whose first argument is a motion."""

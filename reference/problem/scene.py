@@ -36,12 +36,12 @@ from reference.support.scene_error import MisfitError, SceneError
 MAX_BODIES = 10_000  # largest number of bodies in a scene
 MIN_STATIC_SHARE = 1e-9  # smallest load of a support at rest, over the weight: a smaller one counts as none
 MAX_SUPPORT_DEFLECTION = 0.1  # largest deflection of the supports under the weight, over the radius
-DERIVED_ROUNDING = 1e-12  # relative rounding error of a value that is computed from other values
+DERIVED_ROUNDING = 1e-12  # relative rounding error that is allowed when a computed value is checked against its range
 
 
 class Scene(Table):
     """
-    A validated scene. Arrays are SI; body index 0 is the platform, axis index 0 is x.
+    Isolated structure and its ground motion, validated, in SI units; body index 0 is the platform, axis index 0 is x.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class Scene(Table):
 
     @model_validator(mode="after")
     def _check_all_tables(self) -> Scene:
-        """Check the rules that join several tables of the scene."""
+        """Check the rules that concern several tables of the scene together."""
         self._check_links()
         self._check_bars()
         self._check_superstructure()
@@ -165,7 +165,7 @@ class Scene(Table):
                 raise MisfitError(name, value, span.rule)
 
     def _derive_values(self) -> dict[str, tuple[float, Range]]:
-        """Return the values computed from several keys with their ranges, by their names in an error."""
+        """Return values computed from several keys, with their allowed ranges, by the names that an error shows."""
         derived = {
             "isolator: radius in m": (self.radius, range_of(Isolator, "radius")),
             "bodies: total mass in kg": (self.total_mass, range_of(Body, "mass")),
@@ -321,7 +321,7 @@ class Scene(Table):
             return self.isolator.radius
         assert self.isolator.period is not None
         pace = self.isolator.period / (2.0 * math.pi)
-        return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; a power raises an error
+        return GRAVITY * pace * pace  # a product overflows to inf, which validation refuses; pace**2 would raise
 
     @property
     def flat(self) -> bool:
@@ -381,7 +381,7 @@ class Scene(Table):
 
     @property
     def support_places(self) -> NDArray[np.float64] | None:
-        """Horizontal coordinates of the supports, (K, 2), m, from the axis of the links; None if the scene has none."""
+        """Horizontal coordinates of the supports, (K, 2), m, from the vertical axis of the links; None without any."""
         supports, ring = self.isolator.supports, self.isolator.ring
         if isinstance(supports, list):
             return np.array(supports)
@@ -398,23 +398,23 @@ class Scene(Table):
 
     @cached_property
     def offsets(self) -> NDArray[np.float64]:
-        """Horizontal coordinates of the centers of mass from the axis of the links, (N, 2), m."""
+        """Horizontal coordinates of the bodies' centers of mass from the vertical axis of the links, (N, 2), m."""
         return np.array([body.offset or (0.0, 0.0) for body in self.bodies], dtype=float)
 
     @cached_property
     def yaws(self) -> NDArray[np.float64]:
-        """Angles about the vertical of the boxes and of the links below them, (N,), rad."""
+        """Yaw angles of the bodies, which are boxes, and of the links below them, (N,), rad."""
         return np.array([body.yaw or 0.0 for body in self.bodies])
 
     @property
     def center_of_mass(self) -> NDArray[np.float64]:
-        """Horizontal coordinates of the center of mass of all bodies from the axis of the links, (2,), m."""
+        """Horizontal coordinates of the common center of mass from the vertical axis of the links, (2,), m."""
         place: NDArray[np.float64] = self.masses / self.total_mass @ self.offsets
         return place
 
     @property
     def lubricated(self) -> bool:
-        """True for mu = f_c |v| (3.14), False for dry friction."""
+        """True if the friction coefficient is f_c times the slip speed (3.14), False for dry friction."""
         return self.isolator.lubrication is not None
 
     @property
@@ -428,7 +428,7 @@ class Scene(Table):
 
     @cached_property
     def dry_friction(self) -> DryFriction:
-        """Law of dry friction mu(|v|, N); a law without friction for a lubricated scene."""
+        """Law of the dry friction coefficient by slip speed and normal force; zero friction for a lubricated scene."""
         sliders = 1 if self.support_places is None else len(self.support_places)
         return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
 
@@ -438,7 +438,7 @@ class Scene(Table):
         return self.friction_coefficient * self.total_mass * GRAVITY / self.dry_friction.stiffness
 
     def require_rigid_friction(self, user: str) -> None:
-        """Raise SceneError if friction yields; `user` names the part of the program that needs rigid friction."""
+        """Raise SceneError if friction is elastic at rest; user: what part of the program needs it rigid."""
         table = self.isolator.friction
         if isinstance(table, VelocityFriction) and self.dry_friction.elastic:
             name = "initial_stiffness" if table.yield_displacement is None else "yield_displacement"
@@ -486,9 +486,9 @@ class Scene(Table):
     @cached_property
     def record(self) -> NDArray[np.float64]:
         """
-        Knots of a recorded motion, (K, 4): s from 0 on, and xi'', eta'', zeta'', m/s^2, scaled; (0, 4) without one.
+        Samples of a record, (K, 4): time from 0 on, s, accelerations along x, y, z, m/s^2, scaled; (0, 4) without one.
 
-        A last sample that is not zero is followed by a knot at zero, as far behind it as the sample before.
+        A last sample that is not zero is followed by a zero sample, as far behind it as the sample before.
         """
         if not isinstance(self.excitation, Record):
             return np.zeros((0, 4))
@@ -530,7 +530,7 @@ class Scene(Table):
         )
 
     def loading_values(self, amplitude: float) -> dict[str, Any]:
-        """Return the values that scale the loading to an amplitude, m/s^2. Raises SceneError as `with_amplitude`."""
+        """Return keys with values that scale the loading to an amplitude, m/s^2. Raises as `with_amplitude`."""
         largest, stated = self.largest_acceleration, amplitude
         amplitude = as_float(stated)
         if not 0.0 < amplitude <= range_of(Excitation, "amplitudes").highest:

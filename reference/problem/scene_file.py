@@ -25,10 +25,11 @@ FILE_KEYS = {
     "isolator": (*KEYS["isolator"], "bounds"),
 }
 RANGE_KEYS, VALUES_KEYS = {"range", "steps"}, {"values"}  # keys of an inline table that gives a key several values
-MAX_BYTES = 2**22  # a scene file has at most so many bytes
-MAX_NESTING = 10  # a scene file nests at most so many tables and lists in one another
+MAX_BYTES = 2**22  # largest size of a scene file, bytes
+MAX_NESTING = 10  # largest number of tables and lists within one another in a scene file
 RECORD_KEYS = (*TWO_FREQUENCY_KEYS, *READER_KEYS)  # keys of [excitation] that the reader of records checks
-RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # for an unreadable record
+# Takes the place of a record that cannot be read, so that all other keys of the scene are still checked
+RECORD_AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}
 # Pattern of one part of a dotted TOML key: bare, in double quotes, or in single quotes
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 # Pattern of a dotted key with too many parts: the TOML parser's time grows as the square of their number.
@@ -100,7 +101,7 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
 
 
 def scale_loading(scene: Scene, amplitude: float | None) -> Scene:
-    """Return the scene of a file under the name of the file, with its loading scaled to an amplitude, m/s^2."""
+    """Return the scene, under the same name, with its loading scaled to an amplitude, m/s^2; unchanged for None."""
     return scene if amplitude is None else scene.with_values({**scene.loading_values(amplitude), "name": scene.name})
 
 

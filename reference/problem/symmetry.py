@@ -20,13 +20,13 @@ Array = NDArray[np.float64]
 
 
 def find_half_turns(scene: Scene) -> NDArray[np.intp]:
-    """Return the shifts of both phases by 0 or pi that leave mu unchanged, (K, 2); the first is no shift."""
+    """Return the shifts of both phases, in units of pi, that keep every amplification, (K, 2), first no shift."""
     turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
     return turns if has_one_axis_per_harmonic(scene) else turns[: 2 if has_half_turn_symmetry(scene) else 1]
 
 
 def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """Return for every phase pair of a grid, (grid^2,), the index of the pair of equal mu that stands for it."""
+    """Return for every phase pair of a grid, (grid^2,), the index of the pair of equal amplification to be solved."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = find_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
@@ -36,7 +36,7 @@ def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 
 def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
-    """Return the fewest phase pairs (P, 2), rad, that give a surface on a grid, and which of them each point takes."""
+    """Return the fewest phase pairs (P, 2), rad, that give a surface on a grid, and each point's index among them."""
     solved, taken = np.unique(indices_of_solved_pairs(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
 
@@ -44,7 +44,7 @@ def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
 def complete_surface(
     scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]
 ) -> tuple[Array, Array, list[str]]:
-    """Return mu and error (grid, grid, N) on phases 2 pi k / grid from the fewest pairs, and all their statuses."""
+    """Return amplification and error (grid, grid, N) on a grid of phases from the fewest pairs, and all statuses."""
     phases, taken = distinct_pairs(scene, grid)
     answer = solve(scene, phases)
     return answer.mu[taken], answer.error[taken], sorted(set(map(str, answer.status)))

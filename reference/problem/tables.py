@@ -141,11 +141,11 @@ class Isolator(Table):
         return len(self.supports) if isinstance(self.supports, list) else self.supports
 
 
-MIN_SPREAD_BARS = 3  # a ring of fewer bars bends more easily about one direction than about another
+MIN_SPREAD_BARS = 3  # smallest number on a ring: fewer bars are not equally stiff in bending about all directions
 
 
 class Bars(Table):
-    """Upright bars clamped at both ends, of the same stiffness in every horizontal direction: the link of (2.3)."""
+    """Upright bars clamped at both ends, equally stiff in every horizontal direction, which link two bodies (2.3)."""
 
     count: int = key("number n of bars", Range(1, 1_000_000), default=REQUIRED)
     bending_stiffness: Positive = key("bending stiffness E J of one bar", Range(1e-30, 1e30, "N m^2"), default=REQUIRED)
@@ -184,11 +184,11 @@ class Bars(Table):
 
     @property
     def stiffness(self) -> float:
-        """Stiffness of the link without load, k = 12 n E J / l^3, N/m: (2.3) with its factor 12 put right."""
+        """Stiffness of the link without load, k = 12 n E J / l^3, N/m: (2.3) with the factor 12 corrected."""
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
     def factors(self, load: float) -> StabilityFunctions:
-        """Return the stiffness factors of the bars under a load, N, on all together; 1 without `load_effect`."""
+        """Return the factors by which a load, N, on all bars changes their stiffness; 1 without `load_effect`."""
         if self.load_effect is None:
             return stability_functions(0.0)
         return stability_functions(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
@@ -303,6 +303,6 @@ class Record(Table):
 
 
 def kind_of_excitation(excitation: Any) -> str:
-    """Return the form that the user means an excitation to have: two frequencies or a recorded motion."""
+    """Return which form of excitation the user means: two frequencies or a recorded motion."""
     recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
     return EXCITATION_FORMS[int(recorded)]

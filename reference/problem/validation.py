@@ -19,17 +19,18 @@ from reference.support.scene_error import (
     unknown_key,
 )
 
-# Names of the forms of a table or key: pydantic puts the name of the intended form into the location of an error
+# Names of the forms that a table or key may have; pydantic puts the name of the meant form into an error's location
 EXCITATION_FORMS = ("two frequencies", "recorded motion")
 SUPPORT_FORMS = ("number of supports", "positions of supports")  # forms of `isolator.supports`
 FRICTION_FORMS = ("constant friction", "velocity-dependent friction")  # forms of `isolator.friction`
-ALONG_AXES = {  # form of the keys of a body whose values are lists
+ALONG_AXES = {  # keys of a body whose values are lists: form of the list in error messages
     "stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s", "size": "[x, y, z], m", "offset": "[x, y], m",
 }  # fmt: skip
-LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list means several sliding surfaces
-# For each error that pydantic raises on the length of a list: its name of the limit, and the words before the limit
+# Keys for which a list means several sliding surfaces, which no model has: the error says so
+LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")
+# For each error of pydantic on a list's length: pydantic's name of the limit, and words before it in the message
 LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
-MISSING_TABLE_RULES = {  # rules in the errors for missing tables
+MISSING_TABLE_RULES = {  # text of the error for a missing table
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
 }
@@ -60,10 +61,10 @@ def first_scene_error(
     """
     found = invalid.errors(include_url=False)
     unknown = {error["loc"][:-1] for error in found if error["type"] == "extra_forbidden"}
-    # A misspelt key is unknown and its right name is missing: the first error says more.
+    # A misspelled key gives two errors, an unknown key and a missing one: only the first is kept, as it says more.
     said = [error for error in found if not (error["type"] == "missing" and error["loc"][:-1] in unknown)]
     without_loading = any(error["type"] == "missing" and error["loc"] == ("excitation",) for error in said)
-    if without_loading:  # a record would give the duration as well
+    if without_loading:  # do not ask for the duration, too: a record would give it
         said = [error for error in said if error["type"] != "missing" or error["loc"] != ("duration",)]
     errors = [_word_error(file, error, keys) for error in said] + ([unread] if unread else [])
     return join_errors(errors, tables)

@@ -11,22 +11,23 @@ from reference.records.samples import AXES, Array
 from reference.support.constants import GRAVITY
 
 LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.005  # g: peaks outside these limits give a warning; 0.005 g is 0.05 m/s^2
-G_UNIT_QUESTION = (
+G_UNIT_QUESTION = (  # end of a warning that a peak is very small
     'values in g that are called m/s^2? Write [g] in the head of the file, or unit = "g" beside a plain text, '
     "which motions.csv has in its column unit"
 )
 MAX_STEP_VARIATION = 0.01  # relative difference of two steps above which a column of times counts as uneven
 MIN_SAMPLES = 100  # in a record with fewer samples the zero line is not checked
-# A final velocity above this share of the largest gives a warning; 289 public records have at most 0.07
+# A warning is due if the final velocity exceeds this share of the largest departure of the velocity from a straight
+# line; 289 public records have at most 0.07
 MAX_FINAL_VELOCITY_SHARE = 0.2
-MIN_CLIPPED_SAMPLES = 4  # so many equal samples in a row at the peak count as clipped
+MIN_CLIPPED_SAMPLES = 4  # at least this many equal samples in a row at the peak count as clipped
 EQUAL_SAMPLE_TOLERANCE = 1e-9  # relative difference below which two samples count as equal
 
 
 @dataclass(frozen=True)
 class DirectionRead:
     """
-    One direction of a record as read, before scale and detrend.
+    Peak, mean and final motion of one direction of a record as read, before it is scaled and detrended.
 
     Attributes
     ----------
@@ -136,7 +137,7 @@ class RecordDescription:
 def describe_samples(
     title: str, origin: Sequence[str], samples: Array, scale: float = 1.0, detrend: str | None = None
 ) -> RecordDescription:
-    """Return the description of samples (K, 4), s and m/s^2, as read; scale and detrend: as the scene applies them."""
+    """Return the description of samples (K, 4), time, s, and x, y, z, m/s^2; scale, detrend: applied by the scene."""
     time, steps = samples[:, 0], np.diff(samples[:, 0])
     step = float(np.median(steps))
     read, warnings = [], []

@@ -24,7 +24,7 @@ WORD_INSIDE_NAME = re.compile(  # channel code between separators inside the nam
     rf"(?P<base>.+[._-])(?P<word>(?:{'|'.join(CHANNEL_BANDS)})[ENZ123])(?P<rest>[._-].+)", re.IGNORECASE
 )
 WORD_AS_SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)  # direction as suffix of a file
-# Degrees between the azimuths of two horizontal components: few instruments are less or more than a right angle apart
+# Degrees: two azimuths this far apart count as horizontal components at a right angle; few instruments are farther off
 RIGHT_ANGLE_RANGE = 75.0, 105.0
 KNOWN_SPELLINGS = (  # examples of spellings of directions, for an error
     "H1 H2 V, azimuths as 090, E N Z, EW NS UD, L T V, LN TR, L1 T1, FN FP, UP DWN, HNE HNN HNZ, N18E S72E, X Y Z"

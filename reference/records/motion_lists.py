@@ -22,18 +22,18 @@ COLUMNS = ("name", *AXES, "factor")  # columns of motions.csv
 OPTION_COLUMNS = ("step", "unit", "skip", "column")  # optional columns with options of plain texts
 MAGNITUDE_COLUMN = "magnitude"  # optional column with the magnitude of the earthquake
 MAX_BYTES = 2**20  # largest size of motions.csv, bytes
-MAX_NAMED_FILES = 3  # a sentence names at most so many ignored files of a kind
-MAX_FACTOR = 1e6  # largest factor of a motion
+MAX_NAMED_FILES = 3  # largest number of ignored files of a kind that a sentence names
+MAX_FACTOR = 1e6  # largest scale factor of a motion
 MAX_STEP = 1e3  # s, largest sampling interval of a plain text
 MAX_NUMBER = 10_000  # largest number of lines to skip, and largest number of a column
 MAX_MAGNITUDE = 10.0  # largest magnitude of an earthquake
-MAX_LISTED_FAULTS = 10  # an error lists the faults of so many lines
+MAX_LISTED_FAULTS = 10  # largest number of lines whose faults an error lists
 
 
 @dataclass(frozen=True)
 class Motion:
     """
-    One motion of a suite: its name, its files by axis ("" for one file with all directions), and its factor.
+    One motion of a suite: name, files by axis ("" for one file with all directions), and scale factor.
 
     magnitude: of the earthquake, None where the list does not state it. options: what the list states of the plain
     texts, by axis. line: its number in the list, 0 of a motion that is not listed. folder: that of the list.
@@ -123,7 +123,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
 
 
 def _split_cells(text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return columns in small letters, and the cells of all other lines with line numbers. Raises RecordError."""
+    """Return column names in lower case, and the cells of all other lines with line numbers. Raises RecordError."""
     first = next((line for line in text.splitlines() if line.strip()), "")
     reader = csv.reader(text.splitlines(), delimiter=next((mark for mark in "\t;," if mark in first), ","))
     rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
@@ -177,14 +177,14 @@ def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) ->
 
 
 def _whole_number(name: str, text: str) -> int:
-    """Return a whole number up to MAX_NUMBER. Raises RecordError."""
+    """Return the whole number up to MAX_NUMBER that a cell states; name: its column. Raises RecordError."""
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) <= MAX_NUMBER):
         raise RecordError(f"{name} = {quote(text)}: must be a whole number up to {MAX_NUMBER}")
     return int(text)
 
 
 def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
-    """Return a number of a line, None for an empty cell. Raises RecordError."""
+    """Return the number in column `name` of a line, at most `most`; None for an empty cell. Raises RecordError."""
     text = (row.get(name) or "").replace(",", ".")
     if not text:
         return None

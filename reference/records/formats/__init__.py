@@ -40,7 +40,7 @@ READERS = (  # readers of all formats: the first that recognizes a file reads it
 )
 READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}  # by suffix of the file
 NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
-OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a record in a scene file that is one file
+OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a scene's record that is a single file
 
 
 def recognize_format(text: str, suffix: str = "") -> Reader | None:

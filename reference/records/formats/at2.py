@@ -14,9 +14,9 @@ from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
 FORMAT = "PEER .AT2"  # name of the format
-MAX_HEADER_LINES = 20  # the header ends within so many lines
-MAX_COUNT_DIGITS = 9  # digits of the number of samples, NPTS
-SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit glued to the value of DT
+MAX_HEADER_LINES = 20  # largest number of lines in the header
+MAX_COUNT_DIGITS = 9  # largest number of digits of NPTS, the number of samples
+SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit of time written without a blank after the value of DT
 NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)  # words in files without accelerations
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)  # header line with a unit
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)

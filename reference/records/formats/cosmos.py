@@ -27,11 +27,11 @@ REAL_HEADER = re.compile(  # line above the header's real numbers, with their co
     r"\s*([0-9]{1,9}) Real-header values follow on +([0-9]{1,9}) lines, Format ?= ?\([0-9]+[FE]([0-9]{1,3})\.",
     re.IGNORECASE,
 )
-STEP_PLACE = 33  # place of the sampling interval, s, among the numbers of the real header
+STEP_PLACE = 33  # index, from 0, of the sampling interval, s, among the header's real numbers
 
 
 def recognizes_cosmos(head: Sequence[str]) -> bool:
-    """Return True if the first lines have a block of accelerations."""
+    """Return True if one of the first lines announces accelerations as COSMOS or CSMIP files do."""
     return any(BLOCK_HEADER.match(line) or CSMIP_BLOCK_HEADER.match(line) for line in head)
 
 
@@ -78,6 +78,6 @@ def _header_step(lines: Sequence[str]) -> float:
 
 
 def _split_fields(number: int, line: str, width: int) -> list[float]:
-    """Return the numbers in a line of fields of this width. Raises RecordError."""
+    """Return the numbers in a line whose fields have `width` letters; number: of the line. Raises RecordError."""
     cells = [line[at : at + width].strip() for at in range(0, len(line.rstrip()), max(width, 1))]
     return [parse_number(number, cell) for cell in cells if cell]

@@ -29,8 +29,8 @@ from reference.records.samples import AXES, RecordError, RecordSamples
 from reference.support.arguments import quote
 
 FORMAT = "CSV"  # name of the format
-HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"  # words of errors
-MAX_PREAMBLE = 20  # at most so many lines may precede the header
+HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"  # words in error messages
+MAX_PREAMBLE = 20  # largest number of lines above the header
 TIME_NAMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
 SECOND_NAMES = {"", "s", "sec", "secs", "second", "seconds", "秒"}  # spellings of the unit of time
 ACCELERATION_NAMES = {  # words in a header that name an acceleration
@@ -173,7 +173,7 @@ def _header_columns(line: int, cells: list[str], unit: str | None, name: str) ->
 
 
 def _with_unit(line: int, column: HeaderCell, unit: str | None, name: str) -> HeaderCell:
-    """Return the column with its unit checked. Raises RecordError."""
+    """Return the column with its unit checked, an acceleration with its factor to m/s^2. Raises RecordError."""
     cell, (_, stated) = column.text, _name_and_unit(column.text)
     if column.kind == "time" and stated.lower() not in SECOND_NAMES:
         raise RecordError(f"line {line}: column {quote(cell)}: unknown unit {quote(stated)}: write time [s]")
@@ -233,7 +233,7 @@ def _header_column(place: int, cell: str) -> HeaderCell:
 
 
 def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
-    """Return the columns by axis, or the only one, which names no direction, under "". Raises RecordError."""
+    """Return acceleration columns by axis; a single one that names no direction under "". Raises RecordError."""
     words = [column.word.lower() for column in columns]
     if twice := [column.word for column in columns if words.count(column.word.lower()) > 1]:
         raise RecordError(f"line {line}: column {twice[0] or 'of the acceleration'} is there twice")
@@ -259,7 +259,7 @@ def _direction_of(column: HeaderCell) -> Direction | None:
 
 
 def _read_table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:
-    """Return the values of the needed columns, (K, len(columns)). Raises RecordError."""
+    """Return the values of all columns, (K, len(columns)), with zeros in those not needed. Raises RecordError."""
     needed = [column.place for column in columns if column.kind != "other"]
     table, commas, points = np.zeros((len(rows), len(columns))), 0, 0
     for row, (number, line) in enumerate(rows):

@@ -32,12 +32,12 @@ from reference.support.arguments import as_float, quote
 
 FORMAT = "plain text"  # name of the format
 OPTIONS = ("step", "unit", "skip", "column")  # keys with which a scene states how to read a plain text
-MAX_SKIP = 10_000  # `skip` may leave out at most so many lines
-MAX_COLUMN = 100  # largest number of the column that `column` chooses
-MAX_STEP_VARIATION = 0.01  # steps of a column of times differ by at most this share of their mean
-MAX_RECORD_COLUMNS = 4  # a line of at most so many values may be a time and three directions, or a run of values
+MAX_SKIP = 10_000  # largest number of lines that `skip` leaves out
+MAX_COLUMN = 100  # largest column number that `column` may state
+MAX_STEP_VARIATION = 0.01  # a column is a time if its steps differ by at most this share of their mean
+MAX_RECORD_COLUMNS = 4  # lines of at most so many values may be rows of a table, a time and three directions
 PROPOSAL_ROWS = 50  # lines of numbers that are read to propose options for a plain text
-MIN_TIME_ROWS = 3  # so many rows at least show that a column is a time
+MIN_TIME_ROWS = 3  # smallest number of rows that show whether a column is a time
 NAMED_UNIT = re.compile(  # unit of acceleration in a header
     r"\b(?:[cm]?m|in|ft) ?/ ?s(?:ec)?(?: ?/ ?s(?:ec)?|\^?\*{0,2}2)|\bgals?\b|[(\[]g[)\]]|(?<=\bin )g\b|(?<=\bof )g\b",
     re.IGNORECASE,
@@ -58,7 +58,7 @@ def read_plain_text(
     text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
 ) -> RecordSamples:
     """
-    Return the values of a text behind `skip` lines: all in their order (`column` 0), or those of one column, from 1.
+    Return the values of a text after `skip` lines: all in file order (`column` 0), or those of one column, from 1.
 
     step: s. unit: one of `UNIT_NAMES`. Raises RecordError, with the line to write where one of them is missing.
     """
@@ -78,7 +78,7 @@ def read_plain_text(
 
 @lru_cache(maxsize=64)  # the cache hashes the arguments, whose types the caller has checked
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
-    """Return the values of a text; spacing: step, s; factor: of its unit to m/s^2. Raises RecordError."""
+    """Return the accelerations of a text; spacing: time step, s; factor: of its unit to m/s^2. Raises RecordError."""
     lines, propose = text.splitlines(), partial(propose_line, text, name)
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: ", propose())
@@ -92,12 +92,12 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
 
 
 class Proposal(NamedTuple):
-    """Options proposed for reading a plain text (columns count from 1), and the names of those that it leaves open."""
+    """Options that a scene may state to read a plain text, columns counted from 1; missing: those to be guessed."""
 
     step: float
     unit: str
     skip: int
-    columns: tuple[int, ...]  # () if all values count in the order of the file
+    columns: tuple[int, ...]  # numbers from 1; () if all values in file order are accelerations
     missing: tuple[str, ...]
 
 
@@ -125,7 +125,7 @@ def propose_options(text: str) -> Proposal | str:
 
 
 def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool) -> tuple[int, ...]:
-    """Return the columns of accelerations, from 1, behind that of the time; () if all values count in their order."""
+    """Return the numbers, from 1, of the columns of accelerations; () if all values in file order are accelerations."""
     side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MAX_RECORD_COLUMNS
     if not timed and (counted or not side_by_side):
         return ()
@@ -133,7 +133,7 @@ def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool
 
 
 def propose_line(text: str, name: str) -> str:
-    """Return the table to write for a plain text in a scene; for any other text, why it is no record."""
+    """Return the line of a scene file with which a plain text is read; for any other text, why it is no record."""
     proposal = propose_options(text)
     if isinstance(proposal, str):
         return proposal
@@ -144,12 +144,12 @@ def propose_line(text: str, name: str) -> str:
 
 
 def word_guesses(missing: Sequence[str]) -> str:
-    """Return a sentence on the numbers of a proposal that are guessed; "" if the file states all."""
+    """Return words on which of step and unit the file leaves open, so that they are guessed; "" if it states both."""
     return f", with the {' and the '.join(missing)} of your source, which the file does not state" if missing else ""
 
 
 def _first_data_line(lines: Sequence[str]) -> int | None:
-    """Return the first line, from 0, after which all lines are numbers; a line of count and step is in the header."""
+    """Return the index, from 0, of the first line of numbers; a line 'count step' still belongs to the header."""
     for number, line in enumerate(lines[:MAX_HEADER_LINES]):
         if _parse_number_line(line) and not _states_count(lines, number):
             return number
@@ -157,7 +157,7 @@ def _first_data_line(lines: Sequence[str]) -> int | None:
 
 
 def _states_count(lines: Sequence[str], number: int) -> bool:
-    """Return True if a line 'count step' states how many values follow."""
+    """Return True if the line, 'count step', states correctly how many values follow."""
     stated = COUNT_AND_STEP.fullmatch(lines[number][:MAX_LINE])
     behind = sum(len(line.split()) for line in lines[number + 1 :])
     return stated is not None and len(stated[1]) < 10 and int(stated[1]) == behind
@@ -177,7 +177,7 @@ def _parse_number_line(line: str) -> list[float] | None:
 
 
 def _read_step(header: str) -> float | None:
-    """Return the step, s, that a header states; None if it states none."""
+    """Return the sampling interval, s, that a header states; None if it states none."""
     for line in header.splitlines():
         if match := COUNT_AND_STEP.fullmatch(line):
             return as_float(float(match[2])) or None
@@ -212,7 +212,7 @@ def _read_rows(
 def _column_values(
     rows: Sequence[tuple[int, list[float]]], column: int | None, counted: bool, propose: Callable[[], str]
 ) -> list[float]:
-    """Return the values of a column, or all in their order if nothing speaks against it. Raises RecordError."""
+    """Return the values of one column, or all in file order if nothing speaks against it. Raises RecordError."""
     if column:
         for number, row in rows:
             if len(row) < column:
