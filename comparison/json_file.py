@@ -13,13 +13,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from reference.support.files import read_file
 
-MAX_FILE_BYTES = 2**26  # bytes of the largest file that is read
+MAX_FILE_BYTES = 2**26  # size in bytes above which a stored file is refused
 
 T = TypeVar("T")
 
 
 def finite_or_none(value: float) -> float | None:
-    """Return a number as JSON can hold it: None for NaN and infinity."""
+    """Return the number, or None for NaN and infinity, which JSON cannot hold."""
     return value if math.isfinite(value) else None
 
 
@@ -29,7 +29,7 @@ def format_json(content: Mapping[str, Any] | Sequence[Any]) -> str:
 
 
 def replace_unstorable(content: Any) -> Any:
-    """Return the content with None for every number that JSON cannot hold."""
+    """Return the content with None instead of every NaN and infinity, which JSON cannot hold."""
     if isinstance(content, float):
         return finite_or_none(content)
     if isinstance(content, Mapping):
@@ -41,18 +41,18 @@ def replace_unstorable(content: Any) -> Any:
 
 @cache
 def _make_type_adapter(kind: Any) -> TypeAdapter[Any]:
-    """Return pydantic's reader of a type, made once for each type."""
-    return TypeAdapter(kind)  # Made once: making it takes a hundred times as long as reading a small file.
+    """Return the pydantic object that reads and checks data of a type, made once for each type."""
+    return TypeAdapter(kind)  # Making it takes a hundred times as long as reading a small file.
 
 
 def word_how_to_make(command: str) -> str:
-    """Return a sentence that a command, and no study, makes what a report would show."""
+    """Return a sentence for a report section that is missing: which command makes its content."""
     return f"{command} makes it, next to the report; the next run of the study shows it"
 
 
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
-    """JSON file of results that one command writes and the next report in the folder shows; what: its name in words."""
+    """JSON file that one command writes and the next report in the folder shows; what: its content in words."""
 
     name: str
     kind: type[T]
@@ -60,30 +60,30 @@ class StoredFile(Generic[T]):
     command: str
 
     def word_field(self, meaning: str) -> str:
-        """Return the description of the results field that holds this file, with the command that writes the file."""
+        """Return the description of the results field with this file's content: its meaning, and its command."""
         return f"{meaning}; null unless {self.command} left it next to the report"
 
     def word_how_to_make(self, argument: str = "") -> str:
-        """Return a sentence with the command that writes this file; argument: argument of the command, in words."""
+        """Return a sentence that names the command that writes this file; argument: what follows the command."""
         return word_how_to_make(f"{self.command}{argument}")
 
     def as_json(self, results: T) -> bytes:
-        """Return results as the JSON content of the file, which `load` reads."""
+        """Return results as the bytes of the JSON file, which `load` reads."""
         return format_json(asdict(results)).encode()  # type: ignore[call-overload]
 
     def read(self, content: bytes) -> T:
-        """Return the results in the content of a file. Raises ValidationError."""
+        """Return the results in the bytes of a file. Raises ValidationError if it holds anything else."""
         results: T = _make_type_adapter(self.kind).validate_json(content)  # type: ignore[arg-type]
         return results
 
     def load(self, folder: Path) -> T | None:
         """
-        Return the results that the command left in a folder, None without a file.
+        Return the results that the command left in a folder, None if the file is not there.
 
-        Raises ValueError, one line, for anything else.
+        Raises ValueError, with a message of one line, if the file cannot be read or holds anything else.
         """
         file = folder / self.name
-        if not os.path.exists(file):  # False, too, where the system refuses the name
+        if not os.path.exists(file):  # also False, without an error, for a path that the system does not allow
             return None
         try:
             return self.read(read_file(file, MAX_FILE_BYTES))
@@ -92,6 +92,6 @@ class StoredFile(Generic[T]):
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             place = ".".join(map(str, first["loc"]))
-            # The reason leaves out the content of the file, which may be somebody else's.
+            # The message does not quote the content of the file, which may be private.
             reason = f"{place}: {first['msg']}" if place else first["msg"]
             raise ValueError(f"{file}: not {self.what}: {reason}: run {self.command}") from None

@@ -25,7 +25,7 @@ from comparison.study.study import Study
 
 
 def _load_feature(folder: str) -> Feature:
-    """Return the feature that a folder below comparison/ defines."""
+    """Return the feature (analysis and report section) that is defined in a folder below comparison/."""
     feature: Feature = import_module(f"comparison.{folder}.feature").FEATURE
     return feature
 
@@ -57,15 +57,15 @@ FEATURES: tuple[Feature, ...] = (  # all features; the sections of the report st
     core.COMPLETION,
     core.PICTURES,
 )
-# computations of the features; a feature that only shows a section has none
+# Analyses of the features; a feature that only shows a report section has none
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
-# analyses that --only, --skip and --also may name
+# Names and rules of the features that the options --only, --skip and --also may name
 SELECTABLE = tuple(feature.selectable_entry for feature in FEATURES if feature.selectable)
-EVERYTHING = Selection(SELECTABLE)  # selection of all analyses, except those made on request, for every scene
+EVERYTHING = Selection(SELECTABLE)  # default selection: for every scene, all analyses but those made on request
 
 
 def _make_results_type(features: Sequence[Feature]) -> type[Results]:
-    """Return the results of a study with the fields of its features."""
+    """Return the class of a study's results, with the fields that the features add."""
     of_scenes: dict[str, Any] = {
         field.name: (field.kind, Field(description=field.meaning))
         for feature in features
@@ -83,28 +83,28 @@ def _make_results_type(features: Sequence[Feature]) -> type[Results]:
     return results
 
 
-StudyResults = _make_results_type(FEATURES)  # class of the results with the fields of all features
-make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)  # makes a report of all features
+StudyResults = _make_results_type(FEATURES)  # class of a study's results with the fields of all features
+make_report = partial(assemble_report, features=FEATURES, kind=StudyResults)  # function that makes a complete report
 
 
 def select_analyses(study: Study) -> list[Analysis[Any]]:
-    """Return those of ANALYSES that are selected for at least one scene of the study."""
+    """Return the analyses that are selected for at least one scene of the study."""
     return [analysis for analysis in ANALYSES if study.restrict_to(analysis.key).scenes]
 
 
 def estimate_stage_seconds(study: Study) -> dict[str, float]:
-    """Return the rough processor time of every stage of the analyses of a study, s."""
+    """Return the rough processor time of a study's analyses, s, by the stage name under which progress is shown."""
     return {each.stage: each.estimate_seconds(study.restrict_to(each.key)) for each in select_analyses(study)}
 
 
 def estimate_study_seconds(study: Study, stages: Mapping[str, float]) -> float:
-    """Return the rough processor time of all models and analyses of a study, s; stages: `estimate_stage_seconds`."""
+    """Return the rough processor time of a study, s: its models, and its analyses as listed in `stages`."""
     models = sum(estimate_model_seconds(study, model) for model in study.hierarchy)
     return models + sum(stages.values())
 
 
 def list_first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
-    """Return the tasks that do not depend on the surfaces."""
+    """Return the tasks of the analyses that need no surfaces of the amplification and so can run first."""
     return [
         task
         for analysis in analyses
@@ -114,5 +114,5 @@ def list_first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Ta
 
 
 def make_study_levels(study: Study) -> list[StudyLevel]:
-    """Return the levels of a study, from coarse to fine."""
+    """Return the levels of a study, from a coarse grid of phases to the full one."""
     return make_levels(study, {analysis.key: analysis.level for analysis in select_analyses(study)})

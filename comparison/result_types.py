@@ -19,24 +19,24 @@ from comparison.json_file import finite_or_none
 
 
 def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
-    """Return a number as JSON has it: "inf" for infinity, None for NaN."""
+    """Return a number in the form in which the result files store it: "inf" for +infinity, None for NaN."""
     return "inf" if value == math.inf else finite_or_none(value)
 
 
 def _null_as_nan(value: Any) -> Any:
-    """Return NaN for None, by which JSON stands for it, and any other value as it is."""
+    """Return NaN for None, which stands for NaN in JSON; any other value unchanged."""
     return math.nan if value is None else value
 
 
 def _replace_surrogates(value: Any) -> Any:
-    """Return the text with single surrogates, which UTF-8 cannot hold, replaced."""
+    """Return a text with code points that UTF-8 cannot hold (single surrogates) replaced; other values unchanged."""
     return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
 
 
 Array = NDArray[np.float64]
-# number that JSON holds as null if it is NaN or infinite
+# Number that is stored in JSON as null if it is NaN or infinite
 Number = Annotated[float, BeforeValidator(_null_as_nan), PlainSerializer(finite_or_none, return_type=float | None)]
-Radius = Annotated[  # number that may be infinite, as the radius of a plane
+Radius = Annotated[  # number that may be infinite, as the radius of a plane is; stored in JSON as "inf" then
     float,
     BeforeValidator(_null_as_nan),
     PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
@@ -46,13 +46,13 @@ Phases = tuple[Number, Number]  # phase pair (alpha1, alpha2), rad
 
 
 class Part(BaseModel):
-    """Part of the results, read from the attributes of an analysis's value; unknown keys are refused."""
+    """Base class of the parts of summary.json; made from an object with the same attributes; no unknown keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)
 
 
 class UncertainNumber(Part):
-    """A number with its error."""
+    """A number with its estimated absolute error."""
 
     value: Number
     """null without an answer"""
@@ -61,17 +61,17 @@ class UncertainNumber(Part):
 
 
 def require(holds: bool, rule: str) -> None:
-    """Raise ValueError with the rule unless it holds: fields of a result that contradict each other are refused."""
+    """Raise ValueError with the text `rule` unless it holds; used to refuse results that contradict themselves."""
     if not holds:
         raise ValueError(rule)
 
 
 def require_size(what: str, values: Sized, count: int) -> None:
-    """Raise ValueError unless there are `count` values."""
+    """Raise ValueError unless there are `count` values; what: their name in the message."""
     require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 
-RESULT_CONFIG = ConfigDict(  # how pydantic treats every result
+RESULT_CONFIG = ConfigDict(  # pydantic's options for every class of results: texts of fields, checks, no other keys
     use_attribute_docstrings=True, revalidate_instances="always", json_schema_extra={"additionalProperties": False}
 )
 
@@ -81,16 +81,16 @@ Class = TypeVar("Class")
 @dataclass_transform(frozen_default=True)
 def result(cls: type[Class]) -> type[Class]:
     """
-    Return a frozen dataclass that summary.json or a file of its own holds; unknown keys in a file are refused.
+    Make a class a frozen dataclass that can be stored in summary.json or another file; refuse unknown keys there.
 
     The text after the type of a field, or below the field, is its meaning, with the unit. What a property adds to the
     file is a `computed_field`.
     """
     for base in filter(is_dataclass, cls.__bases__):
         properties = TypeAdapter(base).json_schema()["properties"]
-        for field in fields(base):  # pydantic reads the attribute texts of a class itself, not of its base
+        for field in fields(base):  # copy the texts of the base class's fields, which pydantic does not inherit
             field.metadata = MappingProxyType({"description": properties[field.name]["description"]})
-    # A file also has the computed fields, so that unknown keys in it are ignored if there are such fields.
+    # A stored file also holds computed fields, which cannot be read back: ignore unknown keys if there are any.
     computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())
     cls.__pydantic_config__ = {**RESULT_CONFIG, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
     made = dataclass(frozen=True)(cls)

@@ -14,7 +14,7 @@ goes on where it stopped.
 if __name__ == "__main__":
     from comparison.cli.start import run_command
 
-    run_command("comparison.run")  # It does not return: the module is loaded once, under its own name.
+    run_command("comparison.run")  # does not return: it imports this module under its own name and runs it
 
 import sys
 from collections.abc import Sequence
@@ -56,7 +56,7 @@ from comparison.study.study import Study
 from comparison.surfaces.surfaces import make_surface_tasks
 from reference.support.command import stop_on_signals
 
-# Workers load Exudyn again; if that fails, the command ends here with one line.
+# Load Exudyn here, as worker processes will: if that fails, the command ends at once with one line.
 import_module("multibody.models.engine")
 
 
@@ -68,7 +68,7 @@ def main(
     models: Engines | None = None,
 ) -> int:
     """
-    Run the study that the command line asks for.
+    Run the study that the command line asks for; return the exit code.
 
     argv: words of the command line; those of this process if none are given. hierarchy: the models, each adding one
     effect to the one before. executor: what makes an executor for a number of workers, or any executor, which is left
@@ -98,7 +98,7 @@ def main(
 
 
 def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
-    """Return the command that computes the differences at a tenth of the tolerance, its report next to the first."""
+    """Return the command line for the differences at a tenth of the tolerance, its report next to the first."""
     place = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(place), "--only", "differences,budget"]
     return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
@@ -115,19 +115,19 @@ def _make_study(options: Options, hierarchy: Sequence[Model]) -> Study:
 
 class StudyRun:
     """
-    A study that the command line asks for: planned, or computed level by level and closed.
+    A study that the command line asks for: it is planned only, or computed level by level and reported.
 
-    Whatever ends it early, what is finished is kept, and the line printed says how to go on.
+    Whatever ends it early, finished results are kept, and a printed line says how to continue.
     """
 
     def __init__(self, options: Options, words: Sequence[str], hierarchy: Sequence[Model], began: Clock) -> None:
-        """Make the study that the options describe, and open the cache next to its report."""
+        """Make the study that the options describe, and the cache of its results next to the report."""
         self._options, self._words, self._began = options, words, began
         self._study, self._console = _make_study(options, hierarchy), make_wide_console()
         self._cache = Cache(locate_store(options.out))
 
     def describe(self) -> None:
-        """Print what was read of the scenes, implausible values in them, and which models are left out."""
+        """Print the properties read of each scene, implausible values, and scenes that lack data for a model."""
         print_models_left_out(self._console, self._study)
 
     def plan(self) -> None:
@@ -135,7 +135,7 @@ class StudyRun:
         print_plan(self._console, self._study, self._options)
 
     def compute(self, executor: Pool) -> int:
-        """Compute the study on the workers of the options and close it; return the exit code."""
+        """Compute the study on worker processes or a cluster, print its results; return the exit code."""
         options, models = self._options, {model.amplification for model in self._study.hierarchy}
         with open_workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
             remove_abandoned_reports(options.out)
@@ -154,9 +154,9 @@ class StudyRun:
 
     def _close(self, reports: ReportWriter, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
-        Print the last report's results and the next commands; return the exit code.
+        Print the last report's results and further commands; return the exit code.
 
-        Raises `stop`, what interrupted the run, and EndedEarlyError without any report.
+        Raises `stop`, the interrupt that ended the run, if any; EndedEarlyError if there is no report.
         """
         options, found = replace(self._options, jobs=jobs), reports.results
         if found is not None:
@@ -173,15 +173,15 @@ class StudyRun:
         return 1 if options.check and found.broken else 0
 
     def say(self, line: str) -> None:
-        """Print a line that is not wrapped."""
+        """Print a text on one line, without wrapping it."""
         self._console.print(line, soft_wrap=True)
 
     def _open_results(self, surfaces: Sequence[Task]) -> TaskResults:
-        """Return the results of earlier runs, less those that this one computes anew, and say how many there are."""
+        """Return the stored results of earlier runs, less those to compute anew, and print how many there are."""
         first = list_first_tasks(self._study, select_analyses(self._study))
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)
-        if self._options.fresh:  # Deleted before anything is computed, so that results of an interrupted run are new.
+        if self._options.fresh:  # --fresh: delete stored results first, so that an interrupted run leaves only new ones
             self._cache.remove([*keys, *(task.key for task in first)])
         results = TaskResults(self._cache, self._options.fresh)
         print_stored(self._console, results, surfaces, first)
@@ -190,7 +190,7 @@ class StudyRun:
     def _compute_levels(
         self, runner: Runner, surfaces: Sequence[Task], reports: ReportWriter, deadline: Deadline
     ) -> KeyboardInterrupt | None:
-        """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
+        """Compute the levels from coarse to fine, each with a report; return the interrupt that ended this, or None."""
         complete: CompleteLevel | None = None
         try:
             planned = make_study_levels(self._study)
@@ -204,7 +204,7 @@ class StudyRun:
                         print_level(self._console, said, before, level, reports.place)
         except TimeUpError:
             deadline.keep_free(0.0)
-            with suppress(TimeUpError):  # At the deadline the earlier report stays.
+            with suppress(TimeUpError):  # If the deadline comes while this report is written, the earlier one stays.
                 reports.write_stopped(complete, runner)
         except KeyboardInterrupt as stop:
             reports.write_stopped(complete, runner)
@@ -212,5 +212,5 @@ class StudyRun:
         return None
 
     def _hint(self, words: Sequence[str]) -> str:
-        """Return where the finished results are kept, and the command for the rest."""
+        """Return in words where finished results are kept, and which command computes the rest."""
         return word_resume_hint(self._cache, words, batches=len(self._study.batches()))

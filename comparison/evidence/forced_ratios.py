@@ -7,12 +7,12 @@ import numpy as np
 from comparison.result_types import Array, Radius, result
 from reference.problem import Scene, exponents
 
-AXES = "x", "y"
+AXES = "x", "y"  # names of the horizontal axes
 
 
 @result
 class ForcedRatio:
-    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
+    """Ratio of a body's amplitude to the platform's under one harmonic, by the linear equations of the links (4.4)."""
 
     body: Annotated[int, "from 2"]
     harmonic: Annotated[int, "1 or 2"]
@@ -23,7 +23,7 @@ class ForcedRatio:
 
 
 def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """Return the amplitude ratios by axis, harmonic and body above the platform; none under a recorded motion."""
+    """Return the ratio of every upper body's amplitude to the platform's under each harmonic; none under a record."""
     if scene.recorded or len(scene.bodies) == 1:
         return []
     return [
@@ -38,7 +38,7 @@ def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
 
 
 def _amplitude_ratios(scene: Scene, axis: int, s: complex) -> Array:
-    """Return |A_i / A_1| of the bodies above the platform: (m_i s^2 + links) A = link to the platform times A_1."""
+    """Return |A_i / A_1| of the upper bodies under exp(s t): (m_i s^2 + links) A = link to the platform times A_1."""
     links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
     matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))
     matrix -= np.diag(links[1:], 1) + np.diag(links[1:], -1)

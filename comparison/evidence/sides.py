@@ -4,10 +4,10 @@ from scipy.interpolate import CubicHermiteSpline
 
 from reference.problem import Trajectory
 
-# Keys of the codes that are compared (sides); smoothed: equations with the engine's regularized friction law
+# Keys of the codes whose motions are compared: reference equations; the same with Exudyn's regularized friction; Exudyn
 EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"
 
 
 def interpolate_platform(motion: Trajectory, axis: int = 0) -> CubicHermiteSpline:
-    """Return the position of the platform along x (0) or y (1), m, as cubics through its positions and velocities."""
+    """Return a function of time, s: platform position along x (axis 0) or y (1), m, as cubics between instants."""
     return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])

@@ -17,7 +17,7 @@ def make_trend_feature(
     **texts: Any,
 ) -> Feature:  # fmt: skip
     """
-    Return the feature (result field and section of the page) of an analysis that fits power laws to differences.
+    Return the result field and report section of an analysis that fits power laws to differences of amplification.
 
     title: of its section. scenes: those that have it. meaning: of its field. column: title of the column of medians.
     parameter: title of the axis of the panels, where all have one. texts: what else its template reads.
@@ -40,7 +40,7 @@ def make_trend_feature(
 
 
 def make_trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
-    """Return a log-log panel for each scene and parameter: median difference over it, fitted slopes in the legend."""
+    """Return a log-log plot of median differences against the parameter, with slopes, for each scene and parameter."""
     panels = []
     ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
     for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):

@@ -16,16 +16,16 @@ from comparison.result_types import Array, Number, Text, result
 from comparison.surfaces.model_difference import RESOLVED_RATIO
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, count_verdicts, word_counts
 
-NO_VALUES: Array = np.empty((0, 1))  # sizes and errors if no phase pair has a value
-MAX_FITTED_ERROR = 1.0 / RESOLVED_RATIO  # largest error of a difference that enters the fit, as a fraction of it
-MAX_EXPONENT_UNCERTAINTY = 0.25  # largest uncertainty of an exponent that is judged
-MIN_EXPONENT = 0.3  # A difference with a smaller exponent hardly falls over the parameters in use.
-# Largest deviation of an exponent from theory: the largest parameters are not yet in the asymptotic range
+NO_VALUES: Array = np.empty((0, 1))  # stands for the differences, and for their errors, if no phase pair has any
+MAX_FITTED_ERROR = 1.0 / RESOLVED_RATIO  # A difference enters the fit if its error is at most this fraction of it.
+MAX_EXPONENT_UNCERTAINTY = 0.25  # A fitted exponent with a larger uncertainty gets no verdict.
+MIN_EXPONENT = 0.3  # A difference that falls with a smaller exponent counts as not converged.
+# A fitted exponent may differ from theory by this: at the largest parameters the power law does not yet hold exactly.
 MAX_EXPONENT_DEVIATION = 0.15
 
 
 class FittedSlope(NamedTuple):
-    """Exponent of size ~ parameter^exponent with uncertainty, NaN for too few values; numbers of points and pairs."""
+    """Exponent of |difference| ~ parameter^exponent, uncertainty, or NaN; numbers of differences and phase pairs."""
 
     exponent: float
     uncertainty: float
@@ -35,7 +35,7 @@ class FittedSlope(NamedTuple):
 
 @result
 class Trend:
-    """Power law by which a relative difference of mu falls with a parameter, and the verdict on its exponent."""
+    """Power law by which a relative difference of amplification falls with a parameter; verdict on its exponent."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -52,7 +52,7 @@ class Trend:
 
 
 def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> FittedSlope:
-    """Return one exponent for all rows of sizes (P, S) with absolute errors (P, S), over the parameter (S,)."""
+    """Return the exponent n of sizes ~ parameter^n, one for all P phase pairs; sizes, absolute errors: (P, S)."""
     known = np.isfinite(sizes) & (errors <= MAX_FITTED_ERROR * np.abs(sizes)) & (sizes != 0.0)
     rows = np.flatnonzero(known.sum(axis=1) > 1)
     points = int(known[rows].sum())
@@ -83,9 +83,9 @@ def fit_trend(
     error_message: str = "",
 ) -> Trend:
     """
-    Fit the power law |difference| ~ parameter^n, and judge n against `expected`.
+    Fit the power law |difference| ~ parameter^n, and judge whether n agrees with `expected`.
 
-    sizes, errors: (P, S), signed differences and their errors; NaN without an answer. error_message: what went wrong.
+    sizes, errors: signed differences and errors, (phase pairs, values), NaN if unknown. error_message: what went wrong.
     """
     slope = fit_slope(parameter, sizes, errors)
     columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
@@ -103,7 +103,7 @@ def fit_trend(
 
 
 def word_trends(trends: Sequence[Trend]) -> str:
-    """Return how many exponents agree with theory, and the first that does not."""
+    """Return in words how many fitted exponents agree with theory, and the first that does not."""
     expected = [each for each in trends if each.expected is not None]
     verdicts = {id(each): _judge_trend(each) for each in expected}
     missed = [each for each in expected if verdicts[id(each)] == NOT_MET]
@@ -117,14 +117,14 @@ def word_trends(trends: Sequence[Trend]) -> str:
 
 
 def _judge_trend(each: Trend) -> Verdict:
-    """Return whether the fitted exponent agrees with the expected one."""
+    """Return whether the fitted exponent of a trend agrees with the expected one: met, not met or not compared."""
     if each.verdict == f"like the power {each.expected:g}":
         return MET
     return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
 
 
 def _word_slope_verdict(slope: FittedSlope, expected: float | None) -> str:
-    """Return in words whether |difference| ~ parameter^exponent has the expected exponent, or why that is not known."""
+    """Return in words whether the fitted exponent is the expected one, or why that cannot be said."""
     if not np.isfinite(slope.exponent):
         return "within the error bars: no slope can be told"
     if slope.uncertainty > MAX_EXPONENT_UNCERTAINTY:

@@ -44,14 +44,14 @@ def assemble_report(
     lost: Sequence[str] = (),
 ) -> Report:
     """
-    Return everything that a report is made from; a field whose own computation raises is empty, with a line in `lost`.
+    Return all data of a report; a field whose computation raises an error is empty, with a line in `lost`.
 
     found: results of the features, by key. kind: type of the results, with a field for each feature.
     """
     parts_lost = LostParts(lost)
 
     def compute(name: str, function: Callable[..., Any], *words: Any) -> Any:
-        """Return a part of the report; None with a line in the list of lost parts if it raises an error."""
+        """Return a part of the report; if its computation raises an error, record a line and return None."""
         return parts_lost.attempt(f"section {name}", partial(function, *words))
 
     gaps = list_missing_values(study, surfaces)
@@ -88,7 +88,7 @@ def assemble_report(
 
 
 def _make_scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues]) -> dict[str, Any]:
-    """Return the fields of `SceneResult` that follow from the surfaces; gaps: missing values of the whole study."""
+    """Return the fields of `SceneResult` that follow from amplification surfaces; gaps: missing values of the study."""
     study, surfaces = findings.study, findings.surfaces
     models = models_of(scene, study.hierarchy)
     comparisons = compare_bodies(study, surfaces, scene)
@@ -117,7 +117,7 @@ def _make_scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingV
 
 
 def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> ModelOutcome:
-    """Return outcomes, cost and largest displacements of a model over the phase pairs of a scene."""
+    """Return a model's outcomes over the phase pairs of a scene, its computing cost, and largest displacements."""
     counts = count_outcomes(surfaces, scene.name, model)
     return ModelOutcome(
         phases_per_axis=len(study.phase_indices(model, scene)),
@@ -134,7 +134,7 @@ def _model_outcome(study: Study, surfaces: xr.Dataset, scene: Scene, model: Mode
 
 
 def _record_values(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[RecordValue]:
-    """Return amplification factors mu under the recorded motion, by model and body."""
+    """Return the amplification factors under the recorded ground motion, by model and body."""
     listed = []
     for model in models:
         mu, error, status = (

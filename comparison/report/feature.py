@@ -26,7 +26,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that a run has found: its study, surfaces, results of its features, and the study's families."""
+    """Everything that a run computed: study, surfaces of amplification, results of analyses, families of scenes."""
 
     study: Study
     surfaces: xr.Dataset
@@ -37,7 +37,7 @@ class Findings:
 @dataclass(frozen=True)
 class ResultField(Generic[Value]):
     """
-    A field of the results that may be null.
+    A field of the results of a study (a key of summary.json) that may be null.
 
     name: its key in summary.json. kind: its type. meaning: its description in the schema. load: reads it from the
     folder of the report, where a command left it. compute: makes it of what was found and of the results of the scenes,
@@ -56,20 +56,20 @@ class ResultField(Generic[Value]):
         return value
 
     def read_from(self, results: Results) -> Value:
-        """Return the value of the field in results where it is not null, as in the section that shows it."""
+        """Return the value of the field in these results, where it must not be null."""
         value = self.get(results)
         assert value is not None, f"{self.name} is shown only where it was found"
         return value
 
 
 def make_stored_field(stored: StoredFile[Value], name: str, meaning: str) -> ResultField[Value]:
-    """Return the field that shows what a command left next to the report."""
+    """Return the results field with the content of a file that a command left next to the report."""
     return ResultField(name, stored.kind, stored.word_field(meaning), load=stored.load)
 
 
 @dataclass(frozen=True)
 class SceneField(Generic[Value]):
-    """A field of the results of every scene. name, kind, meaning: as in `ResultField`. compute: returns the value."""
+    """A field of each scene's results: its key in summary.json, type, description, and function that computes it."""
 
     name: str
     kind: type[Value]
@@ -77,7 +77,7 @@ class SceneField(Generic[Value]):
     compute: Callable[[Findings, Scene], Value]
 
     def read_from(self, scene: SceneResult) -> Value:
-        """Return the value in the results of a scene."""
+        """Return the value of this field in the results of a scene."""
         value: Value = getattr(scene, self.name)
         return value
 
@@ -85,7 +85,7 @@ class SceneField(Generic[Value]):
 @dataclass(frozen=True)
 class Feature:
     """
-    One question of a report with everything that study, report and command line need of it.
+    One question that a report answers: its analysis, fields of the results, report section, and rules of selection.
 
     key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
     scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and
@@ -111,7 +111,7 @@ class Feature:
     clause: Callable[[Results], str] | None = None
 
     def __post_init__(self) -> None:
-        """Enter key, template and fields of the feature in its section."""
+        """Complete the feature's report section with the feature's key, template and fields."""
         if self.section:
             template = self.section.template or f"{self.key}/section.html.j2"
             shows = tuple(field.name for field in self.fields)
@@ -120,7 +120,7 @@ class Feature:
 
     @property
     def stored(self) -> list[ResultField[Any]]:
-        """Return the fields whose values a command stores next to a report."""
+        """Return the fields whose values are read from a file that a command left next to the report."""
         return [field for field in self.fields if field.load]
 
     @property

@@ -6,7 +6,7 @@ from markupsafe import Markup
 
 from comparison.wording import symbols
 
-GLOSSARY = {  # explanations of the words of the report
+GLOSSARY = {  # terms of the report with the explanations that a reader sees under the pointer
     "as integrated": "Reading of (5.1): the largest value that an integration of the motion meets, with steps of about "
     "1 ms as the paper's. It counts rest and sliding faster than v_c = 1 mm/s. The paper integrates, so its plots can "
     "show no other.",
@@ -36,11 +36,12 @@ GLOSSARY = {  # explanations of the words of the report
     "well-conditioned": "Less than 0.1 % of it depends on speeds below 1e-6 m/s.",
     "limits": "Largest values that a scene file states as acceptable.",
 }  # fmt: skip
+# Matches every term of the glossary, longer terms first
 GLOSSARY_PATTERN = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))
 
 
 def mark_term(word: str, text: str = "") -> Markup:
-    """Return `text`, or the word itself, as HTML that explains the word under the pointer or at keyboard focus."""
+    """Return `text`, or the word itself, as HTML that shows the word's explanation under pointer or keyboard focus."""
     explanation = GLOSSARY.get(word)
     shown = symbols(text or word)
     if explanation is None:
@@ -50,7 +51,7 @@ def mark_term(word: str, text: str = "") -> Markup:
 
 
 def explain_words(sentence: str) -> Markup:
-    """Return the sentence with every glossary word explained at its first occurrence."""
+    """Return the sentence as HTML in which every glossary word has its explanation at its first occurrence."""
     parts: list[Markup] = []
     seen, end = set(), 0
     for match in GLOSSARY_PATTERN.finditer(sentence):

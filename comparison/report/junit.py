@@ -14,14 +14,14 @@ from comparison.report.scene_result import SceneResult
 # Matches a character that XML 1.0 cannot hold
 FORBIDDEN_CHARACTERS = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
-UNCHECKED_TEXT = "not checked, as no limit is stated"
-# Attribute of a suite in JUnit XML, and the name of the elements whose number it states
+UNCHECKED_TEXT = "not checked, as no limit is stated"  # reason given for a skipped test case
+# For each attribute of a JUnit test suite that states a number: name of the XML elements that it counts
 ELEMENT_OF_COUNT = {"failures": "failure", "skipped": "skipped"}
 
 
 @dataclass(frozen=True)
 class JUnitCase:
-    """One check of a suite. failures: a line for each failure; skipped: why nothing was checked, or ""."""
+    """One test case: a limit, or a comparison without one. failures: a line for each; skipped: why unchecked, or ""."""
 
     name: str
     failures: Sequence[str] = ()
@@ -30,7 +30,7 @@ class JUnitCase:
 
 @dataclass(frozen=True)
 class JUnitSuite:
-    """Checks of one scene, with the seconds they took and when they began; said: further output."""
+    """Test suite of one scene: its limits, compute time, s, and date and time of the run; said: further output."""
 
     name: str
     seconds: float
@@ -45,7 +45,7 @@ def format_limits_as_junit(results: Results) -> str:
 
 
 def _make_suite(scene: SceneResult, began: str) -> JUnitSuite:
-    """Return the limits of a scene as a suite, with the comparisons that have no limit as skipped."""
+    """Return the test suite of a scene: its acceptance limits, and as skipped the comparisons without a limit."""
     cases = []
     for limit in scene.limits:
         key = f"acceptance.{limit.key} = {limit.allowed:g}{' by default' if limit.default else ''}"
@@ -56,7 +56,7 @@ def _make_suite(scene: SceneResult, began: str) -> JUnitSuite:
 
 
 def format_junit(scenes: Sequence[JUnitSuite]) -> str:
-    """Return suites of checks as JUnit XML."""
+    """Return the test suites of all scenes as JUnit XML."""
     suites = ElementTree.Element("testsuites", name="phase-resonance acceptance limits")
     for scene in scenes:
         name = _replace_forbidden(scene.name)

@@ -23,16 +23,16 @@ from comparison.surfaces.waterfall import UNEQUAL_PHASES, Waterfall
 from comparison.surfaces.waterfall_chart import make_common_scale, place_bars
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 
-MIN_DRAWN_BAR = 0.01  # share of the amplification mu: a chart whose bars are all shorter is not drawn
-# scripts that are joined, in this order, to the script of the page
+MIN_DRAWN_BAR = 0.01  # A bar chart is not drawn if all differences in it are below this share of the amplification.
+# JavaScript files that are joined in this order into the script of the page
 SCRIPT_FILES = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
 def render_pages(report: Report) -> dict[str, str]:
     """
-    Return index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself.
+    Return the HTML of index.html, which answers the question of the study, and verification.html, by file name.
 
-    A part of a page that raises is one line at its top and, where it is a section, in its place.
+    Neither needs another file. A part that raises an error is one line at the top and, if a section, in its place.
     """
     lost, nothing = LostParts(report.lost), compress_to_text(b"null")
     packed = {
@@ -62,18 +62,18 @@ def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
 
 
 def word_answer(results: Results) -> str:
-    """Return the sentence that answers the question of the study."""
+    """Return the sentence that says how far the compared models differ, and what measurements validate."""
     return word_verdict([line for scene in results.scenes for line in scene.headlines], word_measurements(results))
 
 
 def render_alerts(report: Report) -> Markup:
-    """Return the alerts of the run as HTML."""
+    """Return the alerts (what a reader must know before trusting a number) as HTML."""
     context = {"alerts": _group_alerts(report.results), "has_engine": has_engine(report.study)}
     return render_template("sections/alerts.html.j2", context)
 
 
 def render_summary(report: Report) -> Markup:
-    """Return the table that answers the question, with the bars behind it."""
+    """Return the first screen's table of differences between models, with bar charts of their causes, as HTML."""
     study, results = report.study, report.results
     waterfalls = [each for scene in results.scenes for each in zip(scene.waterfalls, scene.headlines)]
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
@@ -97,28 +97,28 @@ def render_summary(report: Report) -> Markup:
 
 
 def name_second_model(study: Study) -> str:
-    """Return the name of the side with which the page compares the paper's equations: Exudyn or the last model."""
+    """Return in words with which model the page compares the paper's equations: Exudyn, or the last model."""
     return "Exudyn" if has_engine(study) else "the last model"
 
 
 def has_engine(study: Study) -> bool:
-    """Return whether a model of Exudyn takes part."""
+    """Return whether the study has a model of Exudyn that applies to one of its scenes."""
     return any(model.side == "engine" for model in list_models_in_use(study))
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Return whether a bar, of the means or at the largest difference, is long enough to see."""
+    """Return whether a waterfall chart has a bar of at least MIN_DRAWN_BAR, of means or at the largest difference."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
     return any(abs(bar.size) >= MIN_DRAWN_BAR for bar in every)
 
 
 def word_measurements(results: Results) -> str:
-    """Return what is validated by measurements, with what this study adds, without the full stop."""
+    """Return the statement on what measurements validate, with what this study adds, without the final full stop."""
     return "; ".join([VALIDATED_BRIEFLY, *results.measurement_clauses])
 
 
 def list_lead_sentences(report: Report) -> list[tuple[str, str]]:
-    """Return the sentences of sections that belong on the first screen, each with the link that shows more."""
+    """Return the sentences that sections contribute to the first screen, each with the link to its section."""
     sections = [section for section in report.sections if section.lead and section.is_present(report.results)]
     lines = [(section.lead(report.results), section) for section in sections if section.lead]
     page = "verification.html"
@@ -132,7 +132,7 @@ def _render_page(
     context: Mapping[str, Any],
     lost: LostParts,
 ) -> str:
-    """Return one page with its sections; a part that raises is left out, with a line in `lost`."""
+    """Return the HTML of one page; a part whose computation raises an error is left out, with a line in `lost`."""
     study, results = report.study, report.results
     sections = [section for section in report.sections if section.verifies == verifies]
     shown = [section for section in sections if section.is_present(results)]
@@ -159,9 +159,9 @@ def render_page(
     template: str, context: Mapping[str, Any], sections: Sequence[tuple[Section, Markup, str]], lost: Sequence[str]
 ) -> str:
     """
-    Return a page that needs no other file: style, script and data are inside it.
+    Return the HTML of a page that needs no other file: style, script and data are inside it.
 
-    sections: each with what stands below its heading, and its verdict. lost: a line for every part that could
+    sections: each with the HTML below its heading, and its verdict. lost: a line for every part of the page that could
     not be made.
     """
     templates = resources.files("comparison.report") / "templates"
@@ -184,33 +184,33 @@ def render_page(
 
 
 def make_page_header_style(text: str) -> str:
-    """Return the style that puts a text at the top of every printed page; nothing without a text."""
+    """Return the CSS that prints a text at the top of every page of paper; "" for an empty text."""
     letters = (each if each.isalnum() or each in " .,:-" else f"\\{ord(each):x} " for each in text)
     return f'@page {{ @top-left {{ content: "{"".join(letters)}"; font: 7pt sans-serif; }} }}\n' if text else ""
 
 
 def render_template(template: str, context: Mapping[str, Any]) -> Markup:
-    """Return a template of the report, or of the folder of a feature, with its context."""
+    """Return the HTML made from a template, of the report or of a feature's folder, and its variables."""
     return Markup(_make_template_environment().get_template(template).render(context))
 
 
 def word_section(section: Section, results: Results) -> str:
-    """Return the verdict that a section shows in its title; "" for none."""
+    """Return the verdict, in words, that a section shows next to its title; "" for none."""
     return section.verdict(results) if section.verdict else ""
 
 
 def _render_section(section: Section, common: Mapping[str, Any], report: Report) -> Markup:
-    """Return what stands below the heading of a section."""
+    """Return the HTML below the heading of a section."""
     return render_template(section.template, {**common, **section.context(report)})
 
 
 def render_lost_line(line: str) -> Markup:
-    """Return the line that replaces a part that could not be shown."""
+    """Return the HTML of the line that replaces a part of the page that could not be made."""
     return Markup('<p class="alert amber lost"><strong>Amber:</strong> {}.</p>').format(line)
 
 
 def make_content_policy(script: str, style: str) -> str:
-    """Return the page's content security policy: its own script and style by hash, embedded pictures, nothing else."""
+    """Return the page's content security policy: only its own script and style, by hash, and embedded pictures."""
 
     def digest(text: str) -> str:
         """Return the hash by which the policy names a script or style of the page."""
@@ -223,7 +223,7 @@ def make_content_policy(script: str, style: str) -> str:
 
 @cache
 def _make_template_environment() -> jinja2.Environment:
-    """Return the Jinja environment of the report with its templates, filters and globals."""
+    """Return the Jinja environment (template engine) of the report with its templates, filters and globals."""
     loader = jinja2.ChoiceLoader(
         [
             jinja2.PackageLoader("comparison.report", "templates"),
@@ -234,7 +234,7 @@ def _make_template_environment() -> jinja2.Environment:
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     filters = (percent, signed, scientific, degrees, significant, symbols, explain_words)
     environment.filters.update({function.__name__: function for function in filters})
-    environment.globals["term"] = mark_term  # Macros need it as a global, because they see no context.
+    environment.globals["term"] = mark_term  # as a global, because Jinja macros do not see the template's variables
     return environment
 
 
@@ -250,7 +250,7 @@ ALERT_TITLES = {
 
 
 def _group_alerts(results: Results) -> list[dict[str, Any]]:
-    """Return the alerts grouped by level, kind and remedy, in their order."""
+    """Return the alerts grouped by severity, kind and advice, in their order, as variables for the template."""
     groups: dict[tuple[str, str, str], list[Alert]] = {}
     for alert in results.alerts:
         groups.setdefault((alert.level, alert.kind, alert.help), []).append(alert)

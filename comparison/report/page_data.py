@@ -20,18 +20,18 @@ from comparison.surfaces.model_difference import compute_difference
 from comparison.surfaces.surfaces import select_values
 from reference.problem import Scene
 
-Rows = list[list[float | None]]  # one row for each alpha1, in it one value for each alpha2
+Rows = list[list[float | None]]  # values on the grid of phases: one row for each alpha1, in it one for each alpha2
 
-MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits of the amplification mu and of an error
-COMPRESSION_LEVEL = 6  # gzip's level for data on the page: level 7 takes half as long again for 2 % less
+MU_DIGITS, ERROR_DIGITS = 7, 2  # significant digits on the page of an amplification, and of its error
+COMPRESSION_LEVEL = 6  # gzip compression level of the page's data: level 7 takes 1.5 times as long for 2 % less
 
 
 def collect_page_data(report: Report, say: Callable[[str], object] = print_on_stderr) -> str:
     """
-    Return the drawn data as JSON, with null for NaN; a feature that raises is left out, with a line to `say`.
+    Return the data that the page draws as JSON text; a feature that raises an error is left out, with a line to `say`.
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
-    of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
+    of (5.1)), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
     first, second (models), user (whether the second is an engine of the user), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
     phases of both, or null where both are surfaces); models (by key: see `_model_data`); and what the `page_data` of
@@ -61,7 +61,7 @@ def collect_page_data(report: Report, say: Callable[[str], object] = print_on_st
 
 
 def _collect_feature_data(report: Report, scene: Scene, say: Callable[[str], object]) -> dict[str, Any]:
-    """Return the data that the features add to a scene."""
+    """Return the data of a scene that the features add for the page's script."""
     added: dict[str, Any] = {}
     for feature in report.features:
         if feature.page_data:
@@ -73,7 +73,7 @@ def _collect_feature_data(report: Report, scene: Scene, say: Callable[[str], obj
 def _read_encodable(
     read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene
 ) -> Mapping[str, Any]:
-    """Return a feature's data; data that JSON cannot hold raises here, so that only this feature is lost."""
+    """Return a feature's data of a scene; raise an error if JSON cannot hold them, so that only they are lost."""
     data = read(report, scene)
     _format_json(dict(data))
     return data
@@ -90,7 +90,7 @@ def compress_to_text(content: bytes) -> str:
 
 
 def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
-    """Return where |size| = uncertainty on the closed square, both (alpha1, alpha2): polylines of phases, rad."""
+    """Return the curves |size| = uncertainty over the square of phases as polylines of (alpha1, alpha2), rad."""
     over = np.pad(np.abs(size) - uncertainty, ((0, 1), (0, 1)), mode="wrap")
     axis = np.append(phase, 2.0 * np.pi)
     lines = contourpy.contour_generator(axis, axis, np.ma.masked_invalid(over.T)).lines(0.0)
@@ -98,7 +98,7 @@ def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[l
 
 
 def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
-    """Return the texts of a pair of models and, by body, contours |difference| = uncertainty, or the uncertainty."""
+    """Return a pair of models for the page: texts; by body, curves |difference| = uncertainty, or the uncertainty."""
     surfaces = (
         not scene.recorded
         and _is_drawn_as_surface(report, scene, pair.first)
@@ -118,17 +118,17 @@ def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _is_drawn_as_surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Return whether the values of a model are drawn as a surface without completion."""
+    """Return whether a model's values are drawn as a surface as computed, without interpolation between phase pairs."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 
 
 def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     """
-    Return the data of one model of a scene.
+    Return the data of one model of a scene that the page draws.
 
     phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
-    mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), certificate
+    by body: mu (amplification), error (null for a surface), completed: null or through (a model), certificate
     (how far it is off, in words), reason (why it is not drawn), difference (whether that may be drawn), mu (null where
     refused).
     """
@@ -138,7 +138,7 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
     def list_rows(name: str, digits: int) -> list[Rows]:
-        """Return a variable of the model as rows of numbers, for every body."""
+        """Return a variable ("mu" or "error") of the model for every body, as rounded rows of numbers."""
         values = select_values(report.surfaces, name, scene.name, model)
         return [_round_rows(values[body - 1], digits) for body in bodies]
 
@@ -153,7 +153,7 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
 
 
 def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
-    """Return a surface interpolated between computed phase pairs, or why there is none; None if not tried."""
+    """Return a surface interpolated between computed phase pairs, or the reason why not; None if it was not tried."""
     if completion is None:
         return None
     return {
@@ -166,5 +166,5 @@ def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
 
 
 def _round_rows(values: Array, digits: int) -> Rows:
-    """Return rows of numbers to so many significant digits, None for NaN."""
+    """Return an array as rows of numbers rounded to `digits` significant digits, with None for NaN."""
     return [[float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in row] for row in values]

@@ -9,10 +9,10 @@ from comparison.report.results import Results
 from comparison.surfaces.distribution import CURVE_PROBABILITIES
 from reference.measures.distribution import FRACTILES
 
-Panel = dict[str, Any]  # title and data of one plot, in the form that plot.js reads
+Panel = dict[str, Any]  # title and data of one plot, in the form that the page's script plot.js reads
 
 MAX_CURVES = 6  # largest number of curves in one panel: more cannot be distinguished
-# plotted demands: key, body (0 for the isolator), name, unit, and factor from the unit of the results
+# Demands that are plotted: key in the results, body (0: isolator), name, unit, factor from the unit of the results
 PLOTTED_DEMANDS = (
     ("displacement", 0, "isolator displacement", "mm", 1e3),
     ("residual", 0, "residual displacement", "mm", 1e3),
@@ -24,17 +24,17 @@ PLOTTED_DEMANDS = (
     ("support_force_max", 0, "largest support force", "N", 1.0),
     ("friction_energy", 0, "energy dissipated by friction", "J", 1.0),
 )
-# Dash patterns of the curves in a panel: where curves coincide, an earlier one shows in the gaps of a later one
+# Dash patterns of the curves in a plot: where two curves coincide, the first is visible in the gaps of the second
 DASH_PATTERNS = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")
 
 
 def make_panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: Any, **more: Any) -> Panel:
-    """Return a panel with its plot in the form that plot.js reads; label: the plot in words."""
+    """Return a titled plot in the form that the page's script plot.js reads; label: description for screen readers."""
     return {"title": title, "plot": {"label": label, "x": x, "y": y, "series": series, **more}}
 
 
 def make_distribution_panels(results: Results, scene: str, quantity: str, unit: str, curves: Any) -> list[Panel]:
-    """Return plots of the share of phases below each value of a quantity; curves: (model, values); none without any."""
+    """Return a plot of the share of phases below each value of a quantity; curves: (model, values) each; [] if none."""
     models = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     series = [
         {
@@ -58,5 +58,5 @@ def replace_nan(values: Sequence[float]) -> list[float | None]:
 
 
 def fractile_heads() -> list[str]:
-    """Return the heads of the fractile columns, in percent."""
+    """Return the column heads of a table of fractiles: each probability in percent."""
     return [f"{100.0 * probability:g}" for probability in FRACTILES]

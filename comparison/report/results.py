@@ -23,8 +23,8 @@ SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"  # name o
 VERSION: Literal[6] = 6  # version of summary.json: grows when a key changes its meaning or is removed
 
 
-# Statement on measurements for every report. docs/measured_statements.py writes it from the record, and the test gate
-# checks it, because the report itself knows no analysis.
+# Statement in every report on what measurements validate. docs/measured_statements.py writes it from the recorded
+# comparison, and a test checks it, because the report itself knows no analysis.
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
     " fitted at 250 g and 450 g, at 350 g met (E = +1.4 %, within 2.2 %), at 550 g met (E = +0.68 %, within 3.3 "
@@ -32,7 +32,7 @@ VALIDATED = (
     "+7.7 %), at 550 g not met (by +12 %). No building has been compared"
 )
 
-# The statement VALIDATED in short, for the first screen; docs/measured_statements.py writes it, too.
+# Short form of VALIDATED for the first screen; also written by docs/measured_statements.py
 VALIDATED_BRIEFLY = (
     "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
     "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "
@@ -41,7 +41,7 @@ VALIDATED_BRIEFLY = (
 
 
 class WorkPart(Part):
-    """One kind of task in addition to the surfaces, with its cost."""
+    """Number and processor time of one kind of task that is computed in addition to the surfaces."""
 
     tasks: int = Field(description="number of tasks")
     stored_before: int = Field(description="of these, taken from an earlier run")
@@ -49,7 +49,7 @@ class WorkPart(Part):
 
 
 class Run(Part):
-    """Facts of the run that made the report."""
+    """How the report was made: command, times, number of tasks and workers, versions."""
 
     command: Text = Field(description="the command line")
     began: str = Field(description="date and time, UTC")
@@ -66,7 +66,7 @@ class Run(Part):
 
     @property
     def word_run_times(self) -> str:
-        """Return the times of the run in words."""
+        """Return in words the wall time and processor time of the run."""
         workers = f"{self.jobs} worker{'' if self.jobs == 1 else 's'}"
         return (
             f"{self.wall_seconds:.1f} s of wall time with {workers}, {self.processor_seconds:.1f} s of processor time"
@@ -74,7 +74,7 @@ class Run(Part):
 
 
 class ModelDescription(Part):
-    """One model of the hierarchy."""
+    """Description of one model that a study compares."""
 
     key: str = Field(description="its name everywhere in this file")
     title: str = Field(description="its name for readers")
@@ -84,7 +84,7 @@ class ModelDescription(Part):
 
 
 class Results(Part):
-    """Everything that a program needs to judge a run. Relative sizes are fractions; a missing number is null."""
+    """Results of a study, the content of summary.json. Relative sizes are fractions; a missing number is null."""
 
     model_config = ConfigDict(defer_build=True)  # the fields of the features are missing
 
@@ -103,7 +103,7 @@ class Results(Part):
     unanswered: list[MissingValues] = Field(description="models without a value at some or all phase pairs of a scene")
     alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
     faults: list[Text] = Field(description="error messages of the solvers")
-    features: ClassVar[Sequence[Any]] = ()  # The registry sets the features.
+    features: ClassVar[Sequence[Any]] = ()  # features of the report, set by comparison/registry.py
 
     @property
     def broken(self) -> list[Alert]:
@@ -117,38 +117,38 @@ class Results(Part):
 
     @property
     def gate(self) -> str:
-        """Return whether the acceptance limits are kept, and which comparisons have no limit."""
+        """Return in words whether the acceptance limits are met, and which comparisons of models have no limit."""
         return word_limit_check(len(self.limits), len(self.broken), self.unchecked)
 
     @property
     def unchecked(self) -> dict[str, list[str]]:
-        """Return by scene the pairs of models without a limit."""
+        """Return for each scene the pairs of models that are compared without a limit on their difference."""
         return {scene.name: scene.unchecked for scene in self.scenes}
 
     @property
     def measurement_clauses(self) -> list[str]:
-        """Return the clauses that the features add to the statement on measurements."""
+        """Return the clauses that features of this study add to the statement on what measurements validate."""
         said = [feature.clause(self) for feature in self.features if feature.clause]
         return [clause for clause in said if clause]
 
     @property
     def measurements(self) -> str:
-        """Return how the models fare against the measured peaks of this study, in a clause."""
+        """Return in words how the models compare with the measured peaks of this study."""
         return "; ".join(self.measurement_clauses) or "this study has no measured peaks"
 
     @property
     def engine_lines(self) -> list[str]:
-        """Return a sentence for each engine of the user and body."""
+        """Return a sentence for each user's engine and body: how it compares with the other models."""
         lines = [line for scene in self.scenes for line in scene.headlines]
         return [f"{line.scene}, {line.name}: {sentence}" for line in lines for sentence in line.engines]
 
     @property
     def phased(self) -> list[SceneResult]:
-        """Return the scenes that have phases."""
+        """Return the scenes whose loading has phases, that is, no recorded motion."""
         return [scene for scene in self.scenes if not scene.recorded]
 
     def scenes_with(self, analysis: str) -> list[SceneResult]:
-        """Return the scenes whose results include the analysis."""
+        """Return the scenes whose results include the named analysis."""
         return [scene for scene in self.scenes if analysis in scene.analyses]
 
     @property
@@ -157,7 +157,7 @@ class Results(Part):
         return [limit for scene in self.scenes for limit in scene.limits]
 
     def as_json(self) -> str:
-        """Return the content of summary.json."""
+        """Return the results as the text of summary.json."""
         return format_json(self.model_dump(mode="json", by_alias=True))
 
 

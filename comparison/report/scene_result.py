@@ -16,7 +16,7 @@ from reference.problem.acceptance import Acceptance
 
 
 class ModelOutcome(Part):
-    """Outcome of one model in one scene."""
+    """How one model fared in one scene: outcomes over its phase pairs, largest displacements, compute time."""
 
     phases_per_axis: int = Field(description="values of alpha1, and of alpha2")
     points: int = Field(description="phase pairs that the model was asked for")
@@ -32,7 +32,7 @@ class ModelOutcome(Part):
 
 @result
 class RecordValue:
-    """Amplification mu of one model and body under a recorded motion."""
+    """Amplification mu of one body by one model under a recorded ground motion."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -42,7 +42,7 @@ class RecordValue:
 
 
 class SceneResult(Part):
-    """Results of one scene."""
+    """Results of one scene: what each model computed, and the differences between models."""
 
     model_config = ConfigDict(defer_build=True)  # the fields of the features are missing
 

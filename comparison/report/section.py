@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Report:
     """
-    Everything that a report is made from.
+    Everything from which the pages and files of a report are made.
 
     results: what summary.json holds. surfaces: of every model, with the completed ones. found: what each analysis
     collected, by its key: motions, demands and pictures are not in the results. features: what the report consists of.
@@ -36,14 +36,14 @@ class Report:
 
     @property
     def sections(self) -> list[Section]:
-        """Return the sections of both pages, in order."""
+        """Return the sections of both pages of the report, in their order."""
         return [feature.section for feature in self.features if feature.section]
 
 
 @dataclass(frozen=True)
 class Section:
     """
-    One section of a page with its title, template and context.
+    One section of a page of the report: its title, template and the template's variables.
 
     absent: where the results hold nothing of it, which command makes it. context: what the template reads.
     folded: whether the reader opens it. verifies: whether it judges the tool or the paper rather than answers the
@@ -64,6 +64,6 @@ class Section:
     shows: tuple[str, ...] = ()
 
     def is_present(self, results: Results) -> bool:
-        """Return whether the section was asked for and the results hold any of its fields."""
+        """Return whether the section was selected and the results have a value for any field that it shows."""
         held = [getattr(results, name) is not None for name in self.shows]
         return self.name not in results.absent and (not held or any(held))

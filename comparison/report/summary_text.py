@@ -7,11 +7,11 @@ import jinja2
 from comparison.report.results import VALIDATED, Results
 from comparison.wording import degrees, percent, signed
 
-MARKDOWN_MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")  # characters with a meaning in GitHub's Markdown
+MARKDOWN_MARKS = re.compile(r"[\\|<>*_`\[\]#~$&!]")  # characters of GitHub's Markdown that a text must escape
 
 
 def render_summary_text(results: Results) -> str:
-    """Return summary.md in GitHub's Markdown."""
+    """Return the text of summary.md in GitHub's Markdown."""
     used = {key for scene in results.scenes for key in scene.models}
     models = [model for model in results.models[1:] if model.key in used]
     loader = jinja2.PackageLoader("comparison.report", "templates")
@@ -24,13 +24,13 @@ def render_summary_text(results: Results) -> str:
 
 
 def _format_as_code(text: str) -> str:
-    """Return a text as code, between more backticks than it contains in a row."""
+    """Return a text as Markdown code, between more backticks than it has in a row."""
     fence = "`" * (1 + max((len(ticks) for ticks in re.findall("`+", text)), default=0))
     space = " " if "`" in text else ""
     return f"{fence}{space}{text}{space}{fence}"
 
 
 def _escape_markdown(text: str) -> str:
-    """Return a text on one line in which nothing is read as Markdown, HTML or a formula."""
+    """Return a text on one line, escaped so that GitHub reads nothing in it as Markdown, HTML or a formula."""
     shown = "".join(letter if letter.isprintable() else " " for letter in text)
     return MARKDOWN_MARKS.sub(r"\\\g<0>", shown)

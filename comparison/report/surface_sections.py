@@ -19,19 +19,19 @@ def list_models_in_use(study: Study) -> list[Any]:
 
 
 def _differences_context(report: Report) -> Mapping[str, Any]:
-    """Return data for the section's template: the differences of all scenes, and a logarithmic scale of their sizes."""
+    """Return variables for the section of differences: those of all scenes, and a logarithmic scale of their sizes."""
     rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
     return {"rows": rows, "dots": make_log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
 
 def _grids_context(report: Report) -> Mapping[str, Any]:
-    """Return data for the section's template: all numbers of phases per axis of differences and effects."""
+    """Return variables for the section on causes: the numbers of phases per axis on which differences are known."""
     rows = [row for scene in report.results.scenes for row in (*scene.differences, *scene.effects)]
     return {"grids": sorted({grid.phases_per_axis for row in rows for grid in row.grids})}
 
 
 def _costs_context(report: Report) -> Mapping[str, Any]:
-    """Return data for the section's template: whether any scene limits the travel, and the most seconds."""
+    """Return variables for the section on cost: does a scene limit the isolator's travel; largest compute time, s."""
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
         "limited": any(not math.isnan(model.travel_share) for model in outcomes),
@@ -40,7 +40,7 @@ def _costs_context(report: Report) -> Mapping[str, Any]:
 
 
 def _models_context(report: Report) -> Mapping[str, Any]:
-    """Return data for the section's template: models in use, the user's engines, and names of the assumptions."""
+    """Return variables for the section on models: models in use, users' engines, and names of the assumptions."""
     models = list_models_in_use(report.study)
     own = [model for model in models if model.side != "user"]
     names = dict.fromkeys(name for model in own for name in model.assumptions)
@@ -48,11 +48,11 @@ def _models_context(report: Report) -> Mapping[str, Any]:
 
 
 def _surface_feature(key: str, title: str, selectable: bool = False, **about: Any) -> Feature:
-    """Return a feature that only shows a section of the report, from the template of its key."""
+    """Return a feature that computes nothing and only shows a section, from the template named by its key."""
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 
-# Features that only show a section of the report. Amplification is one value, not a surface, under a record.
+# Features that compute nothing and only show a section. Amplification is one value, not a surface, under a record.
 AMPLIFICATION_SECTION = _surface_feature("surfaces", "Amplification and motions", selectable=True, folded=False)
 DIFFERENCES = _surface_feature("differences", "Differences", selectable=True, context=_differences_context)
 BUDGET = _surface_feature("budget", "Causes of the difference", selectable=True, context=_grids_context)
@@ -66,7 +66,7 @@ VERIFICATION = _surface_feature(
     verdict=lambda results: f"{len(CHECKS)} tests, run by the test command of the README, not by this report",
 )
 PROVENANCE = _surface_feature("provenance", "Provenance")
-# Features without a section of their own: surfaces completed between computed phase pairs, and image files
+# Features without a section of their own: interpolation of surfaces between computed phase pairs, and image files
 COMPLETION = Feature(CompletedSurfaces.key, analysis=CompletedSurfaces(), selectable=False)
 PICTURES = Feature(
     Pictures.key,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class CodeCheck(NamedTuple):
-    """A check of one side: reference, closeness and what limits it, and the test, in a file below tests/."""
+    """Test of one code alone: reference, how closely it agrees and what limits that, name, and file below tests/."""
 
     side: str
     file: str
@@ -18,7 +18,7 @@ class CodeCheck(NamedTuple):
     test: str
 
 
-# Tests of each side by test file, one test in a row: reference | closeness and what limits it | name of the test
+# Tests of each code, by test file. A row has: what is compared with | agreement and what limits it | name of the test
 CHECKS_TABLE = """
 reference: reference/test_closed_form_motions.py
   free decay under dry friction: turning points, stops, rest | 1e-7, ten times the tolerance asked |
@@ -74,7 +74,7 @@ engine: comparison/evidence/test_benchmarks.py
   numbers published elsewhere, where friction sticks against the equations with its friction | the error of both |
     test_the_engine_meets_all_published_numbers
 """
-CHECKS = tuple(  # the checks of CHECKS_TABLE, one for each row
+CHECKS = tuple(  # tests of each code alone, one for each row of CHECKS_TABLE
     CodeCheck(*block[:2], *map(str.strip, row.split("|")))
     for block in re.findall(r"^(\w+): (\S+)\n((?:  .*\n)+)", CHECKS_TABLE, re.MULTILINE)
     for row in re.split(r"\n(?=  \S)", block[2].rstrip())

@@ -18,7 +18,7 @@ from comparison.runner.output import encode_netcdf
 
 
 def write_report(folder: Path, report: Report) -> None:
-    """Write every file of the report that can be made into a folder that exists and is empty."""
+    """Write the files of the report into an existing empty folder; leave out a file whose making raises an error."""
     results, lost = report.results, LostParts(report.lost)
     contents: dict[str, Callable[[], str | bytes]] = {
         "surfaces.nc": partial(encode_surfaces, report),
@@ -42,7 +42,7 @@ def write_report(folder: Path, report: Report) -> None:
 
 
 def encode_surfaces(report: Report) -> bytes:
-    """Return the content of surfaces.nc."""
+    """Return the bytes of surfaces.nc, the netCDF file of the amplification surfaces and what features add."""
     surfaces = report.surfaces
     for feature in report.features:
         if feature.dataset:

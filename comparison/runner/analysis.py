@@ -9,23 +9,23 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 
-LAST_LEVEL = 3  # number of the last level of a study, at which all of it is computed
+LAST_LEVEL = 3  # number of the finest level of a study, at which all phases and analyses are computed
 Result = TypeVar("Result", covariant=True)
 
 
 class Analysis(Protocol[Result]):
     """
-    Computation of a study in addition to the surfaces: the tasks it takes, and the result made of theirs.
+    Computation of a study in addition to its surfaces: the tasks to execute, and the result made from their results.
 
     No task is executed here. `tasks` lists them, a runner executes those that the cache lacks, and `collect` looks the
     results up by the same tasks.
     """
 
-    key: ClassVar[str]  # name in a selection, and key of the findings
-    stage: ClassVar[str]  # name of its stage of tasks on the terminal
+    key: ClassVar[str]  # name of the analysis in options, and key of its result
+    stage: ClassVar[str]  # name under which the terminal shows the progress of its tasks
     seconds: ClassVar[float] = 1.0  # s, rough processor time for one scene
     needs_surfaces: ClassVar[bool] = False  # whether its tasks depend on the values of the surfaces
-    level: ClassVar[int] = LAST_LEVEL  # first level of the study whose report includes it
+    level: ClassVar[int] = LAST_LEVEL  # number of the first level of a study at which the analysis is computed
 
     def estimate_seconds(self, study: Study) -> float:
         """Return the rough processor time of this analysis in a study, s."""
@@ -33,12 +33,12 @@ class Analysis(Protocol[Result]):
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return the tasks to compute. An analysis that does not need the surfaces ignores them."""
+        """Return the tasks to compute for a study; surfaces: of the amplification, None if they are not needed."""
 
     @abstractmethod
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Result | None:
         """
-        Return the result made of the results of `tasks(study, surfaces)`.
+        Return the analysis's result, made from the results of its tasks; None if it does not apply to the study.
 
-        A task that returned nothing leaves a gap that says why. None: the analysis does not apply to the study.
+        Where a task failed, the result says why a value is missing.
         """

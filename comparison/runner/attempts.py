@@ -14,9 +14,9 @@ from comparison.runner.output import print_on_stderr, publish_files
 from comparison.wording import word_exception
 from reference.support.command import OutputError
 
-# System error numbers which mean that a disk takes no file at all: the command then ends with code 3.
+# System error numbers that mean that no file can be written at all (full or faulty disk): the command ends with code 3.
 FULL_DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
-MAX_LINE_LETTERS = 300  # largest number of characters in the line that says why a part of the report is lost
+MAX_LINE_LETTERS = 300  # number of letters after which the reason why a part of the report is lost is cut off
 
 T = TypeVar("T")
 
@@ -35,28 +35,28 @@ def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = prin
 
 
 def publish_attempted(folder: Path, name: str, make: Callable[[], bytes], command: str) -> list[Path]:
-    """Publish the file that `make` returns; if that raises print a line and leave the file out."""
+    """Write the file whose content `make` returns, and return its path; if `make` raises an error, print a line."""
     content = attempt(name, make)
     return [] if content is None else publish_files(folder, {name: content}, command)
 
 
 class LostParts:
     """
-    Record of the parts of an output that could not be made.
+    List of the parts of a report that could not be made, because their computation raised an error.
 
-    lines: one for each, said on standard error, once. last: the line of the part that failed last.
+    lines: a message for each, printed once on standard error. last: the message of the part that failed last.
     """
 
     def __init__(self, lines: Iterable[str] = ()) -> None:
-        """Start with the lines of parts that are lost already."""
+        """Begin with the messages of parts that are already lost."""
         self.lines, self.last = [*lines], ""
 
     def attempt(self, what: str, act: Callable[[], T]) -> T | None:
-        """Return what `act` returns; if it raises note the part and return None."""
+        """Return what `act` returns; if it raises an error, record that the part `what` is lost and return None."""
         return attempt(what, act, self.note)
 
     def note(self, line: str) -> None:
-        """Record and print the line of a lost part."""
+        """Record and print the message of a lost part."""
         self.last = line
         if line not in self.lines:
             self.lines.append(line)

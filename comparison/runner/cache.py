@@ -31,25 +31,25 @@ from pydantic import ConfigDict, TypeAdapter
 from reference.problem import SceneError
 from reference.support.files import TEMPORARY_PREFIX, read_file, write_atomically
 
-FILE_SIGNATURE = b"phase-resonance result 1\n"  # first bytes of every stored result
-CHECKSUM_BYTES = 32  # number of bytes of a checksum (SHA-256)
-# Size of the cache in bytes above which groups of results that no key asks for are deleted, least recently used first.
+FILE_SIGNATURE = b"phase-resonance result 1\n"  # first bytes of every file in the cache
+CHECKSUM_BYTES = 32  # length of a checksum (SHA-256) in bytes
+# Size of the cache in bytes above which unneeded groups of results are deleted, least recently used first
 MAX_CACHE_BYTES = 2**30
-STALE_FILE_AGE = 3600.0  # s, age from which a temporary file was left by a killed run: writing one takes milliseconds
-GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")  # name of a group's directory: the first 24 digits of a hash
+STALE_FILE_AGE = 3600.0  # s, age above which a temporary file is of a killed run: writing one takes milliseconds
+GROUP_NAME_PATTERN = re.compile("[0-9a-f]{24}")  # matches the name of a directory with results: 24 digits of a hash
 ARRAY_KEY, BYTES_KEY = "\0array", "\0bytes"  # JSON keys that refer by number to an array or bytes stored after the JSON
 
 
 class StoreError(OSError):
-    """Error of a result that could not be stored; `str(error)` is one line."""
+    """Error: a result could not be written into the cache; `str(error)` is one line."""
 
 
 @dataclass(frozen=True)
 class CacheKey:
     """
-    Key of a stored result in the cache: its group, its place in the group, and its kind.
+    Key of a result in the cache, from which its directory and file name follow.
 
-    about: text of all that the results of the group depend on in common. item: hash of what distinguishes this result.
+    about: JSON text of all that a group of results depends on in common. item: hash of what distinguishes this result.
     kind: suffix of its file; results are counted by kind.
     """
 
@@ -59,25 +59,25 @@ class CacheKey:
 
     @cached_property
     def group(self) -> str:
-        """Return the name of the group's directory."""
+        """Return the name of the directory with this group of results: a hash of what they have in common."""
         return hashlib.sha256(self.about.encode()).hexdigest()[:24]
 
     @property
     def name(self) -> str:
-        """Return the file name relative to the folder of the cache."""
+        """Return the path of the result's file, relative to the folder of the cache."""
         return f"{self.group}/{self.item[:24]}.{self.kind}"
 
 
 class Cache:
-    """Results stored below `folder`, which is made with the first of them; `kept`: number read or written, by kind."""
+    """Results stored in files below `folder`; kept: number of results read or written, by kind."""
 
     def __init__(self, folder: Path) -> None:
-        """Use this folder, which need not exist; no result is counted yet."""
+        """Use this folder for the files; it need not exist yet."""
         self.folder = folder
         self.kept: Counter[str] = Counter()
 
     def get(self, key: CacheKey, declared: Any) -> Any | None:
-        """Return the stored result bit for bit, of type `declared`; None if there is none that is whole and fits."""
+        """Return the stored result, bit for bit, of type `declared`; None if there is none or its file is damaged."""
         try:
             file = read_file(self.folder / key.name, MAX_CACHE_BYTES)
             digest, content = (
@@ -85,9 +85,9 @@ class Cache:
                 file[len(FILE_SIGNATURE) + CHECKSUM_BYTES :],
             )
             if not file.startswith(FILE_SIGNATURE) or _checksum(key, content) != digest:
-                return None  # The file is damaged, or answers another question.
+                return None  # The file is damaged, or holds the result of another key.
             value = _unpack_value(content, declared)
-        except Exception:  # Whatever the fault of a file, its result is computed again.
+        except Exception:  # Whatever is wrong with the file, the result is computed again.
             return None
         self.kept[key.kind] += 1
         with suppress(OSError):
@@ -95,11 +95,11 @@ class Cache:
         return value
 
     def holds(self, key: CacheKey) -> bool:
-        """Return whether the cache has a file for the key, whatever its state."""
+        """Return whether the cache has a file for the key, which may be damaged."""
         return (self.folder / key.name).exists()
 
     def put(self, key: CacheKey, value: Any) -> None:
-        """Store a result unless it names a fault. Raises StoreError, which leaves earlier results as they were."""
+        """Store a result unless it has an error message. Raises StoreError; earlier results then stay as they were."""
         if has_error_message(value):
             return
         place = self.folder / key.name
@@ -112,7 +112,7 @@ class Cache:
         self.kept[key.kind] += 1
 
     def remove(self, keys: Iterable[CacheKey]) -> None:
-        """Delete the results of these keys and no others."""
+        """Delete the stored results of these keys."""
         wanted = {key.name for key in keys}
         for group in {Path(name).parent.name for name in wanted}:
             with suppress(OSError):
@@ -121,9 +121,9 @@ class Cache:
                         os.unlink(entry.path)
 
     def trim(self, keys: Iterable[CacheKey]) -> None:
-        """Delete groups without any of `keys`, least recently used first, while the cache exceeds its size limit."""
+        """Delete groups that `keys` do not need, least recently used first, while the cache exceeds MAX_CACHE_BYTES."""
         needed = {key.group for key in keys}
-        with suppress(OSError):  # A cache that cannot be listed is no reason to end a run.
+        with suppress(OSError):  # A run goes on even if the files of the cache cannot be listed.
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]
             groups.sort(key=lambda group: (group.stat().st_mtime, group.name))
             sizes = {group: _measure_group(group) for group in groups}
@@ -134,15 +134,15 @@ class Cache:
 
 
 def locate_store(out: Path) -> Path:
-    """Return the folder with the stored results of a report."""
+    """Return the folder of stored results that belongs to the report folder `out`."""
     return out.with_name(f"{out.name}.tiles")
 
 
 def refuse_foreign_store(out: Path) -> None:
-    """Raise SceneError, one line, if something else is in the place of the folder of stored results."""
+    """Raise SceneError if the folder for stored results holds anything else, or cannot be used."""
 
     def refusal(rule: str) -> SceneError:
-        """Return the error that names the folder in place of the stored results."""
+        """Return the error that names the folder and the broken rule."""
         return SceneError("command line", "--out", str(out), f"{folder.name!r} next to it {rule}")
 
     folder = locate_store(out)
@@ -159,19 +159,19 @@ def refuse_foreign_store(out: Path) -> None:
 
 
 def has_error_message(result: Any) -> bool:
-    """Return whether a result, or a part of it, has an error message."""
+    """Return whether a result, or any part of it, has an error message; it is not stored then."""
     if isinstance(result, tuple | list):
         return any(map(has_error_message, result))
     return bool(getattr(result, "error_message", ""))
 
 
 def _checksum(key: CacheKey, content: bytes) -> bytes:
-    """Return a checksum that covers the key, too, so that a renamed file is no valid result."""
+    """Return a checksum of key and content, so that a file that was renamed is not taken for another result."""
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
 
 def _remove_group(group: Path) -> None:
-    """Remove the results in a directory, and the directory if it is empty then."""
+    """Delete the stored results in a directory, and then the directory if it is empty."""
     if group.is_symlink():
         return
     with suppress(OSError):
@@ -182,12 +182,12 @@ def _remove_group(group: Path) -> None:
 
 
 def _is_group(entry: os.DirEntry[str]) -> bool:
-    """Return whether a directory has the name of a group; each file in it is checked before it is removed."""
+    """Return whether a directory entry is a directory named like a group of results."""
     return entry.is_dir(follow_symlinks=False) and GROUP_NAME_PATTERN.fullmatch(entry.name) is not None
 
 
 def _is_result(entry: os.DirEntry[str]) -> bool:
-    """Return whether a file is a result or a killed run's part of one, by its first bytes."""
+    """Return whether a file, by its first bytes, is a stored result, or an empty one left by a killed run."""
     if not entry.is_file(follow_symlinks=False):
         return False
     with suppress(OSError), open(entry.path, "rb") as stream:
@@ -197,7 +197,7 @@ def _is_result(entry: os.DirEntry[str]) -> bool:
 
 
 def _measure_group(group: Path) -> int:
-    """Return the bytes that a group takes on disk, after removing files left by killed runs."""
+    """Return the bytes that a directory of results takes on disk; delete files left there by killed runs."""
     total = 0
     for entry in os.scandir(group):
         state = entry.stat(follow_symlinks=False)
@@ -214,12 +214,12 @@ def _measure_group(group: Path) -> int:
 
 
 def _pack_value(about: Any, value: Any) -> bytes:
-    """Return a line of JSON and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
+    """Return a result as bytes: a line of JSON, then its arrays; about: what it depends on. Raises TypeError."""
     arrays = BytesIO()
     count = 0
 
     def convert_to_json(part: Any) -> Any:
-        """Return a value as JSON can hold it; arrays and bytes are stored behind and become references."""
+        """Return a value in a form that JSON can hold; write an array or bytes to `arrays` and return a reference."""
         nonlocal count
         if isinstance(part, bytes | np.ndarray):
             array = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
@@ -241,14 +241,14 @@ def _pack_value(about: Any, value: Any) -> bytes:
 
 
 def _unpack_value(content: bytes, declared: Any) -> Any:
-    """Return the value of type `declared` that `_pack_value` has packed. Raises for anything else."""
+    """Return the value of type `declared` from the bytes that `_pack_value` made. Raises an error for others."""
     text, _, rest = content.partition(b"\n")
     arrays, stream = [], BytesIO(rest)
     while stream.tell() < len(rest):
         arrays.append(npy.read_array(stream, allow_pickle=False))
 
     def with_arrays(part: dict[str, Any]) -> Any:
-        """Return the array or the bytes that a part of the JSON refers to; any other part as it is."""
+        """Return the array or bytes to which a JSON object refers; any other object unchanged."""
         if ARRAY_KEY in part:
             return arrays[part[ARRAY_KEY]]
         return arrays[part[BYTES_KEY]].tobytes() if BYTES_KEY in part else part
@@ -258,6 +258,6 @@ def _unpack_value(content: bytes, declared: Any) -> Any:
 
 @cache
 def _make_type_adapter(declared: Any) -> TypeAdapter[tuple[Any]]:
-    """Return pydantic's reader of a tuple that holds one value of type `declared`."""
-    # A TypeAdapter of a dataclass takes no configuration, one of a tuple does.
+    """Return the pydantic object that checks and converts a tuple with one value of type `declared`."""
+    # A tuple, because pydantic allows this configuration for a tuple but not for a dataclass
     return TypeAdapter(tuple[declared], config=ConfigDict(arbitrary_types_allowed=True))

@@ -27,19 +27,19 @@ from reference.problem import SceneError
 if TYPE_CHECKING:
     from distributed import Client
 
-CONNECT_TIMEOUT = 10.0  # s that the scheduler has for its answer
-MAX_CONNECT_SECONDS = 12.0  # s that a connection attempt may take: a silent listener takes longer than CONNECT_TIMEOUT
-MAX_MESSAGE_LETTERS = 200  # largest number of letters shown of a Dask error message
-MAX_SECONDS_WITHOUT_WORKERS = 60.0  # s without any worker after which the run ends
-RECOUNT_SECONDS = 2.0  # s between two counts of the workers, which may join or leave at any time
-CONNECTION_LOST = "the connection to the scheduler was lost"  # message of ExecutorLostError
+CONNECT_TIMEOUT = 10.0  # s, time limit given to Dask for the scheduler's answer when a connection is opened
+MAX_CONNECT_SECONDS = 12.0  # s after which a connection attempt is given up even if Dask ignores CONNECT_TIMEOUT
+MAX_MESSAGE_LETTERS = 200  # number of letters after which a Dask error message is cut off
+MAX_SECONDS_WITHOUT_WORKERS = 60.0  # s without any worker on the cluster after which the run ends
+RECOUNT_SECONDS = 2.0  # s after which the workers of the cluster are counted again, as they may join or leave
+CONNECTION_LOST = "the connection to the scheduler was lost"  # error message when the cluster cannot be reached
 
-_ONE_CALL = threading.Lock()  # held during a call, so that a worker computes one at a time
+_ONE_CALL = threading.Lock()  # held during a call, so that the threads of a worker compute one call at a time
 
 
 @contextmanager
 def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
-    """Yield an executor on a cluster, which is left as it was. Raises SceneError if none answers or has other code."""
+    """Yield an executor on a running Dask cluster. Raises SceneError if none answers or its workers have other code."""
     refusal = partial(SceneError, "command line", "--scheduler", address)
     try:
         from distributed import Client
@@ -48,10 +48,10 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
         raise refusal("needs Dask: pip install distributed") from None
     for name in ("asyncio", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
-            logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # this program reports the error itself, in one line
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # no messages of Dask: this program reports errors
 
     async def knock() -> None:
-        """Open a connection, ask who answers and close it; raise if no scheduler does."""
+        """Open a connection, ask who answers and close it; raise ValueError if it is not a Dask scheduler."""
         comm = await connect(address, timeout=CONNECT_TIMEOUT)
         try:
             answer = await send_recv(comm, op="identity", reply=True)
@@ -61,10 +61,10 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
             raise ValueError("what answers is none")
 
     try:
-        # A client whose scheduler does not answer would leave threads behind
+        # Asked before a Client is made, because a Client leaves threads behind if no scheduler answers
         _finish_call(lambda: asyncio.run(knock()))
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
-    except MemoryError:  # Dask raises it for text that it takes for the length of a message.
+    except MemoryError:  # raised if another program answers and Dask takes its text for the length of a message
         raise refusal("no scheduler answers there: another protocol is spoken: give tcp://HOST:PORT of one") from None
     # Dask raises errors of many types if something else answers, or for TLS without a configuration.
     except Exception as error:
@@ -77,11 +77,11 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
 
 
 def _finish_call(call: Call) -> None:
-    """Make a call and raise what it raises; raise TimeoutError if it does not end, which leaves a thread behind."""
+    """Make a call in a thread; raise its error, or TimeoutError if it takes too long: the thread is left behind."""
     ended: Future[Any] = Future()
 
     def run() -> None:
-        """Make the call in a thread and keep its result or error."""
+        """Make the call and keep its result or error."""
         try:
             ended.set_result(call())
         except BaseException as error:
@@ -94,16 +94,16 @@ def _finish_call(call: Call) -> None:
 
 
 class ClusterExecutor(Executor):
-    """Executor on all workers of a cluster, with one task at a time in each, whatever its number of threads."""
+    """Executor that runs tasks on all workers of a Dask cluster, one at a time in each worker."""
 
     def __init__(self, client: Client) -> None:
-        """Take over the client, which is connected to the cluster."""
+        """Use this client, which is connected to the cluster."""
         self._client, self._inner = client, client.get_executor(pure=False)
         self._count, self._counted, self._seen = 0, -RECOUNT_SECONDS, time.monotonic()
 
     @property
     def width(self) -> int:
-        """Return the present number of workers. Raises ExecutorLostError without scheduler or, for long, workers."""
+        """Return the number of workers. Raises ExecutorLostError if scheduler or, for long, all workers are gone."""
         now = time.monotonic()
         if now - self._counted > RECOUNT_SECONDS:
             self._count, self._counted = _count_workers(self._client), now
@@ -114,7 +114,7 @@ class ClusterExecutor(Executor):
         return max(self._count, 1)
 
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """Start a call on a worker; with a time limit in a process of its own, so that the worker survives it."""
+        """Start a call on a worker; with a time limit, s, in a separate process, so that the worker survives it."""
         if self._client.status != "running":
             raise ExecutorLostError(CONNECTION_LOST)
         answer: Future[Any] = Future()
@@ -124,39 +124,39 @@ class ClusterExecutor(Executor):
         return answer
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Do nothing, because the next sweep uses the cluster as well."""
+        """Do nothing: the cluster remains in use."""
 
     def abandon(self) -> None:
-        """Cancel the calls that have not begun; a worker finishes the one it is computing."""
+        """Cancel the calls that no worker has begun; calls that have begun are finished."""
         if self._client.status == "running":
             self._inner.shutdown(wait=False)
 
 
 def _call_one_at_a_time(call: Call, seconds: float | None) -> Any:
-    """Call the function while no other thread of the worker does: engine and equations are not thread-safe."""
+    """Return what a call returns, made while no other thread of the worker computes: the codes are not thread-safe."""
     with _ONE_CALL:
         if seconds is None:
             numba.set_num_threads(1)
             return call()
-        # Dask's workers under a nanny are daemons, which may not start processes.
+        # Dask marks its worker processes as daemons, which may not start processes: remove the mark.
         multiprocessing.current_process().daemon = False
         return _get_child_workers().start(call, seconds).result()
 
 
 @cache
 def _get_child_workers() -> Workers:
-    """Return the process of this worker for calls with a time limit."""
+    """Return the pool of one process in which this worker makes calls that have a time limit."""
     return Workers(1)
 
 
 def _copy_outcome(remote: Future[Any], answer: Future[Any]) -> None:
-    """Give the result or the error of a remote call to the future that waits for it."""
+    """Copy the result or the error of a call on the cluster to the future `answer` that waits for it."""
     from distributed import KilledWorker
 
     try:
         error = remote.exception()
     except CancelledError:
-        error = ExecutorLostError(CONNECTION_LOST)  # Only the loss of the connection cancels a call.
+        error = ExecutorLostError(CONNECTION_LOST)  # A call is only canceled when the connection is lost.
     if isinstance(error, KilledWorker):
         error = WorkerDiedError(str(error), error.allowed_failures + 1)
     if error is None:
@@ -166,7 +166,7 @@ def _copy_outcome(remote: Future[Any], answer: Future[Any]) -> None:
 
 
 def _count_workers(client: Client) -> int:
-    """Return the number of workers of the scheduler; raise ExecutorLostError without connection."""
+    """Return the number of workers of the cluster; raise ExecutorLostError if the connection is lost."""
     with suppress(OSError, TimeoutError, CancelledError):
         if client.status == "running":
             return len(client.nthreads())
@@ -174,7 +174,7 @@ def _count_workers(client: Client) -> int:
 
 
 def _refuse_other_code(client: Client, models: set[str], refusal: Callable[[str], SceneError]) -> None:
-    """Raise if a worker has other versions of packages or source, whose numbers must not be taken for ours."""
+    """Raise an error if a worker has other versions of packages or source code, as its results could differ."""
     try:
         client.wait_for_workers(1, timeout=MAX_SECONDS_WITHOUT_WORKERS)
         theirs = client.run(_collect_fingerprints, sorted(models), on_error="return")
@@ -187,7 +187,7 @@ def _refuse_other_code(client: Client, models: set[str], refusal: Callable[[str]
     ours = _collect_fingerprints(sorted(models))
     for worker, versions in theirs.items():
         if isinstance(versions, OSError):
-            continue  # This worker has ended or left since it was counted.
+            continue  # This worker has left the cluster: it need not be checked.
         if isinstance(versions, Exception):
             raise refusal(f"worker {worker} cannot import this project ({versions}): install it there")
         for name, value in ours.items():
@@ -196,5 +196,5 @@ def _refuse_other_code(client: Client, models: set[str], refusal: Callable[[str]
 
 
 def _collect_fingerprints(models: list[str]) -> dict[str, str]:
-    """Return versions and source hashes of a worker for all these models."""
+    """Return the versions of packages and hashes of source code in this process, as far as these models use them."""
     return {name: value for model in models for name, value in fingerprint_environment(model).items()}

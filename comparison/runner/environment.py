@@ -15,19 +15,19 @@ from pathlib import Path
 
 from reference.support.version import __version__
 
-COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")  # packages that a result depends on
+COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")  # With another version, results are made anew.
 OWN_PACKAGES = ("reference", "multibody", "comparison")  # packages of this project
 USER_MODELS = "comparison.study.user_models"  # module that calls users' engines; their settings state their source
 SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules through which every model is called
 # Packages whose versions a report states
 REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
-DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")  # packages that a figure depends on
-# Modules whose source code a stored result depends on: it is computed again when that changes.
+DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")  # also in the key of stored results that may hold figures
+# Modules whose source code a stored result of an analysis depends on: if it changes, the result is computed again
 ANSWERING_MODULES = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
 
 
 def fingerprint_environment(model: str) -> dict[str, str]:
-    """Return versions of the computing packages, and source hashes behind the function `model` ("package:name")."""
+    """Return all that results of a model's function ("package:name") depend on: package versions, source hashes."""
     module = model.split(":")[0]
     return _describe_environment(
         COMPUTING_PACKAGES, (*SHARED_MODULES, module if module == USER_MODELS else module.split(".")[0])
@@ -35,14 +35,14 @@ def fingerprint_environment(model: str) -> dict[str, str]:
 
 
 def fingerprint_task_environment(module: str) -> dict[str, str]:
-    """Return package versions and source hashes for a task that calls both sides and may draw figures."""
+    """Return all that the result of a task of this module depends on: package versions, and hashes of source code."""
     return _describe_environment(
         (*COMPUTING_PACKAGES, *DRAWING_PACKAGES), (*ANSWERING_MODULES, module.rpartition(".")[0] or module)
     )
 
 
 def _describe_environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, str]:
-    """Return interpreter, machine, package versions and source hashes that an answer depends on."""
+    """Return versions of Python, machine and packages, and hashes of the modules' source code, by name."""
     return {
         "python": platform.python_version(),
         "machine": platform.machine(),
@@ -54,11 +54,11 @@ def _describe_environment(packages: Iterable[str], sources: Iterable[str]) -> di
 
 def fingerprint_engine(module: str) -> dict[str, str]:
     """
-    Return what the numbers of a user's engine depend on: hashes of source behind its module, versions of packages.
+    Return what the results of a user's engine depend on: hashes of its source code, versions of packages it imports.
     """
     package = module.split(".")[0]
     spec = find_spec(package)
-    # A namespace package has no source file.
+    # A namespace package (a folder without __init__.py) has no source file: take the module alone.
     names = {package if spec is not None and spec.origin is not None else module}
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
@@ -74,12 +74,12 @@ def fingerprint_engine(module: str) -> dict[str, str]:
 
 @cache
 def _list_installed_packages() -> Mapping[str, list[str]]:
-    """Return the names of the distributions that provide each installed package; this takes half a second."""
+    """Return for each installed package the names under which it was installed; this takes half a second."""
     return packages_distributions()
 
 
 def _list_imported_packages(source: str) -> set[str]:
-    """Return the packages that a module imports anywhere in its text, without Python's own."""
+    """Return the names of packages that a module's source code imports, without Python's standard library."""
     names = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -91,7 +91,7 @@ def _list_imported_packages(source: str) -> set[str]:
 
 @cache
 def hash_source(name: str) -> str:
-    """Return a hash of the Python files of a module or package and their paths in it; "absent" if there is none."""
+    """Return a hash of the source code of a module or package; "absent" if it is not installed."""
     spec = find_spec(name)
     if spec is None or spec.origin is None:
         return "absent"
@@ -115,7 +115,7 @@ def _read_version(name: str) -> str:
 
 
 def describe_provenance() -> dict[str, str]:
-    """Return versions, machine and commit in the order of the report."""
+    """Return versions, machine and git commit, as the report lists them."""
     return {
         "phase-resonance": __version__,
         "commit": _read_commit(),
@@ -129,7 +129,7 @@ def describe_provenance() -> dict[str, str]:
 
 
 def _read_commit() -> str:
-    """Return the commit of the checkout that this package runs from, or that there are changes or no checkout."""
+    """Return the git commit of this package, also whether files were changed since; or that it is no git checkout."""
     folder = Path(__file__).resolve().parents[2]
     try:
         if Path(ask_git(folder, "rev-parse", "--show-toplevel")).resolve() != folder:
@@ -141,7 +141,7 @@ def _read_commit() -> str:
 
 
 def ask_git(folder: Path, *arguments: str) -> str:
-    """Return git's answer about a folder. Raises OSError or CalledProcessError."""
+    """Return what a git command with these arguments prints in a folder. Raises OSError or CalledProcessError."""
     done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 

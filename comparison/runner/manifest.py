@@ -11,13 +11,13 @@ from pathlib import Path
 
 from reference.support.files import read_file
 
-MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"  # name of the file, and of its format
-MAX_FILE_BYTES = 2**30  # size in bytes above which a file is not checked and counts as foreign
+MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"  # name of the list of written files; of its format
+MAX_FILE_BYTES = 2**30  # size in bytes above which a file is not read and counts as not written by the study
 
 
 @dataclass(frozen=True)
 class OwnedFile:
-    """File that the study wrote: its command, and the hashes it may have, two while it is being replaced."""
+    """File that the study wrote: command that wrote it, and hashes of its content, old and new during replacement."""
 
     command: str
     hashes: tuple[str, ...]
@@ -34,12 +34,12 @@ def list_foreign_files(folder: Path) -> list[str]:
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else is_own_file(path, manifest.get(name))):
             foreign_files.append(name)
-    # A foreign folder is left out if foreign files in it are listed.
+    # Leave out folders whose files are listed themselves.
     return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
 
 
 def read_manifest(folder: Path) -> dict[str, OwnedFile]:
-    """Return the files that the study wrote into a folder by path; empty without a manifest of the study."""
+    """Return the files that the study wrote into a folder, by path; empty if it has no manifest of the study."""
     try:
         data = json.loads(read_file(folder / MANIFEST, MAX_FILE_BYTES))
         if data["schema"] != SCHEMA:
@@ -51,7 +51,7 @@ def read_manifest(folder: Path) -> dict[str, OwnedFile]:
 
 
 def format_manifest(manifest: Mapping[str, OwnedFile]) -> bytes:
-    """Return the manifest as the JSON that is stored."""
+    """Return the manifest (list of written files) as the bytes of its JSON file."""
     files = {
         name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
     }
@@ -60,7 +60,7 @@ def format_manifest(manifest: Mapping[str, OwnedFile]) -> bytes:
 
 def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
     """
-    Yield everything below a folder, and whether it is a folder itself, folders before what they contain.
+    Yield every path below a folder, each with whether it is a folder; a folder comes before its content.
 
     Raises OSError.
     """
@@ -72,7 +72,7 @@ def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
 
 
 def is_own_file(file: Path, entry: OwnedFile | None) -> bool:
-    """Return whether the content of a file is one that the study wrote."""
+    """Return whether a file has the content that the study wrote, by its entry in the manifest; None: no entry."""
     if entry is None or file.is_symlink() or not file.is_file():
         return False
     try:

@@ -12,25 +12,25 @@ from comparison.study.study import Study
 
 
 class MappedAnalysis(Analysis[Result]):
-    """Analysis with one task for each argument, a tuple that begins with its scene."""
+    """Base class of an analysis that calls one function with many arguments: one task each."""
 
     function: ClassVar[Any]  # function of one argument, which runs inside a worker process
-    without_value: ClassVar[Any]  # function of argument and result; returns the value for a task that returned none
+    without_value: ClassVar[Any]  # function of argument and failed result: returns what stands for the missing value
     needs_compiled_reference: ClassVar[bool] = True
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:
-        """Return the arguments of the tasks."""
+        """Return the arguments of the function, one for each task: tuples that begin with a scene."""
         raise NotImplementedError
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return one task for each argument."""
+        """Return the tasks: one call of the function for each argument."""
         compiled, arguments = self.needs_compiled_reference, self.task_arguments(study, surfaces)
         return [Task(self.function, each, self.stage, 1.0, each[0], compiled) for each in arguments]
 
     def values(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Any]:
-        """Return the values of the tasks, in the order of the arguments."""
+        """Return what the tasks computed, in the order of the arguments; `without_value` stands for a failed task."""
         return [results.value(task, self.without_value) for task in self.tasks(study, surfaces)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
-        """Return all values that the tasks listed; None if they listed none."""
+        """Return the lists that the tasks returned, joined into one; None if it is empty."""
         return [each for listed in self.values(study, surfaces, results) for each in listed] or None

@@ -45,25 +45,25 @@ from reference.support.files import (
 if TYPE_CHECKING:
     import xarray as xr
 
-REPORT_COMMAND = "comparison.run"  # command whose files make up a report; the files of others in the folder stay
-PAGE_FILE = "index.html"  # name of the main page in a folder of results
-MAX_NAME_BYTES = 240  # largest number of bytes of the report's folder name: names made from it are longer
+REPORT_COMMAND = "comparison.run"  # command that writes reports: a new report replaces only files of this command
+PAGE_FILE = "index.html"  # name of the main page of a report
+MAX_NAME_BYTES = 240  # longest name of a report's folder, bytes; names made from it are longer and must be possible
 
 
 def print_on_stderr(line: str) -> None:
-    """Print a line on standard error, where it does not mix with results."""
+    """Print a line on standard error, apart from the results on standard output."""
     print(line, file=sys.stderr)
 
 
 def resolve_destination(path: Path, option: str = "--out") -> Path:
-    """Return the folder that a path means, without symbolic links and "..". Raises SceneError if none can be made."""
+    """Return the folder at a path, free of symbolic links and "..". Raises SceneError if it cannot be a folder."""
     refusal = partial(SceneError, "command line", option, str(path))
     if path.name == ".." and set(path.parts) != {".."}:
         raise refusal("ends in '..': give the directory by its name")
     try:
         place = path.resolve()
         str(place).encode()
-        if place.is_symlink():  # Older versions of Python raise for such a link in resolve().
+        if place.is_symlink():  # a link that leads back to itself: older versions of Python raise RuntimeError for it
             raise RuntimeError
         if len(place.name.encode()) > MAX_NAME_BYTES:
             raise refusal(f"has a name of more than {MAX_NAME_BYTES} bytes: give a shorter one")
@@ -76,16 +76,16 @@ def resolve_destination(path: Path, option: str = "--out") -> Path:
             raise refusal("cannot be written: Not a directory")
     except UnicodeError:
         raise refusal("is not text in UTF-8: give a path that is") from None
-    except RuntimeError:  # Older versions of Python raise it for a loop of links.
+    except RuntimeError:
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
-    # A path without links stays as it was typed, for the messages; "." has no name from which to name the store.
+    # Keep the path as it was typed, for messages, unless it has links or "..", or no name (".") to derive others from.
     return path if path.name and Path(os.path.abspath(path)) == place and ".." not in path.parts else place
 
 
 def refuse_foreign_report(out: Path) -> None:
-    """Raise SceneError, one line, if a report cannot replace what is at `out`, a destination."""
+    """Raise SceneError if the folder `out` has anything that a new report must not replace."""
     refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
     refuse_other_page(out, REPORT_COMMAND)
@@ -107,7 +107,7 @@ def refuse_foreign_report(out: Path) -> None:
 
 
 def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
-    """Raise SceneError, one line, if files of these names in `out`, a destination, would replace the user's own."""
+    """Raise SceneError if the folder `out` has files of these names that the study did not write."""
     manifest = read_manifest(out)
     for name in names if manifest else (MANIFEST, *names):
         if os.path.lexists(out / name) and not is_own_file(out / name, manifest.get(name)):
@@ -117,7 +117,7 @@ def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
 
 
 def refuse_other_page(out: Path, command: str) -> None:
-    """Raise SceneError, one line, if the page in `out` is another command's: two answers need two folders."""
+    """Raise SceneError if index.html in the folder `out` is another command's page: two answers need two folders."""
     page = read_manifest(out).get(PAGE_FILE)
     if page is not None and page.command != command:
         name = page.command.rpartition(".")[2]
@@ -126,7 +126,7 @@ def refuse_other_page(out: Path, command: str) -> None:
 
 
 def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
-    """Raise SceneError, one line, if nothing can be written in `folder`, or where it will be made."""
+    """Raise SceneError if no file can be written in `folder`, or in its nearest existing parent."""
     try:
         existing = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
         tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY_PREFIX).cleanup()
@@ -136,7 +136,7 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
 
 @dataclass
 class StagedReport:
-    """A report that is being written into `folder`, and its final place."""
+    """A report that is being written: its temporary folder, and its final place."""
 
     folder: Path
     place: Path
@@ -145,11 +145,11 @@ class StagedReport:
 @contextmanager
 def replace_report(out: Path) -> Iterator[StagedReport]:
     """
-    Yield a new folder for a report; if the block ends without exception its files move to `out`, each whole.
+    Yield a temporary folder for a report; if the block ends without exception its files move to `out`, each whole.
 
-    What the report there has no more is removed, and files of other commands are kept. If anything but the study's own
-    files is there by then all of it stays and the report goes to a new name, which a line on standard error says. After
-    the block `place` of the report is where it is.
+    Files of the old report are replaced or removed, and files of other commands are kept. If `out` by then has files
+    that the study did not write, all of it stays, the report gets a new name, and a line on standard error says so.
+    After the block, `place` of the report is where it is.
     """
     place = out.resolve()
     made = make_parents(place.parent)
@@ -157,7 +157,7 @@ def replace_report(out: Path) -> Iterator[StagedReport]:
         with staging_directory(place) as staging_folder:
             report = StagedReport(staging_folder / NEW_FILES_FOLDER, place)
             yield report
-            # In a thread of its own the move is not interrupted by what interrupts this thread.
+            # Move the files in a separate thread, so that Ctrl-C does not interrupt the move.
             with hold_lock(place.parent), ThreadPoolExecutor(1) as mover:
                 report.place = mover.submit(_install_report, report.folder, place).result()
     except BaseException:
@@ -174,14 +174,14 @@ def remove_abandoned_reports(out: Path) -> None:
 
 
 def publish_files(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path]:
-    """Write a command's files into a folder; a foreign file of that name stays, with a line. Raises OSError."""
+    """Write files into a folder, next to foreign files of the same names; return their paths. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with hold_lock(folder.resolve().parent):
         for name, content in files.items():
             file, digest, manifest = folder / name, hash_content(content), read_manifest(folder)
             ours = is_own_file(file, manifest.get(name))
-            # The manifest names the file before it is written, so that it is the study's even after an interruption.
+            # List the file in the manifest before writing it, so that it counts as the study's if writing stops early.
             if ours or not os.path.lexists(file):
                 _write_manifest(
                     folder, manifest | {name: _make_transition_entry(manifest.get(name), OwnedFile(command, (digest,)))}
@@ -200,12 +200,12 @@ def publish_files(folder: Path, files: Mapping[str, bytes], command: str) -> lis
 
 
 def _make_transition_entry(old: OwnedFile | None, new: OwnedFile) -> OwnedFile:
-    """Return the manifest entry of a file that has its old or its new content while it is being replaced."""
+    """Return the manifest entry of a file during its replacement, when its content may be the old or the new one."""
     return OwnedFile(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
 
 def _write_manifest(folder: Path, manifest: Mapping[str, OwnedFile]) -> None:
-    """Write the manifest, unless something else has its name."""
+    """Write the manifest into a folder, unless another file there has its name."""
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
         print_on_stderr(
             f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files"
@@ -215,12 +215,12 @@ def _write_manifest(folder: Path, manifest: Mapping[str, OwnedFile]) -> None:
 
 
 def encode_netcdf(values: xr.Dataset) -> bytes:
-    """Return the content of a netCDF file, made in memory: HDF5 ends the process if a disk takes only a part."""
+    """Return the bytes of a netCDF file; made in memory, as the HDF5 library ends the process if a disk is full."""
     return bytes(values.to_netcdf(engine="h5netcdf"))
 
 
 def _install_report(new: Path, place: Path) -> Path:
-    """Move the files of a new report to its place, or next to it; return where they are."""
+    """Move the files of a new report to its place, or next to it if that is taken; return where they are."""
     mine = {
         path.relative_to(new).as_posix(): OwnedFile(REPORT_COMMAND, (hash_content(path.read_bytes()),))
         for path, is_folder in walk_folder(new)
@@ -236,7 +236,7 @@ def _install_report(new: Path, place: Path) -> Path:
             (there / name).unlink()
         with suppress(OSError):
             (there / name).parent.rmdir()
-    # The manifest moves first: if the move is interrupted, every file is known as the study's own.
+    # Move the manifest first: if the move is interrupted, every file is then known as written by the study.
     replaced = {name: _make_transition_entry(old.get(name), own) for name, own in mine.items()}
     (new / MANIFEST).write_bytes(format_manifest(kept | replaced))
     for name in (MANIFEST, *mine):
@@ -248,7 +248,7 @@ def _install_report(new: Path, place: Path) -> Path:
 
 
 def _find_obstacle(place: Path) -> str:
-    """Return what keeps a report from its place, in words; "" if nothing does."""
+    """Return in words why a report cannot be moved to its place; "" if it can."""
     if not os.path.lexists(place):
         return ""
     if place.is_symlink() or not place.is_dir():

@@ -36,39 +36,39 @@ try:
 except ImportError:  # Windows cannot limit a process's processor time; its wall time is limited instead.
     resource = None  # type: ignore[assignment]
 
-SPAWN_CONTEXT = multiprocessing.get_context("spawn")  # worker processes start as fresh interpreters
-# Wall time, over the limit of processor time, after which a process without an answer counts as stuck.
+SPAWN_CONTEXT = multiprocessing.get_context("spawn")  # starts worker processes as new Python interpreters
+# A process without an answer is ended after this multiple of its limit of processor time as wall time.
 STALLED_WALL_RATIO = 20.0
-# A process may take this multiple of its limit of processor time as wall time, because it may share its processor,
-# plus the spare s. For limits of a few seconds STALLED_WALL_RATIO decides.
+# It is also ended after WALL_TIME_RATIO times that limit plus SPARE_WALL_SECONDS, s, of wall time, if that is earlier;
+# wall time is longer than processor time because a process may have to share its processor.
 WALL_TIME_RATIO, SPARE_WALL_SECONDS = 5.0, 60.0
-MAX_TIMEOUT = 1e6  # s, longest timeout that the system takes
-EXIT_SECONDS = 5.0  # s, longest wait for the end of a process whose pipe has been closed
-# Environment variable that keeps Python from searching the working directory for modules first.
+MAX_TIMEOUT = 1e6  # s, longest time that the system accepts when waiting for an answer
+EXIT_SECONDS = 5.0  # s, longest wait for a process to end after its pipe (connection to this process) has closed
+# Environment variable; if it is set, Python does not search the working directory for modules first.
 SAFE_PATH = "PYTHONSAFEPATH"
 
 Call = Callable[[], Any]  # function with its arguments bound, to be called in a worker
-Pool = Executor | Callable[[int], Executor]  # an executor that the caller ends, or a function that makes one for N jobs
+Pool = Executor | Callable[[int], Executor]  # an executor, which stays open, or a function that makes one for N jobs
 
-# Starting a process also collects ended ones: only one thread may do either at a time.
+# Held while a process is started or waited for, because a start also collects processes that have ended
 _process_start_lock = threading.Lock()
 
 
 class WorkerDiedError(Exception):
-    """Error of a task whose process died, `times` in a row; other tasks and the executor go on."""
+    """Error: the process of a task died, `times` in a row; other tasks and the executor are not affected."""
 
     def __init__(self, message: str, times: int = 1, exit_code: int | None = None) -> None:
-        """Set how many times in a row the task's process died, and its last exit code."""
+        """Keep how many times in a row the process of the task died, and its last exit code."""
         super().__init__(message)
         self.times, self.exit_code = times, exit_code
 
 
 class TimeLimitError(Exception):
-    """Error of a task that exceeded its time limit, whose process was ended; `str(error)` states how long it took."""
+    """Error: a task exceeded its time limit, so that its process was ended; `str(error)` states the limit."""
 
 
 class ExecutorLostError(RuntimeError):
-    """Error of an executor that can compute no further task; `str(error)` is one line that says why."""
+    """Error: the executor can compute no further task; `str(error)` is one line that says why."""
 
 
 def count_cores() -> int:
@@ -78,7 +78,7 @@ def count_cores() -> int:
 
 @contextmanager
 def open_executor(pool: Pool, jobs: int) -> Iterator[Executor]:
-    """Yield the executor; one made for the block ends with it, without waiting if the block raises."""
+    """Yield an executor for a block; if it was made here, it ends with the block (at once if the block raises)."""
     if isinstance(pool, Executor):
         yield pool
         return
@@ -92,7 +92,7 @@ def open_executor(pool: Pool, jobs: int) -> Iterator[Executor]:
 
 
 def make_process_pool(jobs: int) -> Workers:
-    """Return an executor of up to `jobs` fresh processes with one thread each, as the tasks run in parallel."""
+    """Return an executor of up to `jobs` worker processes, in each of which libraries use one thread only."""
     limit_child_threads()
     return Workers(jobs)
 
@@ -104,14 +104,14 @@ def limit_child_threads() -> None:
 
 
 class Workers(Executor):
-    """Executor of up to `jobs` processes; one that has ended is replaced with the next task."""
+    """Executor that runs calls in up to `jobs` worker processes; one that has died is replaced for the next call."""
 
     def __init__(self, jobs: int) -> None:
         """Prepare `jobs` threads, each for one worker process; no process is started yet."""
         self.width = jobs
         self._threads = ThreadPoolExecutor(jobs)  # one thread for each process, which waits for its answers
         self._lock = threading.Lock()
-        # Idle processes by the group of the tasks that they have run
+        # Idle worker processes, by the group of tasks for which each was started
         self._idle: dict[str, list[_Process]] = defaultdict(list)
         self._all: set[_Process] = set()
         self._abandoned = False
@@ -121,11 +121,11 @@ class Workers(Executor):
         return self.start(partial(function, *args, **kwargs))
 
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """Start a call in a process of its group; TimeLimitError after `seconds` of processor time."""
+        """Start a call in a process that only its group uses; TimeLimitError after `seconds` of processor time."""
         return self._threads.submit(self._run, call, seconds, group)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Finish the calls that have begun if `wait`, and end the processes; else they end with this one."""
+        """If `wait`, finish calls that have begun and end the worker processes; else these end with this process."""
         self._threads.shutdown(wait=wait, cancel_futures=cancel_futures)
         if wait:
             for process in self._all:
@@ -133,7 +133,7 @@ class Workers(Executor):
             self._all.clear()
 
     def abandon(self) -> None:
-        """End the processes, even in the middle of their tasks."""
+        """Kill the worker processes at once, also in the middle of a call."""
         with self._lock:
             self._abandoned = True
             for process in self._all:
@@ -141,7 +141,7 @@ class Workers(Executor):
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _run(self, call: Call, seconds: float | None, group: str) -> Any:
-        """Return the result of a call in a worker process of its group; end the process if it died or took too long."""
+        """Make a call in a worker process of its group and return the result; end the process if it takes too long."""
         process = self._free_process(group)
         try:
             value, error = process.run(call, seconds)
@@ -150,7 +150,7 @@ class Workers(Executor):
             with self._lock:
                 self._all.discard(process)
             raise
-        except BaseException:  # Arguments or results that cannot be pickled do not harm the process.
+        except BaseException:  # as for arguments that cannot be sent to the process: it remains usable
             self._idle[group].append(process)
             raise
         self._idle[group].append(process)
@@ -171,7 +171,7 @@ class Workers(Executor):
 
 
 class _Process:
-    """A worker process that makes one call after the other."""
+    """A worker process, to which calls are sent one after the other."""
 
     def __init__(self) -> None:
         """Start the worker process, which waits for calls."""
@@ -184,7 +184,7 @@ class _Process:
 
     def run(self, call: Call, seconds: float | None) -> tuple[Any, BaseException | None]:
         """
-        Return the result of the call, and the error that it raised or None.
+        Make a call in the process; return its result, and the error that it raised or None.
 
         Raises WorkerDiedError or TimeLimitError; then the process has ended.
         """
@@ -204,7 +204,7 @@ class _Process:
         return value, error
 
     def _explain_end(self, seconds: float | None) -> WorkerDiedError | TimeLimitError:
-        """Return why a worker process ended: the limit of processor time, or its exit code."""
+        """Return the error that says why a worker process ended: time limit, or its exit code."""
         with _process_start_lock:
             self._process.join(EXIT_SECONDS)
             code = self._process.exitcode
@@ -226,13 +226,13 @@ class _Process:
 
 def _serve_calls(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
     """
-    Make the calls that messages name until the parent closes the pipe or ends.
+    Make the calls that arrive by the pipe and send back results, until the parent process closes the pipe or ends.
 
-    safe_path: value of SAFE_PATH for the processes that a task starts. collections: thresholds of garbage collection.
+    collections: thresholds of Python's garbage collection. safe_path: SAFE_PATH for the processes that calls start.
     """
     _set_safe_path(safe_path)
     gc.set_threshold(*collections)
-    # Ctrl-C reaches the whole process group; the parent alone decides what ends.
+    # Ctrl-C also reaches this process: ignore it, as the parent process decides what to end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     numba.set_num_threads(1)
@@ -242,7 +242,7 @@ def _serve_calls(pipe: Connection, collections: tuple[int, int, int], safe_path:
 
 
 def _call_function(message: bytes) -> bytes:
-    """Return the packed result of the call in a message, and the error that it raised or None."""
+    """Make the call in a message; return as bytes its result and the error that it raised, or None."""
     value: Any = None
     error: BaseException | None = None
     try:
@@ -257,7 +257,7 @@ def _call_function(message: bytes) -> bytes:
     try:
         answer = pickle.dumps((value, error))
         if error is not None:
-            pickle.loads(answer)  # Some errors cannot be made again from their text.
+            pickle.loads(answer)  # raises here, not in the parent, for an error object that cannot be restored
     except Exception as unsent:
         told = unsent if error is None else error
         return pickle.dumps((None, RuntimeError(f"{type(told).__name__}: {told}")))
@@ -265,7 +265,7 @@ def _call_function(message: bytes) -> bytes:
 
 
 def _limit_processor_time(seconds: float | None) -> None:
-    """Let the system end this process after `seconds` more of processor time, rounded up; never for None."""
+    """Let the system kill this process after `seconds` more of processor time, rounded up; None: no limit."""
     if resource is None:
         return
     resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
@@ -278,7 +278,7 @@ def _limit_processor_time(seconds: float | None) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this worker as soon as its parent has ended; otherwise it would wait for tasks forever."""
+    """Wait until the parent process has ended, then end this worker, which would wait for calls forever."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
@@ -287,7 +287,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _safe_import_path() -> Iterator[str | None]:
-    """Make processes started in the block not search the working directory first. Yields SAFE_PATH's old value."""
+    """Keep processes started in a block from searching the working directory first; yield SAFE_PATH's old value."""
     before = os.environ.get(SAFE_PATH)
     _set_safe_path("1")
     try:
@@ -297,7 +297,7 @@ def _safe_import_path() -> Iterator[str | None]:
 
 
 def _set_safe_path(value: str | None) -> None:
-    """Set or remove the variable that keeps the working directory off a worker's module path."""
+    """Set the environment variable SAFE_PATH, or remove it for None."""
     if value is None:
         os.environ.pop(SAFE_PATH, None)
     else:
@@ -306,11 +306,11 @@ def _set_safe_path(value: str | None) -> None:
 
 @contextmanager
 def _ignore_ctrl_c() -> Iterator[None]:
-    """Make processes started in the block ignore Ctrl-C while they import; a Ctrl-C meanwhile is raised afterwards."""
+    """Hold Ctrl-C back during a block, so that processes started in it ignore it; it is raised afterwards."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    resource_tracker.ensure_running()  # started before Ctrl-C is ignored, because its start restores the signal
+    resource_tracker.ensure_running()  # started here, because starting it within the block would unblock Ctrl-C
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

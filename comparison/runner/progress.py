@@ -13,39 +13,39 @@ from typing import NoReturn
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-LINE_INTERVAL = 15.0  # s, shortest time between two progress lines in a file or a pipe
-ROUGH_COST_SHARE = 0.1  # weight, as a share of all work, of costs estimated beforehand in the estimate of the time left
-PLAIN_WIDTH = 120  # columns of a table that is written to a file or a pipe
-EXIT_SECONDS = 0.3  # s that the process takes to end after the deadline
-MIN_TIMER = 1e-3  # s, shortest timer: setitimer(0) would switch it off
+LINE_INTERVAL = 15.0  # s, shortest time between two lines of progress when output goes to a file or a pipe
+ROUGH_COST_SHARE = 0.1  # share of all work that counts at its estimated cost when the time left is estimated
+PLAIN_WIDTH = 120  # width in letters of output that goes to a file or a pipe
+EXIT_SECONDS = 0.3  # s before the deadline at which work is stopped, because the process takes so long to end
+MIN_TIMER = 1e-3  # s, shortest time to which the timer is set: 0 would switch it off
 
 
 def make_wide_console() -> Console:
-    """Return a console on standard output, as wide as the terminal or PLAIN_WIDTH columns, without markup."""
+    """Return a console on standard output, as wide as the terminal, or PLAIN_WIDTH without one."""
     width = None if sys.stdout.isatty() else PLAIN_WIDTH
     return Console(highlight=False, markup=False, emoji=False, width=width)
 
 
 class Display:
     """
-    Progress of a command, shown by `show` whenever work is done.
+    Progress of a command: work done, total work and time left; `show` is called whenever work is done.
 
-    The time left is what is left of the work, times what the work so far took, with a tenth of all work as if it had
-    taken its rough cost. The first piece of work does not count: it starts the workers.
+    The time left follows from the speed so far, in which a tenth of all work counts as if done at its estimated cost.
+    The first piece of work is left out of it, because it starts the workers.
 
-    total: all work, rough s of processor time; jobs: workers.
+    total: all work, in estimated s of processor time. jobs: number of workers.
     """
 
     def __init__(self, total: float, jobs: int, show: Callable[[Display], None] = lambda display: None) -> None:
-        """Start the clock with no work done."""
+        """Start the clock."""
         self.total, self._jobs, self._show, self.done = total, jobs, show, 0.0
         self._what = ""
         self.begin = time.monotonic()
-        # Time at which the first piece of work was done, and the work done by then
+        # Time at which the first piece of work was done, and estimated cost of the work done by then, s
         self._first: tuple[float, float] | None = None
 
     def advance(self, what: str, count: str, seconds: float) -> None:
-        """Record that work of rough `seconds` is done: what, and how many of how many, in words."""
+        """Record finished work; what, count: the work and "n of m", in words; seconds: its estimated processor time."""
         self.done += seconds
         if self._first is None:
             self._first = time.monotonic(), self.done
@@ -53,21 +53,21 @@ class Display:
         self._show(self)
 
     def skip(self, seconds: float) -> None:
-        """Subtract work of rough `seconds` that need not be done."""
+        """Subtract work that need not be done from the total; seconds: its estimated processor time."""
         self.total -= seconds
 
     def extend(self, seconds: float) -> None:
-        """Add work of rough `seconds`."""
+        """Add work to the total; seconds: its estimated processor time."""
         self.total += seconds
 
     @property
     def text(self) -> str:
-        """Return the work done last, and the time left."""
+        """Return in words the work done last, and the time left."""
         return f"{self._what}, about {self.seconds_left:.0f} s left"
 
     @property
     def seconds_left(self) -> float:
-        """Return the time left, s."""
+        """Return the estimated time until all work is done, s."""
         work, now = max(self.total - self.done, 0.0), time.monotonic()
         before, earlier = self._first or (now, self.done)
         rough = max(ROUGH_COST_SHARE * self.total, 1.0)
@@ -76,7 +76,7 @@ class Display:
 
 @contextmanager
 def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
-    """Yield a display for the duration of the block; total: all work, rough s of processor time; jobs: workers."""
+    """Show progress during a block and yield its display; total: estimated s of processor time; jobs: workers."""
     if console.is_terminal:
         with Progress(BarColumn(), TextColumn("{task.fields[text]}", markup=False), console=console) as bars:
             bar = bars.add_task("", total=total, text="starting")
@@ -85,7 +85,7 @@ def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display
     last = time.monotonic()
 
     def line(display: Display) -> None:
-        """Print the progress as a plain line, at most every LINE_INTERVAL."""
+        """Print the progress as a line of text, at most one in LINE_INTERVAL."""
         nonlocal last
         if (now := time.monotonic()) - last >= LINE_INTERVAL:
             last = now
@@ -95,14 +95,14 @@ def show_progress(console: Console, total: float, jobs: int) -> Iterator[Display
 
 
 class TimeUpError(BaseException):
-    """Signal that the deadline has come; no Exception, so that it is not taken for an error of a task."""
+    """Raised when the deadline has come; not an Exception, so that it is not taken for an error of a task."""
 
 
 class Deadline:
-    """Context that stops its block by TimeUpError shortly before `begin + seconds` (`time.monotonic()`), or never."""
+    """Context manager that stops its block by raising TimeUpError shortly before a deadline, if there is one."""
 
     def __init__(self, begin: float, seconds: float | None) -> None:
-        """Set the end of the block; seconds: None for no deadline."""
+        """Set the deadline `seconds` after `begin`, s of `time.monotonic()`; None for no deadline."""
         self._end = None if seconds is None else begin + seconds - EXIT_SECONDS
 
     def __enter__(self) -> Deadline:
@@ -119,11 +119,11 @@ class Deadline:
             signal.signal(signal.SIGALRM, self._before)
 
     def keep_free(self, seconds: float) -> None:
-        """Stop the block `seconds` before the end from now on, for work that has to follow."""
+        """Set the timer so that the block stops `seconds` earlier, which leaves that time for work after it."""
         if self._end is not None:
             signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), MIN_TIMER))
 
 
 def _raise_time_up(number: int, frame: FrameType | None) -> NoReturn:
-    """Raise TimeUpError; handler of the timer's signal."""
+    """Raise TimeUpError; called by the system when the timer of the deadline ends."""
     raise TimeUpError

@@ -29,14 +29,14 @@ from comparison.runner.task_results import TaskResults
 from comparison.wording import word_exception
 from reference.problem import Outcome, Scene, load_scene
 
-WIDTH_CHECK_INTERVAL = 1.0  # s between two looks at the executor's number of workers while no result arrives
-LOST_ERRORS = BrokenExecutor, ExecutorLostError, CancelledError  # errors that mean the loss of all workers
-COMPILING_DURATION = 0.5  # s, duration of the motion that compiles the reference: it reaches every function
+WIDTH_CHECK_INTERVAL = 1.0  # s, longest wait for a result before the executor's number of workers is read again
+LOST_ERRORS = BrokenExecutor, ExecutorLostError, CancelledError  # errors of a task that mean that all workers are lost
+COMPILING_DURATION = 0.5  # s, duration of the motion that compiles the reference equations: it needs every function
 
 
-@dataclass(eq=False)  # Compared by identity, because comparing scenes and arrays would be slow.
+@dataclass(eq=False)  # no comparison by content: comparing scenes and arrays would be slow
 class _WorkItem:
-    """A task, or a half of the task of `parent`."""
+    """A task in the queue, or half of the task of `parent`, with its result and how often its worker died."""
 
     task: Task
     parent: _WorkItem | None = None
@@ -48,7 +48,7 @@ class _WorkItem:
 @dataclass
 class Runner:
     """
-    Runner of tasks on `executor`, or on one made for `jobs` workers; it stores every result as it arrives.
+    Runs tasks on worker processes or a cluster, and stores every result as it arrives.
 
     A task that raises has the outcome SOLVER_FAILED, and one that takes longer than its `timeout` TIME_LIMIT. One whose
     worker dies is tried once more, then cut in halves, until a part that cannot be cut has killed two workers: that one
@@ -63,21 +63,21 @@ class Runner:
     executor: Pool
     display: Display = field(default_factory=lambda: Display(0.0, 1))
     stages: Mapping[str, float] = field(default_factory=dict)
-    # Number of batches that hung or ended their process, by group of workers
+    # Number of batches (tasks of several phase pairs) that timed out or ended their process, by group of workers
     hung: Counter[str] = field(default_factory=Counter)
-    compiled: bool = False  # whether a worker has compiled the reference
+    compiled: bool = False  # whether a worker has compiled the reference equations
 
     def run(self, tasks: Sequence[Task], compiling: Callable[[], Task] | None = None) -> None:
         """
-        Run every task in one sweep: batches in their order, then the others, the longest first.
+        Compute and store every task that has no stored result: batches in their order, then the others, longest first.
 
-        compiling: makes a short task that compiles the reference; the tasks that need it wait for that one.
+        compiling: makes a short task that compiles the reference equations; tasks that need these wait for it.
         Raises StoreError or ExecutorLostError if the cache cannot be written, or the executor cannot go on.
         """
         sums: Counter[str] = Counter()
         for task in tasks:
             sums[task.stage] += task.seconds  # type: ignore[assignment]
-        self._weights = {  # s, rough processor time
+        self._weights = {  # rough processor time of each task, s
             id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
         }
         new = [task for task in tasks if task not in self.results]
@@ -100,14 +100,14 @@ class Runner:
             self._run_sweep(executor)
 
     def _run_sweep(self, executor: Executor) -> None:
-        """Compute all tasks of the queue; store each result as it arrives."""
+        """Compute all tasks in the queue and store each result as it arrives."""
         try:
             while self._queue or self._at_work:
                 self._fill_workers(executor)
                 finished = wait(self._at_work, WIDTH_CHECK_INTERVAL, return_when=FIRST_COMPLETED).done
                 arrived = [(self._at_work.pop(future), future) for future in finished]
                 try:
-                    self._fill_workers(executor, arriving=True)  # The workers go on while results are stored.
+                    self._fill_workers(executor, arriving=True)  # before results are stored, so that no worker waits
                 finally:
                     for work, future in sorted(arrived, key=lambda pair: isinstance(_get_error(pair[1]), LOST_ERRORS)):
                         self._take_result(work, future)
@@ -119,7 +119,7 @@ class Runner:
             raise
 
     def _fill_workers(self, executor: Executor, arriving: bool = False) -> None:
-        """Start as many tasks as there are workers; arriving: results that may make others ready are still unread."""
+        """Start tasks until each worker has one; arriving: only in order, as unread results may free the first."""
         while len(self._at_work) < getattr(executor, "width", self.jobs):
             candidates = list(self._queue)[:1] if arriving else self._queue
             ready = (work for work in candidates if not (self._first and work.task.needs_compiled_reference))
@@ -132,7 +132,7 @@ class Runner:
                 self._at_work[_start_task(work.task, executor)] = work
 
     def _take_result(self, work: _WorkItem, future: Future[TaskResult]) -> None:
-        """Store the result of a task, or treat the loss of its worker or the excess of its time limit."""
+        """Store the result of a finished task; handle the death of its worker, a time limit, or another error."""
         error = _get_error(future)
         if error is None:
             self._keep_result(work, future.result())
@@ -148,7 +148,7 @@ class Runner:
             self._keep_result(work, make_failed_result(Outcome.SOLVER_FAILED, word_exception(error)))
 
     def _handle_worker_death(self, work: _WorkItem, error: WorkerDiedError) -> None:
-        """Try a task again whose worker died; the second time, halve it to find the phase pair at fault."""
+        """Try a task again if its worker died; the second time halve it, to find the phase pair that is the cause."""
         work.deaths += error.times
         halves = work.task.halves()
         if work.deaths < 2 and (work.parent is None or not halves):
@@ -163,7 +163,7 @@ class Runner:
             )
 
     def _keep_result(self, work: _WorkItem, result: TaskResult) -> None:
-        """Store a result; that of a half as soon as the other half has one, too."""
+        """Store the result of a task; keep that of a half until the other half has one too, then store both joined."""
         work.result, parent, task = result, work.parent, work.task
         if parent is not None:
             results = [half.result for half in parent.halves if half.result is not None]
@@ -182,10 +182,10 @@ class Runner:
 
 
 def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
-    """Start a task, with a time limit where the executor can hold one."""
+    """Start a task on the executor, with its time limit if the executor can limit time."""
     start: Callable[..., Future[TaskResult]] | None = getattr(executor, "start", None)
     try:
-        if start is None:  # Executors of threads, for example, cannot limit the time of a call.
+        if start is None:  # an executor that cannot limit the time of a call, such as one of threads
             return executor.submit(execute_task, task)
         return start(partial(execute_task, task), task.timeout, task.group)
     except BrokenExecutor as error:
@@ -193,7 +193,7 @@ def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
 
 
 def _get_error(future: Future[TaskResult]) -> BaseException | None:
-    """Return the error that the task raised, None if it raised none."""
+    """Return the error with which a finished task ended, None if it has a result."""
     try:
         return future.exception()
     except CancelledError as cancelled:
@@ -202,14 +202,14 @@ def _get_error(future: Future[TaskResult]) -> BaseException | None:
 
 def make_compiling_task() -> Task:
     """
-    Return a task of one phase pair that compiles the reference and keeps it on disk, once on a machine.
+    Return a task that compiles the reference equations by a short motion; the compiled code is kept on disk.
 
-    One worker does that while the others are busy with the engine, so that no two of them compile the same code.
+    One worker does that while the others compute with Exudyn, so that no two of them compile the same code.
     """
     scene = load_scene("fig3-I").with_values({"duration": COMPILING_DURATION})
     return Task(_compile_reference, scene, "compiling the reference, once", 0.0, needs_compiled_reference=False)
 
 
 def _compile_reference(scene: Scene) -> None:
-    """Compile the reference by one short motion."""
+    """Compile the reference equations by computing one short motion."""
     reference.amplification(scene, np.zeros((1, 2)), equations="exact")

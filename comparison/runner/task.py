@@ -20,33 +20,33 @@ from comparison.study.batches import Batch
 from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
-BATCH_KIND, RESULT_KIND = "batch", "result"  # kinds of stored results: those of phase pairs, and all others
-# After so many batches of a group of workers that hung or ended their process, no further batch of it is computed.
+BATCH_KIND, RESULT_KIND = "batch", "result"  # kinds of stored results: of tasks of several phase pairs, and all others
+# Number of batches of a user's engine that may time out or end their process; then no further batch of it is computed.
 MAX_FAILED_BATCHES = 2
-# error message of a batch that is not computed because too many batches of its group failed
+# Error message of a batch (several phase pairs) that is not computed because MAX_FAILED_BATCHES others failed
 GIVEN_UP_MESSAGE = f"{MAX_FAILED_BATCHES} calls hung or ended their process: not asked for the other phase pairs"
 
 
 @dataclass(frozen=True)
 class Task:
-    """Call of a pure `function` with one argument in a worker process; its result is stored by `key`."""
+    """Unit of work: a function with one argument, to be called in a worker process; its result is stored by `key`."""
 
     function: Callable[[Any], Any]
     argument: Any
-    stage: str  # name of its stage on the terminal and in the table of costs
-    seconds: float = 1.0  # s, rough processor time: the weight among the tasks of its stage
-    about: Any = None  # contents that all tasks of a group share: their results share a directory in the cache
-    # Whether the task waits, on a new installation, until a worker has compiled the reference
+    stage: str  # name of the kind of work to which it belongs, for the terminal and the report's table of times
+    seconds: float = 1.0  # s, rough processor time, relative to the other tasks of its stage
+    about: Any = None  # what it has in common with other tasks, such as the scene: their results share a directory
+    # Whether the task must wait until a worker has compiled the reference equations, if that has not been done yet
     needs_compiled_reference: bool = True
-    # Largest processor time, s, rounded up; a task that takes longer ends with Outcome.TIME_LIMIT
+    # s, processor time (rounded up) after which the task is ended, with Outcome.TIME_LIMIT as outcome; None: no limit
     timeout: float | None = None
-    group: str = ""  # group of workers that it may use: a user's engine may spoil the process it runs in
-    model: str = ""  # "package:name" of the only model it calls: other sources do not change its value
+    group: str = ""  # name of the workers that it may use: users' engines have their own, as they may harm a process
+    model: str = ""  # "package:name" of the only model that it calls, if so: its result depends on no other source code
 
     @cached_property
     def key(self) -> CacheKey:
         """
-        Return the key of its stored result, from function, argument, package versions and the source that computes it.
+        Return the cache key of the task's result, from its function, argument, package versions and source code.
         """
         function = name_function(self.function)
         about = {
@@ -62,20 +62,20 @@ class Task:
 
     @cached_property
     def batch(self) -> Batch | None:
-        """Return the task's argument if it is a batch of phase pairs, otherwise None."""
+        """Return the task's argument if it is a batch (several phase pairs of a scene and model), else None."""
         return self.argument if isinstance(self.argument, Batch) else None
 
     @property
     def points(self) -> int:
-        """Return the number of points that the terminal counts: phase pairs of a batch, 1 for any other task."""
+        """Return the number by which the task counts in progress: its phase pairs if it is a batch, else 1."""
         return self.batch.points if self.batch else 1
 
     def halves(self) -> list[Task]:
-        """Return the two tasks into which a batch of several phase pairs can be cut; none for any other task."""
+        """Return the two halves of a task of several phase pairs as tasks; [] for any other task."""
         return [replace(self, argument=half) for half in self.batch.halves()] if self.batch else []
 
     def join(self, results: Sequence[TaskResult]) -> TaskResult:
-        """Return the task's result joined from the results of its halves."""
+        """Return the result of a task of several phase pairs, joined from the results of its two halves."""
         assert self.batch is not None, "only a batch has halves"
         values = [
             result.value if result.value is not None else half.without_result(result.outcome, result.error_message)
@@ -90,40 +90,40 @@ class Task:
 class TaskResult:
     """Value that a task returned, or the reason why it returned none."""
 
-    value: Any  # a batch also has one if a part of its points is lost; otherwise None unless `outcome` is OK
-    cost: float  # s of processor time
+    value: Any  # None unless `outcome` is OK; a batch of which some phase pairs failed also has a value
+    cost: float  # s, processor time of the task
     outcome: Outcome = Outcome.OK
     error_message: str = ""
 
     @property
     def reason(self) -> str:
-        """Return why there is no value, in one line."""
+        """Return in one line why the task has no value: outcome and error message."""
         return f"{self.outcome}: {self.error_message}"
 
 
 def execute_task(task: Task) -> TaskResult:
-    """Call the function of a task inside a worker process. Its errors are raised: the runner handles them."""
+    """Return the result of a task's function with its processor time; raise its errors. Runs in a worker process."""
     clock = time.process_time()
     value = task.function(task.argument)
     return TaskResult(value, time.process_time() - clock)
 
 
 def make_failed_result(outcome: Outcome, error_message: str) -> TaskResult:
-    """Return the result of a task that raised, took too long or whose worker died; the message is one line."""
+    """Return the result of a task that failed: no value, the outcome, and an error message of one line."""
     return TaskResult(None, 0.0, outcome, error_message)
 
 
 def name_function(function: Callable[..., Any]) -> str:
-    """Return "module:name" of a function."""
+    """Return the name of a function as "module:name"."""
     return f"{function.__module__}:{function.__qualname__}"
 
 
 def describe_contents(value: Any) -> Any:
     """
-    Return everything that a value contains as plain JSON, which distinguishes one task from another.
+    Return all that a task's argument contains as plain JSON, from which the key of its result is made.
 
-    Numbers, texts, scenes, arrays (by hash), models (also by their source), functions (by name), what states its
-    `identity`, and lists, mappings and dataclasses of these. Raises TypeError for anything else.
+    It may be a number, text, scene, array (hashed), model (with its source code), function (by name), an object with a
+    method `identity`, or a list, mapping or dataclass of these. Raises TypeError for anything else.
 
     Examples
     --------
@@ -153,14 +153,14 @@ def describe_contents(value: Any) -> Any:
 
 
 def _describe_arrays(data: xr.Dataset) -> dict[str, Any]:
-    """Return the arrays of a data set by name."""
+    """Return the arrays of an xarray data set (labeled arrays) by name."""
     return {str(name): variable.values for name, variable in data.variables.items()}
 
 
 def _describe_dataclass(value: Any) -> Any:
-    """Return the type of a dataclass and its contents; a model also depends on its source."""
+    """Return the type and contents of a dataclass as plain JSON; for a model also the hashes of its source code."""
     held, source = {part.name: getattr(value, part.name) for part in fields(value)}, {}
     if isinstance(value, Model):
-        del held["most"]  # The number of phases that a model is asked for does not change its answers.
+        del held["most"]  # largest number of phases for which the model is asked: it does not change its answers
         source = fingerprint_environment(value.amplification)
     return [type(value).__qualname__, describe_contents(source), describe_contents(held)]

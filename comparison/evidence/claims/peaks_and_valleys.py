@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-SHARE = 0.3  # smallest prominence of a peak over the range of the surface
-# A count that changes between these prominences depends on the definition of a peak.
+SHARE = 0.3  # least prominence of a maximum that counts as a peak, as a share of highest minus lowest value
+# Peaks are also counted with these least prominences instead of SHARE: other counts show that the definition matters.
 MIN_SHARE, MAX_SHARE = 0.2, 0.4
 
 
 @dataclass(frozen=True)
 class PeakBasins:
-    """Peaks (row, column), highest first; and for each point the number of the peak to which steepest ascent leads."""
+    """Peaks of a surface as (row, column), highest first; for each grid point, index of the peak where ascent ends."""
 
     tops: Sequence[tuple[int, int]]
     regions: NDArray[np.int_]
@@ -41,20 +41,20 @@ class PeakCounts(NamedTuple):
 
 def count_periodic_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
     """
-    Return the numbers of peaks and valleys of the amplification mu on the square of phases, which closes at 2 pi.
+    Return the numbers of peaks and valleys of the amplification mu over both phases, continued periodically at 2 pi.
 
-    mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
+    mu: (n, n), finite, at phases 2 pi k / n. error: absolute error of mu. share: least prominence / (max mu - min mu).
     """
     return PeakCounts(len(find_peak_basins(mu, error, share).tops), len(find_peak_basins(-mu, error, share).tops))
 
 
 def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
-    """Return the numbers of peaks, and of valleys between two peaks, on the closed square [0, 2 pi]^2 as drawn."""
+    """Return the numbers of peaks, and of valleys between two peaks, on the drawn square [0, 2 pi]^2, not periodic."""
     return _count_bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
 
 def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
-    """Return the numbers of peaks and valleys of the mean along diagonals alpha1 - alpha2, from -2 pi to 2 pi."""
+    """Return the numbers of peaks and valleys of the mean amplification at constant alpha1 - alpha2, -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
     along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
@@ -64,14 +64,14 @@ def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float 
 
 
 def _count_bounded(mu: Array, error: float, share: float) -> PeakCounts:
-    """Return the numbers of peaks and of valleys; a valley counts if it lies between two peaks."""
+    """Return the numbers of peaks and valleys of a surface that is not periodic; valleys must lie between two peaks."""
     peaks, valleys = (find_peak_basins(side * mu, error, share, closed=False) for side in (1.0, -1.0))
     between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
     return PeakCounts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
 
 
 def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> PeakBasins:
-    """Return the peaks of a surface (n, m), `closed` if periodic; none where its range is within its errors."""
+    """Return the peaks of a surface mu (n, m), none if it varies by at most twice `error`; closed: it is periodic."""
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
         return PeakBasins([], np.full(mu.shape, -1))
@@ -82,13 +82,13 @@ def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed
     rank = [0] * len(height)
     for place, node in enumerate(order):
         rank[node] = place
-    # Union-find forest of the islands above a falling water level: every root is the island's highest node
+    # Union-find forest (each point's parent) of the islands above a falling water level; its roots: highest points
     parent = [-1] * len(height)
-    top_of = [-1] * len(height)  # maximum to which steepest ascent leads
-    into = list(range(len(height)))  # for maxima of small prominence, the maximum across their saddle
+    top_of = [-1] * len(height)  # for each grid point, the maximum to which steepest ascent leads
+    into = list(range(len(height)))  # for maxima of too little prominence, the higher maximum that each is merged into
     tops = []
     for node in order:
-        islands: dict[int, int] = {}  # islands adjacent to this node, with their highest nodes
+        islands: dict[int, int] = {}  # root of each adjacent island: highest of this point's neighbors in it
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
                 islands.setdefault(_root_of_node(parent, other), other)
@@ -110,7 +110,7 @@ def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed
 
 
 def _root_of_node(parent: list[int], node: int) -> int:
-    """Return the root of a node in a forest of merged regions; shorten the path to it."""
+    """Return the root of a node in a union-find forest (parent: index of each node's parent); shorten the path."""
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]

@@ -11,28 +11,28 @@ from reference.problem import Scene, load_scene, readings
 
 @dataclass(frozen=True)
 class PeakReading:
-    """Reading of the maximum in (5.1). model: key of the study's model; cutoff: v_c, m/s, None for the supremum."""
+    """Which peak acceleration (5.1) means: key of the model; lowest sliding speed that counts, m/s, None for any."""
 
     name: str
     model: str
     cutoff: float | None
 
 
-# The two readings of (5.1): rest and sliding faster than v_c count alone, or also the limit just before a stop
+# The two readings of (5.1): the peak counts only rest and sliding above v_c, or also the limit just before a stop
 AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
-READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
+READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)  # both readings of (5.1), in the order of tables
 
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
-    """Return the peak definition to use: the literal supremum for scenes without dry friction, where both agree."""
+    """Return the given reading of (5.1), or the literal supremum for a scene without dry friction, where both agree."""
     return reading if models.has_dry_friction(scene) else LITERAL_SUPREMUM
 
 
 @cache
 def _make_platform_scene(name: str, oscillator: bool) -> Scene:
     """
-    Return a scene of the paper with its platform alone, whose period T_c is close to the loading's periods.
+    Return a scene of the paper without the bodies above its platform; its period T_c is close to those of the loading.
 
     oscillator: instead without friction, of the period T_3x of the second body on its springs: far from both harmonics.
     """
@@ -45,7 +45,7 @@ def _make_platform_scene(name: str, oscillator: bool) -> Scene:
     return scene.with_values({"name": f"{name} {kind}", "bodies": [platform], **values})
 
 
-# Scenes that the paper's statements are checked on, by name
+# Functions that make the scenes on which the paper's statements are checked, by name of the scene
 STATEMENT_CASES: Mapping[str, Callable[[], Scene]] = {
     **{name: partial(load_scene, name) for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")},
     **{f"{name} alone": partial(_make_platform_scene, name, False) for name in ("fig3-I", "fig3-II")},

@@ -14,18 +14,18 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # grid steps along which mu is differenced
-SEARCHED_PLACES = 2  # number of grid points from which a zoom starts on each surface
-STEP_HALVINGS = 5  # number of halvings of the step in a zoom, which ends at 1/32
-FITTED_HALVINGS = 3  # The exponent is fitted to the last halvings: earlier steps still show the shape of the peak.
-# A surface with an exponent of its second difference below 1.5 has a fold, below 0.5 a jump.
+DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # directions of second differences, grid steps
+SEARCHED_PLACES = 2  # number of grid points on each surface around which ever smaller steps are tried
+STEP_HALVINGS = 5  # number of times the phase step is halved around such a point: down to 1/32 of the grid's
+FITTED_HALVINGS = 3  # number of last halvings to which the exponent is fitted; longer steps still show the peak's shape
+# Second difference ~ step^exponent: the surface is smooth above 1.5, has a fold from 0.5 to 1.5, and a jump below 0.5
 MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5
 
 
 @dataclass(frozen=True)
 class SharpestCurvature:
     """
-    Sharpest curvature of a surface: the place where its second difference falls with the lowest power of the step.
+    Place where a surface is least smooth: its second difference falls with the lowest power of the step there.
 
     exponent: that power, NaN where a value is missing. phases: (alpha1, alpha2) of the place, rad.
     """
@@ -35,19 +35,19 @@ class SharpestCurvature:
 
     @property
     def smooth(self) -> bool:
-        """Return whether the surface is smooth at its sharpest curvature."""
+        """Return whether the surface is smooth at this place: no fold and no jump."""
         return self.exponent > MAX_FOLD_EXPONENT
 
     @property
     def kind(self) -> str:
-        """Return "smooth", "fold", "jump" or "no answer"."""
+        """Return what the surface has at this place: "smooth", "fold", "jump", or "no answer" if values are missing."""
         if not np.isfinite(self.exponent):
             return "no answer"
         return "smooth" if self.smooth else "fold" if self.exponent > MAX_JUMP_EXPONENT else "jump"
 
 
 def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tuple[SharpestCurvature, ...]:
-    """Return the sharpest curvature of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad."""
+    """Return where each amplification surface mu (n, n, N) is least smooth; solve: mu (M, N) at phases (M, 2), rad."""
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest_places(mu[..., body])]
@@ -67,7 +67,7 @@ def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tupl
     tiny = np.finfo(float).tiny
     exponents = np.log2(np.maximum(sizes[-1 - FITTED_HALVINGS], tiny) / np.maximum(sizes[-1], tiny)) / FITTED_HALVINGS
     of_bodies = (np.flatnonzero(body == number) for number in range(bodies))
-    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # argmin takes NaN for smallest
+    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # numpy's argmin picks a NaN, if any
     phases = np.mod(center, 2.0 * np.pi)
     return tuple(
         SharpestCurvature(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest
@@ -81,7 +81,7 @@ def _second_differences(values: Array) -> Array:
 
 
 def _sharpest_places(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
-    """Return the grid points of largest second difference, no two of them adjacent: index pair and direction."""
+    """Return the grid indices of the largest second differences, no two adjacent, with the direction of each."""
     size = np.array(
         [
             np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way)

@@ -28,13 +28,13 @@ from comparison.surfaces.surfaces import select_values
 from comparison.verdicts import MET, NOT_COMPARED, Verdict, count_verdicts
 from reference.problem import builtin_scenes
 
-CLAIMS_GRID = 24  # phases per axis; on 16, 32, 48 and 64 the same statements are met
-CORRELATION_STRIDE = 2  # stride of the phases of surfaces that are only correlated with others
+CLAIMS_GRID = 24  # phases per axis on which statements are checked; 16, 32, 48 and 64 give the same verdicts
+CORRELATION_STRIDE = 2  # Surfaces that are only correlated with others are computed at every second phase per axis.
 
 
 @result
 class Statement:
-    """One statement of the paper about its figures, with its verdicts."""
+    """One statement of the paper about its figures, with the verdict on it in each reading of (5.1)."""
 
     figure: Annotated[str, "figure of the paper"]
     says: Annotated[str, "what the paper says"]
@@ -45,7 +45,7 @@ class Statement:
     @property
     def reasons(self) -> list[str]:
         """
-        Return the reasons of the verdicts: one text if both readings give the same, else one for each reading.
+        Return the reasons of the verdicts: one text if it is the same in both readings of (5.1), else one for each.
         """
         texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
         same = len({*texts.values()}) == 1
@@ -54,7 +54,7 @@ class Statement:
 
 @result
 class ClaimTable:
-    """The paper's statements about its figures, in the two readings of (5.1), with the parameters as printed."""
+    """Table of the paper's statements about its figures, with the verdicts in the two readings of (5.1)."""
 
     grid: Annotated[int, "phases per axis"]
     statements: Annotated[tuple[Statement, ...], "in the order of the figures"]
@@ -62,7 +62,7 @@ class ClaimTable:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def counts(self) -> dict[str, dict[Verdict, int]]:
-        """Return the numbers of statements met, not met and not compared, by name of the reading."""
+        """Return the numbers of statements met, not met and not compared, by name of the reading of (5.1)."""
         return {
             reading.name: count_verdicts(each.verdicts[reading.name].verdict for each in self.statements)
             for reading in READINGS
@@ -95,7 +95,7 @@ def word_claims(table: ClaimTable) -> str:
 
 
 def count_met(table: ClaimTable) -> str:
-    """Return how many statements are met in each reading, and how many are not compared, in a clause."""
+    """Return a clause: how many of the paper's statements are met in each reading of (5.1), how many not compared."""
     integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
     uncompared = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
     rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in uncompared.items())
@@ -104,18 +104,18 @@ def count_met(table: ClaimTable) -> str:
 
 @dataclass(frozen=True)
 class Claims(Analysis[ClaimTable]):
-    """Analysis of every statement in both readings on `grid` phases per axis, if possible from the study's surfaces."""
+    """Check of all the paper's statements in both readings of (5.1), if possible on surfaces computed by the study."""
 
     key, stage, needs_surfaces = "claims", "claims", True
     seconds = 0.3
     grid: int = CLAIMS_GRID
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return one task for each case and reading; none unless the study has every scene of the paper."""
+        """Return a task for each scene to check and reading of (5.1); none if the study lacks a scene of the paper."""
         return list(self._tasks(study, surfaces).values())
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
-        """Return the table; None unless the study has every scene of the paper."""
+        """Return the table of statements with verdicts; None unless the study has every scene of the paper."""
         tasks = self._tasks(study, surfaces)
         if not tasks:
             return None
@@ -131,7 +131,7 @@ class Claims(Analysis[ClaimTable]):
         )
 
     def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
-        """Return the tasks by case and effective reading: one task where both readings are equal."""
+        """Return the tasks by scene name and reading of (5.1): one task for a scene where both readings agree."""
         if not has_every_paper_scene(study):
             return {}
         tasks = {}
@@ -150,9 +150,9 @@ def select_study_surfaces(
     study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
 ) -> Evidence | None:
     """
-    Return the study's surfaces of a case in a reading if its grid contains one of `grid` phases per axis.
+    Return the surfaces that the study computed for a scene in a reading of (5.1), on `grid` of its phases per axis.
 
-    None where it has not: without that model, on another grid, or for a scene that is not as printed.
+    None if the study lacks the reading's model or these phases, or if its scene differs from the printed one.
     """
     scene = next((scene for scene in study.scenes if scene.name == case), None)
     model = next((model for model in study.hierarchy if model.key == reading.model), None)
@@ -171,12 +171,12 @@ def select_study_surfaces(
 
 
 def has_every_paper_scene(study: Study) -> bool:
-    """Return whether a study has every scene of the paper, as the statements need."""
+    """Return whether a study has every scene of the paper; otherwise the paper's statements are not checked."""
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
 def make_claim_table(verdicts: Mapping[str, list[StatementVerdict]], grid: int = CLAIMS_GRID) -> ClaimTable:
-    """Return the table made of the verdicts on all statements by name of the reading."""
+    """Return the table of all statements; verdicts: by name of the reading of (5.1), in the order of the statements."""
     rows = [dict(zip(verdicts, row)) for row in zip(*verdicts.values(), strict=True)]
     return ClaimTable(
         grid,

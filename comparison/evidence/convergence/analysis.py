@@ -27,31 +27,35 @@ from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Amplification, Outcome, Scene, ground_peak, loading_period
 
-RelativeDifferences = tuple[Array, Array]  # relative differences and errors, by phase pair, parameter value, body
+RelativeDifferences = tuple[Array, Array]  # differences of amplification, errors: (phase pair, parameter, body)
 
-# rad, phase pairs that the equations compute
+# rad, phase pairs at which the reference equations are solved
 EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
-ENGINE_PHASES = EQUATION_PHASES[[0, 3]]  # rad, phase pairs that the engine computes
-EQUATION_PERIODS = 6.0  # duration in periods of the slower harmonic: the loading is strongest in the first of them
-ENGINE_PERIODS = 3.0  # duration of the engine's motions in periods of the slower harmonic
-CONSTANT_STEP_PERIODS = 2.5  # duration of the engine's motions at a constant step in periods of the slower harmonic
-REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s, v_reg of the equations
-ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s, v_reg of the engine
-PENETRATIONS = (3e-3, 1e-3, 3e-4)  # penetration of the contact under the weight, over rho
-STIFFNESS_V_REG = 1e-2  # m/s, v_reg while the contact stiffness varies: a constant step resolves it
+ENGINE_PHASES = EQUATION_PHASES[[0, 3]]  # rad, phase pairs at which Exudyn computes motions
+EQUATION_PERIODS = 6.0  # longest motion, in periods of the slower harmonic; the loading is strongest in the first
+ENGINE_PERIODS = 3.0  # longest motion by Exudyn with variable steps, in periods of the slower harmonic
+CONSTANT_STEP_PERIODS = 2.5  # longest motion by Exudyn with constant steps, in periods of the slower harmonic
+REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s, speeds v_reg tried in the reference equations
+ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s, speeds v_reg tried in Exudyn
+PENETRATIONS = (3e-3, 1e-3, 3e-4)  # contact stiffnesses tried, as penetration under the weight divided by rho
+STIFFNESS_V_REG = 1e-2  # m/s, v_reg while the contact stiffness varies; so large that constant steps resolve it
 STEPS_PER_PERIOD = 2250  # constant steps per period of the faster harmonic; a second run takes twice as many
-MAX_STEPS = 20_000  # largest number of constant steps of a motion
-EQUATION_TOLERANCE = 1e-7  # relative error of the amplification mu by the equations
-# Tolerances of the Newton iteration and of its residual in the engine's steps
+MAX_STEPS = 20_000  # largest number of constant steps of one motion; a second run takes at most twice as many
+EQUATION_TOLERANCE = 1e-7  # relative error asked of the amplification by the reference equations
+# Newton's method in Exudyn's steps: tolerance of the residual relative to the first one, and in units of the weight
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
-STEP_ERROR_FACTOR = 1.5  # error estimate over the change of mu by halved steps, which is 0.5 to 1 coarse errors
+STEP_ERROR_FACTOR = 1.5  # error estimate / change of amplification by halved steps, which is 0.5 to 1 coarse errors
 
 
 def _compare_at_speeds(
     side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float], resolved: bool,
     scene: Scene,
 ) -> RelativeDifferences:  # fmt: skip
-    """Return the relative difference of mu at each v_reg from mu with set-valued friction, as resolved or supremum."""
+    """
+    Return relative differences of the amplification at each v_reg (`speeds`) from that with set-valued friction.
+
+    side: package that computes it at v_reg. resolved: with set-valued friction, only rest and speeds above v_reg count.
+    """
     short = shorten_scene(scene, periods)
     return _relative_differences(
         (
@@ -63,14 +67,14 @@ def _compare_at_speeds(
 
 
 def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> RelativeDifferences:
-    """Return the relative differences of mu from its limit, and errors, by phase pair, parameter value and body."""
+    """Return relative differences and errors; pairs: amplification at one parameter value, and in the limit."""
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
 
 
 def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
-    """Return mu of the engine with ever stiffer contacts relative to the exact equations, whose contact is rigid."""
+    """Return the relative differences of Exudyn's amplification with ever stiffer contacts from a rigid contact's."""
     short = shorten_scene(scene, CONSTANT_STEP_PERIODS)
     v_reg = None if scene.lubricated else STIFFNESS_V_REG
     exact = reference.amplification(short, ENGINE_PHASES, tolerance=EQUATION_TOLERANCE, regularization=v_reg)
@@ -84,7 +88,7 @@ def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
 
 
 def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
-    """Return mu of the translational model, (P, N), with `factor` times the steps; NaN where the engine gives up."""
+    """Return translational amplification (P, N) in `factor` times the usual constant steps; NaN where Exudyn fails."""
     mu = np.full((len(ENGINE_PHASES), len(scene.bodies)), np.nan)
     count = factor * min(MAX_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
     step = scene.duration / count
@@ -104,7 +108,7 @@ def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: floa
 
 
 class ConvergenceCase(NamedTuple):
-    """Limit in which a difference of mu vanishes: its name, the parameter that goes to zero, the expected exponent."""
+    """Two computations that must agree as `parameter` goes to 0; expected: exponent of the power law, if known."""
 
     what: str
     parameter: tuple[float, ...]
@@ -113,14 +117,14 @@ class ConvergenceCase(NamedTuple):
     applies: Callable[[Scene], bool]
 
 
-_by_equations = partial(  # amplification mu by the equations at each v_reg against set-valued friction
+_by_equations = partial(  # compares the reference equations at each v_reg with those with set-valued friction
     _compare_at_speeds, reference, EQUATION_PHASES, EQUATION_PERIODS, EQUATION_TOLERANCE, REGULARIZATIONS
 )
-_by_engine = partial(  # amplification mu by Exudyn at each v_reg against the equations with set-valued friction
+_by_engine = partial(  # compares Exudyn at each v_reg with the reference equations with set-valued friction
     _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
 )
 
-# Quantities that go to zero, the difference that falls with each, and the exponent expected of it
+# Comparisons: what is compared, parameter values that go to zero, expected exponent, function, scenes that it suits
 CONVERGENCE_CASES = (
     ConvergenceCase(
         "exact equations: regularized against resolved",
@@ -140,18 +144,18 @@ CONVERGENCE_CASES = (
     ConvergenceCase("elastic contact against rigid", PENETRATIONS, 1.0, _compare_stiff_contacts, lambda scene: True),
 )
 
-CaseArguments = tuple[Scene, int]  # scene, and index of the limit in CONVERGENCE_CASES
+CaseArguments = tuple[Scene, int]  # scene, and index of the comparison in CONVERGENCE_CASES
 
 
 def fit_limit_trends(task: CaseArguments) -> list[Trend]:
-    """Return how the amplification mu of every body tends to one limit in one scene. Runs inside a worker process."""
+    """Return the power law of each body for one comparison in one scene. Runs inside a worker process."""
     scene, number = task
     sizes, errors = CONVERGENCE_CASES[number].measure(scene)
     return _fit_trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))
 
 
 def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
-    """Return trends without values, with the reason why the task failed."""
+    """Return one trend for each body, without values and with the reason why the task failed."""
     nothing = [NO_VALUES] * len(task[0].bodies)
     return _fit_trends(task, nothing, nothing, failed.reason)
 
@@ -159,7 +163,7 @@ def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
 def _fit_trends(
     task: CaseArguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
 ) -> list[Trend]:
-    """Return the fitted power law of every body. sizes, errors: differences of mu by phase pair and parameter value."""
+    """Return each body's fitted power law; sizes, errors: relative differences of amplification, (phase, parameter)."""
     scene, number = task
     what, parameter, expected, *_ = CONVERGENCE_CASES[number]
     return [
@@ -169,14 +173,14 @@ def _fit_trends(
 
 
 class Convergence(MappedAnalysis[list[Trend]]):
-    """Convergence of mu of each body, for every case of CONVERGENCE_CASES in every scene to which it applies."""
+    """Convergence of each body's amplification in every comparison of CONVERGENCE_CASES and every scene it suits."""
 
     key, stage = "convergence", "convergence"
     seconds = 1.5
     function, without_value = staticmethod(fit_limit_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[CaseArguments]:
-        """Return every scene with phases, with the indices of its limits."""
+        """Return every scene with phases, paired with the index of each comparison that applies to it."""
         return [
             (scene, number)
             for scene in study.phased

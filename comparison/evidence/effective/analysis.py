@@ -18,17 +18,17 @@ from comparison.wording import percent, word_exception
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
-PHASES = (0.3, 1.1)  # rad, phases of the motion that is measured
-DURATION = 6.0  # s: two harmonics are strongest in their first seconds; a record is followed to its end
-# Motions that reach less than this share of the change from slow to fast friction do not determine the fast value.
+PHASES = (0.3, 1.1)  # rad, phases of the harmonics in the motion from which the values are read
+DURATION = 6.0  # s, longest motion under two harmonics, strongest in the first seconds; a record is followed to its end
+# If a motion is so slow that friction changes by less than this share of (fast - slow value), no fast value is read.
 MIN_FRICTION_CHANGE_SHARE = 0.1
-MAX_FLAT_SLOPE = 1e-5  # rise of a flat slider over its displacement that counts as zero: contacts yield by so much
-MEASURED_SPEED_SHARE = 0.9  # share of the platform's largest speed above which friction is measured
+MAX_FLAT_SLOPE = 1e-5  # A flat slider may rise by this share of its displacement, as its contacts are elastic.
+MEASURED_SPEED_SHARE = 0.9  # Friction is measured while the platform moves faster than this share of its top speed.
 
 
 @result
 class EffectiveModelValues:
-    """Radius, friction, mass and top link as one motion of a model shows them, or as the scene states; else null."""
+    """Radius, friction, mass, and stiffness of the top link, as a motion shows or the scene states them; else null."""
 
     scene: Annotated[Text, "name of the scene"]
     model: Annotated[str, "key of the model, or scene"]
@@ -44,7 +44,7 @@ class EffectiveModelValues:
 
 
 def word_effective(values: Sequence[EffectiveModelValues]) -> str:
-    """Return the largest deviations of radius, friction and mass read from motions from what the scenes state."""
+    """Return in words how much radius, friction and mass that motions show differ at most from those stated."""
     known = {each.scene: each for each in values if each.model == "scene"}
     parts = []
     for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
@@ -57,7 +57,7 @@ def word_effective(values: Sequence[EffectiveModelValues]) -> str:
 
 
 def read_scene_values(scene: Scene) -> EffectiveModelValues:
-    """Return radius, friction, mass and top link as the scene states them; the platform starts at rest on the plate."""
+    """Return radius, friction, mass and top link as stated, and the platform's acceleration at t = 0, when it rests."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return EffectiveModelValues(
         scene=scene.name,
@@ -73,7 +73,7 @@ def read_scene_values(scene: Scene) -> EffectiveModelValues:
 
 
 def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
-    """Return radius, friction, mass and top link read from a motion of one model, or the message of its failure."""
+    """Return radius, friction, mass and top link found from a motion of one model, or why the motion failed."""
     scene, model = task
     nothing = EffectiveModelValues(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
@@ -97,11 +97,11 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
     )
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
-        """Return every scene with every model."""
+        """Return the pairs of every scene and every model that applies to it."""
         return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[EffectiveModelValues]:
-        """Return the values in the order scene, model; those that the scene states come first."""
+        """Return for each scene the values that it states, then those that each model's motion shows."""
         read = self.values(study, surfaces, results)
         of_scenes = (
             [read_scene_values(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
@@ -110,7 +110,7 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
 
 
 def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
-    """Return radius, friction, contact force, mass and top link as the computed motion shows them."""
+    """Return radius, friction, contact force, mass and the top link's stiffness and damping found from a motion."""
     place = motion.position[:, 0]
     ground = ground_acceleration(scene, PHASES, motion.time)
     swing = (place**2).sum(axis=1)
@@ -130,7 +130,7 @@ def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
 
 def _fit_top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     """
-    Return stiffness and damping of the link below the top body, by least squares of the force on that body.
+    Return stiffness and damping of the link below the top body, fitted by least squares to the force on that body.
 
     Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
     """
@@ -157,7 +157,7 @@ def _fit_top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
 
 
 def _measure_friction(scene: Scene, motion: Trajectory, radius: float) -> float:
-    """Return the median ratio of tangential to normal contact force in fast slides; NaN if heat changes it."""
+    """Return friction from the median ratio of tangential to normal contact force in fast slides; NaN if heat acts."""
     if np.isnan(radius) or scene.dry_friction.heat is not None:
         return float("nan")
     force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
@@ -173,10 +173,10 @@ def _measure_friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     fast = speed > MEASURED_SPEED_SHARE * speed.max()
     ratio = across[fast] / along[fast]
     law = scene.dry_friction
-    if law.exponent:  # Convert the friction ratio to that under a contact force equal to the weight.
+    if law.exponent:  # Friction depends on the contact force: convert the ratio to a contact force equal to the weight.
         ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:
-        share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast friction
+        share = -np.expm1(-law.rate * speed[fast])  # (friction at this speed - slow value) / (fast - slow value)
         if not share.min() > MIN_FRICTION_CHANGE_SHARE:
             return float("nan")
         ratio = law.slow + (ratio - law.slow) / share

@@ -17,16 +17,16 @@ def _effective_of_scene(findings: Findings, scene: Scene) -> list[EffectiveModel
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-EFFECTIVE = SceneField(
+EFFECTIVE = SceneField(  # field of each scene's results: values as stated and as motions show them
     EffectiveValues.key, list[EffectiveModelValues], "the scene, then every model", _effective_of_scene
 )
-FORCED = SceneField(
+FORCED = SceneField(  # field of each scene's results: amplitude ratios under each harmonic
     "forced",
     list[ForcedRatio],
     "one per axis, harmonic and body above the platform; empty under a recorded motion",
     lambda findings, scene: compute_forced_ratios(scene),
 )
-FEATURE = Feature(
+FEATURE = Feature(  # result fields, analysis and report section
     EffectiveValues.key,
     scene_fields=(EFFECTIVE, FORCED),
     analysis=EffectiveValues(),

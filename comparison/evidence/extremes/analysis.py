@@ -23,9 +23,9 @@ from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
 from reference.problem.validation import first_scene_error
 
-FinerPoint = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
+FinerPoint = tuple[str, Array, Array]  # a finer run at one phase pair: status, amplification and its error of each body
 
-# Outcomes of the motion itself, for which a model rightly gives no value
+# Outcomes of motions that leave the model, or whose loading is absent or not finite: a model rightly gives no value
 PHYSICAL_OUTCOMES = {
     Outcome.RIM_REACHED,
     Outcome.TRAVEL_REACHED,
@@ -34,25 +34,25 @@ PHYSICAL_OUTCOMES = {
     Outcome.PAINLEVE,
 }
 PHYSICAL_OUTCOMES |= {Outcome.NON_FINITE_LOAD, Outcome.NO_GROUND_MOTION}
-# Outcomes of a solver that reached no answer
+# Outcomes that mean that the solver did not reach the accuracy asked, ran out of steps, or failed
 NUMERICAL_OUTCOMES = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED}
-# A finer run confirms a value if its error is below the claimed one, or below this share of the tolerance.
+# A finer run can confirm an amplification if its own error is at most that claimed, or this share of the tolerance.
 CONFIRMING_ERROR_SHARE = 0.1
-RELATIVE_ROUNDING = 1e-12  # Two runs that differ by less, relatively, give the same value.
-# Groups of extremes that --quick runs with the engine's models as well
+RELATIVE_ROUNDING = 1e-12  # Two amplifications whose relative difference is smaller count as equal.
+# Groups of extremes that --reduced also computes with Exudyn's models
 GROUPS_QUICK_BY_ENGINE = {"lubrication, s/m", "start at the friction limit", "outside the rules"}
-STAGE = "extremes"  # name of the stage of these tasks on the terminal
-# s of processor time of one cell with its finer runs: twice what the most expensive takes on a busy machine
+STAGE = "extremes"  # name under which the terminal shows the progress of these tasks
+# s, processor time after which a cell with its finer runs is stopped: twice what the slowest takes on a busy machine
 CELL_TIME_LIMIT = 300.0
-SECONDS_OF_LONG_ROWS = 30.0  # s, predicted processor time of a cell in a row that is not quick
-# Words for the failures of processes; every other failure is an exception
+SECONDS_OF_LONG_ROWS = 30.0  # s, rough processor time of one cell in a row that takes the equations over a second
+# First word of the reason in a cell whose worker process timed out or died; other failures are exceptions
 PROCESS_FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}
-MIN_TOLERANCE = 1e-10  # smallest relative error that a model can be asked for
+MIN_TOLERANCE = 1e-10  # smallest relative error that a finer run is asked for: models accept no smaller one
 
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """Answer of a model: mu, error and status; or the rule that the scene breaks (`invalid`), or the error `raised`."""
+    """Answer of a model: amplification mu, error, status; or the broken input rule (`invalid`), or error `raised`."""
 
     mu: Array
     error: Array
@@ -64,7 +64,7 @@ class ModelAnswer:
 def judge_answer(
     reply: ModelAnswer, finer: Sequence[ModelAnswer], tolerance: float, invalid: bool, right: Sequence[str]
 ) -> MatrixEntry:
-    """Return the verdict on the worst phase pair of an answer; finer: answers of finer runs, the most trusted first."""
+    """Return the verdict on an answer's worst phase pair; finer: runs, most trusted first; right: allowed outcomes."""
     if reply.raised:
         return MatrixEntry(CellVerdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:
@@ -79,7 +79,7 @@ def judge_answer(
 def _judge_point(
     reply: ModelAnswer, m: int, finer: Sequence[ModelAnswer], tolerance: float, right: Sequence[str]
 ) -> MatrixEntry:
-    """Return the verdict on phase pair `m`, by finer runs; right: outcomes that are correct there."""
+    """Return the verdict on an answer at phase pair `m`, checked by finer runs; right: correct outcomes, if known."""
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICAL_OUTCOMES | NUMERICAL_OUTCOMES | {Outcome.OK}):
@@ -99,7 +99,7 @@ def _judge_point(
 
 
 def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoint], tolerance: float) -> MatrixEntry:
-    """Return the verdict on the amplification mu with its error estimate at one phase pair, by finer runs."""
+    """Return the verdict on the amplification mu and its error estimate at one phase pair, checked by finer runs."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
     unconfirmed = MatrixEntry(CellVerdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
@@ -120,7 +120,7 @@ def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoin
 def _judge_by_finer_runs(
     status: str, mu: Array, error: Array, share: float, known: Sequence[tuple[Array, Array]], tolerance: float
 ) -> MatrixEntry | None:
-    """Return the verdict on a value by finer runs, most trusted first; None if none decides. share: relative error."""
+    """Return the verdict of finer runs (most trusted first) on amplification mu, or None; share: its relative error."""
     for value, estimate in known:
         if reason := _word_excess_over_stated_error(value, estimate, mu, error):
             return MatrixEntry(CellVerdict.FAILED, reason, status)
@@ -135,7 +135,7 @@ def _judge_by_finer_runs(
 
 
 def _word_excess_over_stated_error(finer_mu: Array, finer_error: Array, mu: Array, error: Array) -> str:
-    """Return by how much mu leaves the finer run's by more than both stated errors, "" where no body does."""
+    """Return in words how far the amplification is from a finer run's if further than both errors allow, else ""."""
     off, allowed = np.abs(mu - finer_mu), error + finer_error + RELATIVE_ROUNDING * np.abs(mu)
     worst = int((off / allowed).argmax())
     times = off[worst] / allowed[worst]
@@ -145,7 +145,7 @@ def _word_excess_over_stated_error(finer_mu: Array, finer_error: Array, mu: Arra
 
 
 def _judge_without_error(status: str, mu: Array, value: Array, tolerance: float) -> MatrixEntry:
-    """Return the verdict on a value without error estimate: whether a finer run agrees within the tolerance."""
+    """Return the verdict on amplification mu without error estimate: whether a finer run agrees within `tolerance`."""
     with np.errstate(divide="ignore", invalid="ignore"):
         difference = float(np.nan_to_num(np.abs(mu - value) / np.abs(value), nan=0.0).max())
     verdict = CellVerdict.CONVERGED if difference <= tolerance else CellVerdict.LIMIT
@@ -154,36 +154,36 @@ def _judge_without_error(status: str, mu: Array, value: Array, tolerance: float)
 
 @dataclass(frozen=True)
 class MatrixCell:
-    """Cell of the matrix: one extreme case (row) computed by one model (column)."""
+    """Cell of the matrix of extremes: one extreme case (row) computed by one model (column)."""
 
     row: ExtremeCase
     column: ModelColumn
 
 
 def list_cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COLUMNS) -> list[MatrixCell]:
-    """Return the cells to compute; engines of users skip extremes that test the numerics of the built-in engine."""
+    """Return the cells of the matrix to compute; users' engines skip extremes that test Exudyn's own numerics."""
     pairs = [(row, column) for row in rows for column in columns if (column.like or column.key) in row.columns]
     return [MatrixCell(row, column) for row, column in pairs if not (column.like and row.amplification)]
 
 
 def solve_cell(cell: MatrixCell) -> MatrixEntry:
-    """Return the verdict on a model's answer, after finer runs that confirm or contradict it."""
+    """Compute a model's answer at an extreme, then finer runs that check it; return the verdict on the answer."""
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
     begin = time.process_time()
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # overflow at an extreme shows in the answer, which is judged
+        warnings.simplefilter("ignore")  # no warnings of overflow: the answer is judged anyway
         function = row.amplification or column.amplification
         reply = _ask_model(row, function, {**column.settings, **row.settings, "tolerance": tolerance})
         seconds = time.process_time() - begin
         finer = []
         for other, settings, usual in column.finer if makes_checkable_claim(reply) else ():
-            # Another function than the judged one gets only those settings of the row that it knows.
+            # If the finer run calls another function, pass on only those settings of the row that this function has.
             known = {key: value for key, value in row.settings.items() if other == function or key in settings}
             strict = max(usual * min(1.0, tolerance / column.tolerance), MIN_TOLERANCE)
             finer.append(_ask_model(row, other, {**settings, **known, "tolerance": strict}))
             statuses = finer[-1].status
-            if statuses and NUMERICAL_OUTCOMES.isdisjoint(statuses):  # every point has an answer or a refusal
+            if statuses and NUMERICAL_OUTCOMES.isdisjoint(statuses):  # an answer or a refusal at every phase pair
                 break
     entry = judge_answer(reply, finer, tolerance, row.invalid, row.right)
     cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == CellVerdict.LIMIT else None
@@ -194,7 +194,7 @@ def solve_cell(cell: MatrixCell) -> MatrixEntry:
 
 def makes_checkable_claim(reply: ModelAnswer) -> bool:
     """
-    Return whether a finer run could contradict the answer, unlike a value whose error is as large as itself.
+    Return whether finer runs could contradict the answer: not if invalid, failed, or of an error as large as itself.
     """
     return not (reply.invalid or reply.raised) and any(
         (error < np.abs(mu)).any() if status == Outcome.TOLERANCE_NOT_MET else status not in NUMERICAL_OUTCOMES
@@ -203,7 +203,7 @@ def makes_checkable_claim(reply: ModelAnswer) -> bool:
 
 
 def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> ModelAnswer:
-    """Return a function's answer at the row's phase pairs; functions of Exudyn get the row's limit of steps."""
+    """Return what a function answers for the row's scene and phases; row.max_work: largest number of Exudyn's steps."""
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
     try:
@@ -219,7 +219,7 @@ def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> 
 
 
 def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
-    """Return the scene that the tables in `stated` describe; None stands for an absent key. Raises SceneError."""
+    """Return the scene described by `stated`, in the form of a scene file; None: key absent. Raises SceneError."""
     try:
         return Scene.model_validate({**stated, "name": "extreme"})
     except ValidationError as error:
@@ -228,18 +228,18 @@ def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
 
 @dataclass(frozen=True)
 class Extremes:
-    """Task list of every model at every extreme; limit: largest processor time of one cell, s, rounded up."""
+    """Every model computed at every extreme; limit: processor time, s (rounded up), after which a cell is stopped."""
 
     rows: Sequence[ExtremeCase]
     columns: Sequence[ModelColumn] = COLUMNS
     limit: float = CELL_TIME_LIMIT
 
     def tasks(self) -> list[Task]:
-        """Return one task for each cell, row by row."""
+        """Return one task for each cell of the matrix, row by row."""
         return [self._task(cell) for cell in list_cells(self.rows, self.columns)]
 
     def collect(self, results: TaskResults) -> Matrix:
-        """Return the matrix without the facts of the run, which the command adds."""
+        """Return the matrix of verdicts; the command adds times and provenance of the run."""
         entries: dict[tuple[str, str], dict[str, MatrixEntry]] = {}
         for cell in list_cells(self.rows, self.columns):
             row = entries.setdefault((cell.row.group, cell.row.title), {})
@@ -249,7 +249,7 @@ class Extremes:
         return Matrix(titles, [Extreme(group, title, row) for (group, title), row in entries.items()], {})
 
     def _task(self, cell: MatrixCell) -> Task:
-        """Return the task of a cell; it waits for the compiled reference only if it asks the equations."""
+        """Return the task that judges a cell; it waits for compilation only if it solves the reference equations."""
         row, column = cell.row, cell.column
         functions = {row.amplification or column.amplification, *(function for function, _, _ in column.finer)}
         seconds, compiled = column.seconds if row.quick else SECONDS_OF_LONG_ROWS, EQUATIONS in functions
@@ -258,13 +258,13 @@ class Extremes:
 
 
 def _entry_of_failure(cell: MatrixCell, failed: TaskResult) -> MatrixEntry:
-    """Return the verdict on a task that raised an error or ended its process."""
+    """Return the verdict "FAILED" on a cell whose task raised an error, took too long or ended its process."""
     reason = f"{PROCESS_FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
     return MatrixEntry(CellVerdict.FAILED, reason, failed.outcome.value)
 
 
 def select_quick(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:
-    """Return the extremes that take a fraction of a second, most of them without the engine's models."""
+    """Return the extremes that the equations compute in less than a second, most of them without Exudyn's models."""
     chosen = [
         replace(
             row,

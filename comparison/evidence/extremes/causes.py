@@ -1,16 +1,16 @@
 """Causes why a model has no answer at an extreme, by model and extreme."""
 
 _ENGINE = "translational", "spatial"  # keys of the models of Exudyn
-# Causes in words, and parts of them
+# Texts that the table below uses more than once: causes, and the common end of two causes
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
-_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"  # end of a cause
-_FRICTION = f"friction stops so light a platform {_QUICK}"
+_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"  # end of the next two texts
+_FRICTION = f"friction stops so light a platform {_QUICK}"  # cause in words
 _RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
 _LIGHT = (
     "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
     "rounding of those which balance at its start"
 )
-# Known causes of answers that are missing or contradicted, by quantity and extreme, then by key of the model
+# Known causes why a model does not reach the accuracy asked: by quantity and its extreme value, then by model
 CAUSES: dict[tuple[str, str], dict[str, str]] = {
     ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
     ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),

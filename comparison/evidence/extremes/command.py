@@ -25,12 +25,12 @@ from comparison.runner.processes import Pool, make_process_pool
 from comparison.runner.progress import make_wide_console
 from reference.problem import SceneError
 
-WORKER_FUNCTIONS = {EQUATIONS, ENGINE, STATED_ENGINE}  # functions that the workers call
+WORKER_FUNCTIONS = {EQUATIONS, ENGINE, STATED_ENGINE}  # import paths of the functions that worker processes call
 
 
 @command
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
-    """Judge the cells that the command line selects; return the exit code."""
+    """Judge the cells of the matrix of extremes that the command line selects; return the exit code."""
     parser = CommandParser(
         "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
     )
@@ -40,7 +40,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         "--limit", metavar="SECONDS", help=f"most processor time of one cell (default {CELL_TIME_LIMIT:g})"
     )
     parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
-    parser.add_argument("--only", help=argparse.SUPPRESS)  # former option: its refusal names the one in its place
+    parser.add_argument("--only", help=argparse.SUPPRESS)  # former option: its error message names the new one
     keys = [column.key for column in COLUMNS]
     parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
     add_models(parser)
@@ -53,7 +53,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     matrix = judge_matrix(extremes, options, argv, console, executor)
 
     def show() -> None:
-        """Print the reason of every cell that reached a limit or failed."""
+        """Print the reason for every verdict "limit" or "FAILED" in the matrix."""
         for verdict in (CellVerdict.LIMIT, CellVerdict.FAILED):
             for row, title, entry in matrix.cells_of(verdict):
                 console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
@@ -72,7 +72,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 def judge_matrix(
     extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> Matrix:
-    """Return the matrix with the facts of its run; stored cells are not judged again."""
+    """Return the matrix of verdicts with times and provenance of the run; cells in the cache are not computed again."""
     begin, tasks = time.monotonic(), extremes.tasks()
     results = compute_tasks("extremes", options, words, tasks, WORKER_FUNCTIONS, console, executor)
     matrix = extremes.collect(results)
@@ -88,7 +88,7 @@ def judge_matrix(
 
 
 def _choose_cells(options: argparse.Namespace) -> Extremes:
-    """Return the cells that the options select. Raises SceneError."""
+    """Return the rows and columns of the matrix that the options select. Raises SceneError."""
     if options.only is not None:
         rule = "selects analyses of a study; the extremes are chosen with --rows TEXT"
         raise SceneError("command line", "--only", options.only, rule)

@@ -14,9 +14,9 @@ import multibody
 from reference.problem import GRAVITY, Amplification, Scene
 from reference.problem.readings import DEFAULT_V_REG
 
-MAX_LEVELS = 6  # largest number of levels of accuracy: more could cost much and would not change the answer
-LEVELS_TO_USUAL_CONTACT = 3  # number of levels from the given stiffness to that of the study, by equal factors
-LEVEL_STEP_RATIO = 4  # ratio of the largest steps of two successive levels
+MAX_LEVELS = 6  # largest number of accuracy levels tried in turn: more take long and do not change the answer
+LEVELS_TO_USUAL_CONTACT = 3  # accuracy levels from the stated contact stiffness to the usual one, by equal factors
+LEVEL_STEP_RATIO = 4  # largest time step of an accuracy level / that of the next finer level
 
 
 def amplification(
@@ -29,16 +29,16 @@ def amplification(
     step: float | None = None,
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
-    """Return mu by the engine whose levels of accuracy start at a contact stiffness, N/m, or a largest step, s."""
+    """Return Exudyn's amplification by accuracy levels that begin at a contact stiffness, N/m, or a largest step, s."""
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
-        for number, level in enumerate(levels):  # from the penetration of the stated stiffness to the level's own
+        for number, level in enumerate(levels):  # interpolate from the stated stiffness to that usual at this level
             share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
             levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
-    if step is not None:  # the largest step grows by `factor`; the smallest stays as it is
+    if step is not None:  # multiply the largest step by `factor`; keep the smallest
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
-        # Further step divisions that make up for `factor`, and the growth of the error of a second-order method
+        # Additional step divisions that make up for `factor`, and the factor by which errors of second order grow
         more, error = math.ceil(math.log(factor, LEVEL_STEP_RATIO)), max(factor, 1.0) ** 2
         for number, level in enumerate(levels):
             changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error)

@@ -9,11 +9,11 @@ from typing import Annotated, Any
 from comparison.json_file import StoredFile
 from comparison.result_types import require, result
 
-FILE = "extremes.json"
+FILE = "extremes.json"  # name of the file with the matrix
 
 
 class CellVerdict(StrEnum):
-    """Verdicts from best to worst; a cell of several phase pairs has that of its worst one."""
+    """Verdicts on a model at an extreme, from best to worst; a cell has the verdict on its worst phase pair."""
 
     CONVERGED = "converged"
     REFUSED = "refused"
@@ -21,7 +21,7 @@ class CellVerdict(StrEnum):
     FAILED = "FAILED"
 
 
-MEANING_OF_VERDICT = {
+MEANING_OF_VERDICT = {  # explanation of each verdict for the report
     CellVerdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
     CellVerdict.REFUSED: "refused: against a rule, or the motion leaves the model",
     CellVerdict.LIMIT: "limit: the model says that it cannot",
@@ -31,7 +31,7 @@ MEANING_OF_VERDICT = {
 
 @result
 class MatrixEntry:
-    """Verdict on the answer of one model at one extreme."""
+    """Cell of the matrix: the verdict on the answer of one model at one extreme, with reason, error and time."""
 
     verdict: CellVerdict
     """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
@@ -47,7 +47,7 @@ class MatrixEntry:
 
 @result
 class Extreme:
-    """Row of the matrix: one quantity at one extreme value."""
+    """Row of the matrix of extremes: one quantity at one extreme value, with the verdict on each model."""
 
     group: Annotated[str, "the quantity"]
     title: Annotated[str, "its extreme value"]
@@ -58,14 +58,14 @@ class Extreme:
 
 @result
 class Matrix:
-    """Every model at the extremes of every quantity, judged by finer runs."""
+    """Matrix of verdicts: every model at the extremes of every quantity, checked by finer runs."""
 
     columns: Annotated[Mapping[str, str], "titles of the models by key"]
     rows: Annotated[Sequence[Extreme], "one per extreme"]
     run: Annotated[Mapping[str, Any], "command, times, provenance, and whether it is the reduced form"]
 
     def __post_init__(self) -> None:
-        """Refuse a verdict on a model that has no column."""
+        """Raise an error if a row has a verdict on a model that is not among the columns."""
         for row in self.rows:
             for key in row.entries:
                 require(key in self.columns, f"model {key[:40]!r} of a row is none of the columns")
@@ -77,16 +77,16 @@ class Matrix:
 
     @property
     def count_line(self) -> str:
-        """Return the counts in one line."""
+        """Return the number of cells, and of those with each verdict, in one line of text."""
         counts = self.counts()
         return f"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}"
 
     def groups(self) -> list[list[Extreme]]:
-        """Return the rows grouped by quantity."""
+        """Return the rows of the matrix grouped by the varied quantity."""
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
     def cells_of(self, verdict: str) -> list[tuple[Extreme, str, MatrixEntry]]:
-        """Return row, column title and entry of the cells that have one verdict."""
+        """Return row, column title and entry of all cells with the given verdict."""
         return [
             (row, self.columns[key], entry)
             for row in self.rows
@@ -95,7 +95,7 @@ class Matrix:
         ]
 
 
-STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")
+STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")  # file and command that writes it
 
 
 def describe_entry(entry: MatrixEntry) -> str:

@@ -32,13 +32,13 @@ from comparison.evidence.extremes.scenes import (
 
 Phases = tuple[tuple[float, float], ...]  # phase pairs (alpha1, alpha2), rad
 
-USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs of most rows
-# rad, phase pairs at which symmetry makes forces or velocities vanish or coincide
+USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs at which most extremes are computed
+# rad, phase pairs that are extremes themselves: by symmetry, forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-# Largest number of Exudyn's steps for a phase pair: in rows that MAX_WORK would end too early, which of
-# Exudyn's models the translational one alone computes; and in rows of towers by their number of bodies
+# Largest number of Exudyn's steps for a phase pair: in rows of long motions or stiff links, for which MAX_WORK is too
+# small (translational model only); and in rows of towers
 MAX_WORK_OF_LONG_ROWS = 4e6
-MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # by number of bodies
+MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # largest number of steps, by number of bodies
 
 
 @dataclass(frozen=True)
@@ -50,29 +50,29 @@ class ExtremeCase:
     scene: Mapping[str, Any]  # tables and keys of the scene file
     columns: tuple[str, ...]  # keys of the models that the extreme concerns
     phases: Phases = USUAL_PHASES
-    settings: Mapping[str, Any] = field(default_factory=dict)  # settings of the models that replace those of the column
-    invalid: bool = False  # whether the rules of the input refuse the scene
-    right: tuple[str, ...] = ()  # outcomes that may replace an answer, if they are known; any outcome if empty
+    settings: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments that override those of the column
+    invalid: bool = False  # whether the input is against the rules, so that every model must refuse it
+    right: tuple[str, ...] = ()  # outcomes that are correct instead of an amplification; empty: not prescribed
     quick: bool = True  # whether the equations take less than a second
     max_work: float = MAX_WORK  # largest number of steps that the engine's models may take
-    amplification: str = ""  # function that replaces that of the column, "" for none
+    amplification: str = ""  # import path of a function to call instead of the column's, "" for the column's
 
     @property
     def name(self) -> str:
-        """Return the quantity and its value."""
+        """Return the name of this extreme: the quantity and its extreme value."""
         return f"{self.group} {self.title}"
 
 
 def _cases_of_group(
     group: str, scenes: Mapping[Any, Mapping[str, Any]], columns: tuple[str, ...] = ALL_MODELS, **more: Any
 ) -> list[ExtremeCase]:
-    """Return a case for each scene of one varied quantity, with its value as title."""
+    """Return an extreme case for each scene; scenes: by value of the varied quantity `group`; more: other fields."""
     titles = [value if isinstance(value, str) else f"{value:g}" for value in scenes]
     return [ExtremeCase(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
 
 
 def list_extreme_cases() -> Iterator[ExtremeCase]:
-    """Yield every extreme in the order of the matrix."""
+    """Yield every extreme case, in the order of the rows of the matrix."""
     yield from _friction_law_cases()
     yield from _engine_numerics_cases()
     yield from _size_cases()
@@ -111,9 +111,9 @@ def _friction_law_cases() -> Iterator[ExtremeCase]:
 
 
 def _engine_numerics_cases() -> Iterator[ExtremeCase]:
-    """Yield extremes of the engine's contact stiffness and time step."""
+    """Yield extremes of Exudyn's contact stiffness and time step."""
     stiff, step = "contact stiffness, N/m", "step of the engine, s"
-    brief = {-6: 0.02, -5: 0.2}  # s of motion, by exponent of a small step
+    brief = {-6: 0.02, -5: 0.2}  # s, duration of the motion with a time step of 10 to the power of the key
     for group, key, exponents in ((stiff, "contact_stiffness", range(2, 13, 2)), (step, "step", range(-6, 0))):
         for exponent in exponents:
             changed = {key: 10.0**exponent, "tolerance": 1e-2}
@@ -124,7 +124,7 @@ def _engine_numerics_cases() -> Iterator[ExtremeCase]:
 
 
 def _size_cases() -> Iterator[ExtremeCase]:
-    """Yield extremes of amplitude, radius and travel."""
+    """Yield extremes of the loading's amplitude, the radius of the sliding surface and the travel limit."""
     group = "amplitude, m/s^2"
     sizes = (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9)
     yield from _cases_of_group(
@@ -139,7 +139,7 @@ def _size_cases() -> Iterator[ExtremeCase]:
         "inf, 1e-06 m/s^2": make_baseline_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e-6)),
     }
     yield from _cases_of_group("rho, m", {**curved, **flat})
-    # The platform slides off its supports
+    # So strong a loading that the platform slides off its supports
     far_off = make_baseline_scene(radius=math.inf, amplitudes=make_horizontal_amplitudes(1e3))
     yield ExtremeCase("rho, m", "inf, 1000 m/s^2", far_off, PLANAR_MODELS)
     yield from _cases_of_group(
@@ -149,7 +149,7 @@ def _size_cases() -> Iterator[ExtremeCase]:
 
 def _chain_cases() -> Iterator[ExtremeCase]:
     """Yield extremes of the number of bodies, their masses, and the periods and damping of the links."""
-    # A shock takes 0.5 to 1.6 s to reach the top of the towers.
+    # Motions last longer than the 0.5 to 1.6 s that a shock takes to reach the top of the towers.
     for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
         tower = make_baseline_scene(
             masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0
@@ -162,7 +162,7 @@ def _chain_cases() -> Iterator[ExtremeCase]:
         "total mass, kg", {total: make_baseline_scene(masses=[0.5 * total, 0.5 * total]) for total in totals}
     )
     group = "platform's share of the mass"
-    # At shares below friction^2 / 4 the equations reach Painleve's paradox; a compliant contact jams and opens.
+    # At shares below friction^2 / 4 the equations reach Painleve's paradox; an elastic contact jams and opens.
     paradox = ("painleve paradox", "contact lost")
     for share, right in ((1e-6, ()), (1e-3, paradox), (0.999, ()), (0.999999, ())):
         tower = make_baseline_scene(masses=[2.0 * share, 2.0 * (1.0 - share)])
@@ -182,7 +182,7 @@ def _chain_cases() -> Iterator[ExtremeCase]:
 
 
 def _bar_cases() -> Iterator[ExtremeCase]:
-    """Yield bars under a mass of 1 kg, with sway buckling loads stated as multiples of its weight."""
+    """Yield extremes of the bars that carry a body of 1 kg: ratio of its weight to their buckling load, stiffness."""
     group = "load over the buckling load of bars"
     yield from _cases_of_group(group, {share: put_on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
     yield ExtremeCase(group, "1.000001", put_on_bars(1.000001), ALL_MODELS, invalid=True)
@@ -220,9 +220,9 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
     )
     exactly = make_baseline_scene(amplitudes=add_vertical_harmonic(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # rad, phases at which the contact force is zero for an instant
-    # For that instant either outcome, contact or its loss, is right.
+    # At that instant, both going on with contact and losing contact are right.
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR_MODELS, phases=weightless, right=("contact lost",))
-    # The spatial model goes on when a contact opens: no outcome is prescribed.
+    # The spatial model goes on when a contact opens, so that no outcome is prescribed here.
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
     yield from _cases_of_group(
         group, {upward: make_baseline_scene(amplitudes=add_vertical_harmonic(upward)) for upward in (15.0, 1e3)}
@@ -233,7 +233,7 @@ def _excitation_cases() -> Iterator[ExtremeCase]:
 
 
 def _direction_cases() -> Iterator[ExtremeCase]:
-    """Yield extremes of the direction of loading: along one axis or one line, exactly and nearly."""
+    """Yield extreme directions of the loading: exactly or nearly along one axis, or along one line."""
     lines = {
         "x alone": make_baseline_scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
         "y alone": make_baseline_scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),
@@ -250,7 +250,7 @@ def _direction_cases() -> Iterator[ExtremeCase]:
 
 
 def _start_and_support_cases() -> Iterator[ExtremeCase]:
-    """Yield starts at the friction limit, and extremes of the arrangement of the supports."""
+    """Yield cases whose motion starts at the friction limit, and extremes of the radius of the ring of supports."""
     limit = 0.1 * GRAVITY_LIMIT
     for name, phase in (("turning there", 0.0), ("rising beyond", -math.pi / 3.0), ("falling", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
@@ -264,8 +264,8 @@ def _start_and_support_cases() -> Iterator[ExtremeCase]:
 
 
 def _uneven_cases() -> Iterator[ExtremeCase]:
-    """Yield uneven buildings, whose unevenness neither the equations nor the translational model reads."""
-    # Share of the ring's radius, toward a support: at 0.5 the opposite support carries nothing
+    """Yield buildings with offset or turned bodies or uneven supports, which only the spatial model accounts for."""
+    # Bodies are moved toward a support by this share of the ring's radius; at 0.5 the opposite support carries nothing.
     for share in (1e-6, 0.1, 0.45, 0.5, 1.0):
         moved, beyond = change_bodies(offset=[share * math.sqrt(0.5)] * 2), share >= 0.5
         work = MAX_WORK if beyond else 1e5
@@ -298,7 +298,7 @@ def _tolerance_cases() -> Iterator[ExtremeCase]:
 
 
 def _refused_cases() -> Iterator[ExtremeCase]:
-    """Yield scenes outside the rules, which every model must refuse, and scenes without loading."""
+    """Yield scenes against the rules, which every model must refuse, and scenes with no or too strong loading."""
     group = "outside the rules"
     wrong = {
         "friction -0.1": make_baseline_scene(friction=-0.1),

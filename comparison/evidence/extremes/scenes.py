@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 BASELINE_RADIUS = 0.25  # m, radius of the baseline scene, whose period is 1 s
-GRAVITY_LIMIT = 9.81  # m/s^2, downward acceleration of the plate at which the contact force vanishes
+GRAVITY_LIMIT = 9.81  # m/s^2, downward acceleration of the shaking plate at which the contact force vanishes
 
 
 def make_baseline_scene(
@@ -20,7 +20,7 @@ def make_baseline_scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """Return the baseline scene, `fig3-I` at twice its amplitude, with changed values; None removes a key."""
+    """Return the baseline scene (`fig3-I` at twice the amplitude) as in a scene file, values changed; None: no key."""
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
@@ -41,23 +41,23 @@ def make_baseline_scene(
 
 
 def make_horizontal_amplitudes(amplitude: float) -> list[list[float]]:
-    """Return amplitudes of one harmonic along x and the other along y, m/s^2."""
+    """Return the amplitudes of a loading with one harmonic along x and the other along y, m/s^2."""
     return [[amplitude, 0.0], [0.0, amplitude]]
 
 
 def add_vertical_harmonic(amplitude: float) -> list[list[float]]:
-    """Return the amplitudes of the baseline scene along x and y, and `amplitude` along z, m/s^2."""
+    """Return the horizontal amplitudes of the baseline scene, and a vertical harmonic of `amplitude`, m/s^2."""
     return [[2.0, 0.0], [0.0, 2.0], [amplitude, 0.0]]
 
 
 def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
-    """Return the scene with heights raised by its extra radius: bodies stay as high above the contacts as before."""
+    """Return a scene of large radius with its bodies raised as much as the radius grew: contacts stay as far below."""
     rise = max(stated["isolator"]["radius"] - BASELINE_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
 def put_on_bars(share: float, **keys: Any) -> dict[str, Any]:
-    """Return the baseline scene on four bars of 1 m that carry a share of their buckling load."""
+    """Return the baseline scene with its upper body on four bars of 1 m, under that share of their buckling load."""
     beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
     stated = make_baseline_scene()
     platform, body = stated["bodies"]

@@ -3,7 +3,7 @@ Scaling test: how the step from small to exact equations falls when loading and 
 
 Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
 geometry that the small equations drop is of the
-order of its square: the step must fall like s^2, or geometry is not its cause. Viscous friction mu = f_c |v|
+order of its square: the step must fall like s^2, or geometry is not its cause. The viscous friction coefficient f_c |v|
 scales by itself. The printed small equations are not quite invariant either: their friction terms with xi'' x_1 / rho
 shrink like s^2 too, which the second trend shows.
 """
@@ -22,17 +22,17 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_C
 
-LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)  # factors s on the loading
+LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)  # factors s by which loading and dry friction are multiplied
 SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs computed at each scale
-SCALING_TOLERANCE = 1e-8  # relative error of mu: at the smallest scale exact and small equations differ by 1e-5
-EXACT_MINUS_SMALL = "exact minus small"  # name of the difference between exact and small equations
-SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of the change of the amplification mu when the loading is halved
+SCALING_TOLERANCE = 1e-8  # relative error asked of the amplification; exact and small equations differ by 1e-5 or more
+EXACT_MINUS_SMALL = "exact minus small"  # name of the amplification's difference between exact and small equations
+SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of its change when loading and friction are halved
 
-Arguments = tuple[Scene, bool]  # scene, and whether the supremum is taken
+Arguments = tuple[Scene, bool]  # scene, and whether the peak acceleration is the supremum, at any sliding speed
 
 
 def scale_scene(scene: Scene, s: float) -> Scene:
-    """Return the scene with loading, dry friction and travel times s; the rate of friction with speed is over s."""
+    """Return the scene with loading, dry friction and travel limit multiplied by s; friction's rate divided by s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
     if not law.constant or law.elastic:
@@ -47,10 +47,10 @@ def scale_scene(scene: Scene, s: float) -> Scene:
 
 
 def fit_scene_trends(task: Arguments) -> list[Trend]:
-    """Return for each body of a scene how two differences of mu fall with the scale. Runs inside a worker process."""
+    """Return for each body the power laws by which two differences of amplification fall with s. Runs in a worker."""
     scene, supremum = task
     answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
-    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (scale, small or exact, P, N)
+    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (scale, equations, phases, body)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
     halving = small[:-1] / small[1:] - 1.0
@@ -75,8 +75,8 @@ def fit_scene_trends(task: Arguments) -> list[Trend]:
 
 
 def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
-    """Return mu and its error by the small and by the exact equations, each (2, P, N) at P phase pairs."""
-    cutoff = None if supremum else DEFAULT_V_C * s  # v_c scales with the motion
+    """Return the amplification and its error, each (2, P, N): small, exact equations; P phase pairs; N bodies."""
+    cutoff = None if supremum else DEFAULT_V_C * s  # lowest sliding speed that counts; it scales with the motion
     answers = [
         reference.amplification(scene, SCALING_PHASES, equations=equations, tolerance=SCALING_TOLERANCE, cutoff=cutoff)
         for equations in ("small", "exact")
@@ -85,7 +85,7 @@ def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
-    """Return trends without values for every body, with the reason why the task failed."""
+    """Return one trend for each body, without values and with the reason why the task failed."""
     scene, supremum = task
     what = f"{EXACT_MINUS_SMALL}, {_name_peak(scene, supremum)}"
     bodies = range(1, len(scene.bodies) + 1)
@@ -95,19 +95,19 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
 
 
 def _name_peak(scene: Scene, supremum: bool) -> str:
-    """Return in words which peak of the acceleration (5.1) takes: supremum, resolved or any."""
+    """Return in words which peak acceleration enters the amplification: "supremum", "resolved peak" or "peak"."""
     return "peak" if not has_dry_friction(scene) else "supremum" if supremum else "resolved peak"
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
-    """Analysis of how the effect of geometry on mu falls as loading and friction are scaled down, by scene and body."""
+    """Analysis of how the effect of exact geometry on the amplification falls as loading and friction scale down."""
 
     key, stage, level = "scaling", "scaling test", 2
     seconds = 0.1
     function, without_value = staticmethod(fit_scene_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return every scene with phases and without heat, which does not scale, and whether to take the supremum."""
+        """Return every scene with phases and definition of its peak; none where heat, which does not scale, acts."""
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
         return [
             (scene, supremum) for scene in scenes for supremum in ([True, False] if has_dry_friction(scene) else [True])

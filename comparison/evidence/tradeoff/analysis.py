@@ -25,55 +25,55 @@ from comparison.study.user_models import engine_description
 from comparison.wording import word_exception
 from reference.problem import Amplification, Scene
 
-STAGE = "trade-off"  # name of the stage of these tasks on the terminal
-SAMPLE_SEED = 20  # seed of the random phase pairs: every run has the same
-WARM_UP_DURATION = 0.2  # s, duration of a motion that loads and compiles a function before it is timed
-TASK_SECONDS = 3.0  # s, rough processor time of one task
-# Processor time after which a task is given up, as an explicit method on stiff links is: this multiple of its rough
-# work, and the spare s for compilation
+STAGE = "trade-off"  # name under which the terminal shows the progress of these tasks
+SAMPLE_SEED = 20  # seed of the random phase pairs, so that every run measures the same ones
+WARM_UP_DURATION = 0.2  # s, duration of the motion with which a function is called once, to compile it, before timing
+TASK_SECONDS = 3.0  # s, processor time that one task should take: it gets as many phase pairs as that allows
+# A task is stopped after TIME_LIMIT_RATIO times its expected processor time plus SPARE_SECONDS, s, for compilation.
+# Explicit methods on stiff links take that long.
 TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
-# Steps of the clock of a process, s, which is as coarse as this once a time limit was set; that of a thread is not
+# s, resolution of the processor time of a process once it has a time limit; that of a thread is finer
 CLOCK_STEP = 0.01
-OWN_SOLUTION_SECONDS = 0.01  # s, rough cost per phase pair of a setting's own reference solution
-# Methods whose agreement with a reference solution is stated, by the first word of their names
+OWN_SOLUTION_SECONDS = 0.01  # s per phase pair, rough processor time of a reference solution for one setting alone
+# Methods that check a reference solution, described in words; keys: first word of the method's name
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
-Function = tuple[str, Settings]  # function as "package:function", and its keyword arguments
-_warmed_functions: set[str] = set()  # functions that this process has called, so that they are compiled
+Function = tuple[str, Settings]  # import path "package:function" of a function, and its keyword arguments
+_warmed_functions: set[str] = set()  # import paths of functions that this process has already called and so compiled
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """Phase pairs of a scene at which the error and the processor time of one function are measured."""
+    """One thing to measure: what a function answers, and how long it takes, at some phase pairs of a scene."""
 
     scene: Scene
     function: Function
-    phases: Array  # (M, 2), rad
+    phases: Array  # M phase pairs, (M, 2), rad
 
 
 @dataclass(frozen=True)
 class SettingResult:
-    """Values of the amplification mu, their error estimates and the processor time of one measurement."""
+    """Result of one measurement: the amplification mu, its error estimate, and the processor time."""
 
-    mu: Array  # (M, N), NaN without a value
-    error_estimate: Array  # (M, N), absolute, NaN without
-    seconds: float  # s of processor time
-    step: float  # mean step, s; NaN if the function does not return it
+    mu: Array  # amplification at M phase pairs of N bodies, (M, N); NaN without a value
+    error_estimate: Array  # estimated absolute error of the amplification, (M, N); NaN without
+    seconds: float  # s of processor time, of all phase pairs
+    step: float  # mean time step, s; NaN if the function does not return it
     error_message: str = ""  # what went wrong, or empty
 
     def __post_init__(self) -> None:
-        """Refuse arrays whose sizes disagree."""
+        """Raise ValueError unless mu and error_estimate are two-dimensional arrays of one shape."""
         if self.mu.ndim != 2 or self.error_estimate.shape != self.mu.shape:
             raise ValueError(f"mu {self.mu.shape}, error_estimate {self.error_estimate.shape}")
 
 
 def sample_phases(points: int) -> Array:
-    """Return the phase pairs that are measured, rad."""
+    """Return random phase pairs, (points, 2), rad, the same ones in every run."""
     return np.random.default_rng(SAMPLE_SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
 
 
 def measure_setting(measurement: Measurement) -> SettingResult:
-    """Return what a warmed-up function computes and its time, or its error. Runs inside a worker process."""
+    """Return a function's amplification and processor time after a first call that compiles it. Runs in a worker."""
     path, settings = measurement.function
     if path not in _warmed_functions:
         _warmed_functions.add(path)
@@ -83,7 +83,7 @@ def measure_setting(measurement: Measurement) -> SettingResult:
 
 
 def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> SettingResult:
-    """Return mu, its error and the processor time of one call; NaN with the message if it raises an error."""
+    """Return amplification, error estimate and processor time of one call; NaN and a message if it raises an error."""
     nothing, step, begin = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, _read_clocks()
     try:
         answer = import_function(path)(scene, phases, **settings)
@@ -103,19 +103,19 @@ def _read_clocks() -> tuple[float, float]:
 
 
 def _measure_since(begin: tuple[float, float]) -> float:
-    """Return the processor time since then, s: that of this thread, or of all where others have computed, too."""
+    """Return the processor time since `begin`, s: that of this thread, or of all threads if others worked as well."""
     own, whole = (now - then for now, then in zip(_read_clocks(), begin))
     return max(own, whole - CLOCK_STEP)
 
 
 def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:
-    """Return NaN at every phase pair of a measurement that failed, with the reason."""
+    """Return the result of a measurement that failed: NaN at every phase pair, and the reason."""
     nothing = np.full((len(measurement.phases), len(measurement.scene.bodies)), np.nan)
     return SettingResult(nothing, nothing, 0.0, np.nan, failed.reason)
 
 
 def join_results(parts: Sequence[SettingResult]) -> SettingResult:
-    """Return the measurements of one function as one: times added up, and the first error message."""
+    """Return the results of several tasks of one function as one result: times added, first error message kept."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
     seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
     return SettingResult(
@@ -125,27 +125,27 @@ def join_results(parts: Sequence[SettingResult]) -> SettingResult:
 
 @dataclass(frozen=True)
 class TradeOff:
-    """Task list of the error against compute time of every setting and scene; quick: fewer points and values."""
+    """Measurement of error against compute time of every setting and scene; quick: fewer phase pairs and settings."""
 
     scenes: Sequence[Scene]
     quick: bool = False
     supplied: tuple[Model, ...] = ()
 
     def tasks(self) -> list[Task]:
-        """Return the tasks of every function of every scene; each takes about TASK_SECONDS."""
+        """Return the tasks that measure every setting and solve every reference, each of about TASK_SECONDS."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
         return list({task.key: task for task in tasks}.values())  # Settings with the same function share its tasks.
 
     def collect(self, results: TaskResults) -> list[trade.MeasuredTrade]:
-        """Return the measured trade-off of each scene, without the facts of the run, which the command adds."""
+        """Return each scene's measured trade-off; the command adds times and provenance of the run."""
         return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
-        """Return every setting to measure for a scene, those of the user's engines last."""
+        """Return every setting (method and value of its parameter) to measure for a scene, users' engines last."""
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
-        """Yield the tasks of every question's reference solution; then those of every setting and its reference."""
+        """Yield lists of tasks: one list for each reference solution, then two for each setting and its reference."""
         questions = {question.key: question for question in list_questions(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
@@ -156,7 +156,7 @@ class TradeOff:
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Return the tasks of one function for a question. seconds: rough cost of a phase pair for 20 s of motion."""
+        """Return tasks that run a function at a question's phase pairs; seconds: time of one, for 20 s of motion."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
@@ -170,7 +170,7 @@ class TradeOff:
         return tasks
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
-        """Return error over cost of every setting for one scene."""
+        """Return the measured errors and processor times of every setting for one scene."""
         measured = (
             join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
@@ -188,7 +188,7 @@ class TradeOff:
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """
-    Return the errors and the time of one setting at M phase pairs, against a reference amplification mu (M, N).
+    Return the errors and the time of one setting, compared with the reference amplification at M phase pairs, (M, N).
 
     Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
     """
@@ -215,7 +215,7 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
 def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
 ) -> trade.SolvedQuestion:
-    """Return a question with its reference solution, and with the error and the checks of that solution."""
+    """Return a question with a description of its reference solution, the solution's error, and how it was checked."""
     with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
         error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = trade.find_error_quantile(error_estimate.ravel(), 1.0)
@@ -234,7 +234,7 @@ def _make_solved_question(
 
 def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
     """
-    Return how far the most accurate setting of other methods, else of the same one, agrees with the reference.
+    Return sentences: how closely the most accurate settings, of other methods if there are any, confirm the reference.
     """
     by_engine = question.reference_solution[0].startswith("multibody")
     candidates = [each for each in entries if each.question == question.key and not each.model_error and each.complete]
@@ -244,7 +244,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
         families = [("the same code, asked for less", [each for each in candidates if each.controlled])]
 
     def largest(setting: trade.MeasuredSetting) -> float:
-        """Return the largest error of a setting over the bodies; infinite where it is not known."""
+        """Return the largest of a setting's relative errors of all bodies; infinite if one is not known."""
         return max(np.inf if error is None else error for error in setting.most)
 
     best = [(what, min(others, key=largest)) for what, others in families if others]

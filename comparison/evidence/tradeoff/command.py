@@ -38,16 +38,16 @@ from comparison.surfaces.figures.file_names import name_figure_file
 from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
 
-DEFAULT_SCENE = "fig3-I"
-COMMAND = "comparison.tradeoff"  # name of the command in the manifest of its files
-WORKER_START_SECONDS = 8.0  # s that a worker takes before its first task: imports, loading of compiled code
-# Functions that the workers call
+DEFAULT_SCENE = "fig3-I"  # name of the scene that is measured if the command line names none
+COMMAND = "comparison.tradeoff"  # name of the command, as the manifest (list of written files) states it
+WORKER_START_SECONDS = 8.0  # s that a worker process takes to start: imports, loading of compiled code
+# Import paths of the functions that worker processes call
 WORKER_FUNCTIONS = {REFERENCE, ENGINE, REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN, SCIPY_FACTORS}
 
 
 @command
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
-    """Measure the scenes of the command line; return the exit code."""
+    """Measure error against compute time for the scenes of the command line; return the exit code."""
     parser = CommandParser(
         "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
     )
@@ -67,7 +67,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     scenes = [_load_harmonic_scene(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
     out = resolve_destination(options.out)
-    _load_trades(out)  # a file that is no trade-off is refused before anything is measured
+    _load_trades(out)  # raises an error for another file of this name before anything is measured
     written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
     refuse_foreign_files(out, written)
     console = make_wide_console()
@@ -76,7 +76,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     measured = measure_trades(scenes, options, argv, console, executor)
 
     def write() -> list[Path]:
-        """Write the trade-offs, with those already in the folder, and the values of each scene; return the table."""
+        """Write measured and earlier trade-offs, and each scene's values; return the path of the file of trade-offs."""
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
@@ -84,7 +84,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
         return files
 
     def show() -> None:
-        """Print the trade-offs that were measured."""
+        """Print the measured errors and compute times of every scene."""
         for each in measured:
             print_trade(console, each.trade)
 
@@ -96,7 +96,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 def _measure_cost_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
-    """Measure how the processor time grows with bodies, duration, phase pairs and workers; write and print it."""
+    """Measure, write and print how time grows with bodies, duration, phase pairs, workers; return the exit code."""
     begin, tasks = time.monotonic(), CostGrowth(scene).tasks()
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
@@ -110,7 +110,7 @@ def _measure_cost_growth(
 
 
 def print_growth(console: Console, series: Sequence[CostSeries]) -> None:
-    """Print a row for every value, with the fitted slope of its series in the last one."""
+    """Print a table of compute time for every value of each growing quantity, with the slope fitted to each series."""
     table = make_table("quantity", "model", "value", "s", "slope")
     for each in series:
         slope = "" if each.slope is None else f"{each.slope:.2f} ± {each.uncertainty:.2f}"
@@ -122,7 +122,7 @@ def print_growth(console: Console, series: Sequence[CostSeries]) -> None:
 
 
 def _load_harmonic_scene(name: str) -> Scene:
-    """Return a scene that the external solvers can integrate; raise SceneError for any other."""
+    """Return the named scene; raise SceneError if the solvers outside the package (SciPy) cannot integrate it."""
     scene = load_scene(name)
     if scene.recorded:
         rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
@@ -137,7 +137,7 @@ def _load_harmonic_scene(name: str) -> Scene:
 
 
 def _load_trades(out: Path) -> list[SceneTrade]:
-    """Return the trade-offs stored in the folder. Raises UsageError for a file that is none."""
+    """Return the trade-offs that an earlier run left in the folder. Raises UsageError if the file is not readable."""
     try:
         return load_trades(out) or []
     except (OSError, ValueError) as error:
@@ -147,7 +147,7 @@ def _load_trades(out: Path) -> list[SceneTrade]:
 def measure_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
-    """Return the trade-offs of the scenes with the facts of their run; stored tasks are not measured again."""
+    """Return the scenes' trade-offs with time and provenance of the run; stored results are not measured again."""
     supplied = load_user_models(options.model, options.model_limit, options.scheduler)
     tradeoff = TradeOff(scenes, options.quick, supplied)
     tasks, width = tradeoff.tasks(), read_number_of_jobs(options)
@@ -167,12 +167,12 @@ def measure_trades(
 
 
 def _values_file(scene: str) -> str:
-    """Return the name of the netCDF file with every measured value of a scene."""
+    """Return the name of the netCDF file that holds all values measured for a scene."""
     return name_figure_file(scene, "tradeoff", ending=".nc")
 
 
 def print_trade(console: Console, trade: SceneTrade) -> None:
-    """Print the fastest settings for each accuracy, and how each reference solution was checked."""
+    """Print the settings on the Pareto front of error and time, and how each reference solution was checked."""
     for question in trade.questions:
         console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
         console.print(

@@ -16,19 +16,19 @@ TARGET_ERRORS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the fastest 
 
 
 def make_tradeoff_panels(trade: SceneTrade) -> list[Panel]:
-    """Return plots of error over processor time: for each question one of the platform and one of the last body."""
+    """Return plots of error against processor time, for each question one of the platform and one of the top body."""
     bodies = sorted({0, trade.bodies - 1})
     return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
 
 
 def word_trades(trades: Sequence[SceneTrade]) -> str:
-    """Return what was measured, in a sentence; speed has no verdict."""
+    """Return a clause: how many settings were measured in how many scenes, and that speed has no verdict."""
     settings = sum(len(trade.entries) for trade in trades)
     return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
 
 
 def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
-    """Return for each question the fastest method for each error, preferring one that estimates its error."""
+    """Return in words, by question, the fastest method for each of TARGET_ERRORS; with error estimate if possible."""
     answers = []
     for question in trade.questions:
         parts = []
@@ -51,7 +51,7 @@ def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
 
 
 def make_growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
-    """Return a plot of seconds over each quantity that grows, with the slopes in the legend."""
+    """Return a plot of compute time, s, against each growing quantity, with fitted slopes in the legend."""
     panels: list[Panel] = []
     titles = list(dict.fromkeys(each.model for each in listed))
     for quantity, group in groupby(listed, key=lambda each: each.quantity):
@@ -72,7 +72,7 @@ def make_growth_panels(listed: Sequence[CostSeries]) -> list[Panel]:
 
 
 def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> Panel:
-    """Return the plot of relative error over processor time of the methods for one body."""
+    """Return the plot of relative error against processor time for one body, one curve for each method."""
     curves = {
         method: known
         for method, entries in trade.methods(question.key).items()
@@ -80,7 +80,7 @@ def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> P
     }
 
     def rank(method: str) -> tuple[bool, int]:
-        """Return the sort key of a method: without model error first, then by its settings on the Pareto front."""
+        """Return the sort key of a method: without model error first, then by how often it is on the Pareto front."""
         return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
 
     shown = sorted(curves, key=rank)[:MAX_CURVES]
@@ -97,7 +97,7 @@ def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> P
 
 
 def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, number: int) -> dict[str, Any]:
-    """Return the curve of a method: relative error over processor time, s; dashed if the error is that of a model."""
+    """Return the curve of a method: relative error against processor time, s; dashed if it solves another model."""
     times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
     x, y = [entry.seconds for entry in entries], [max(entry.most[body] or 0.0, 1e-16) for entry in entries]
     titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]
@@ -105,7 +105,7 @@ def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, 
     return {**line, "dash": "5 3"} if entries[0].model_error else line
 
 
-TRADES = ResultField(
+TRADES = ResultField(  # results field: error against compute time, which a command left next to the report
     "tradeoff",
     list[SceneTrade],
     trade.STORED.word_field("error against compute time for every model and parameter"),
@@ -115,14 +115,14 @@ GROWTH = make_stored_field(growth.STORED, "growth", "how the cost grows with bod
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
-    """Return the variables that the template of this section reads."""
+    """Return the variables for the template of the report section on speed and accuracy."""
     measured = GROWTH.get(report.results)
     panels, digests = make_growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
     functions = {"make_tradeoff_panels": make_tradeoff_panels, "word_fastest_methods": word_fastest_methods}
     return {**functions, "growth_panels": panels, "digests": digests}
 
 
-FEATURE = Feature(
+FEATURE = Feature(  # results fields and report section
     "tradeoff",
     (TRADES, GROWTH),
     section=Section(

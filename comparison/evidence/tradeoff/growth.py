@@ -18,26 +18,26 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import Scene, SceneError
 
-WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # number of calls shared by the workers, and phase pairs of the equations in each
+WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # calls that a varied number of workers share, and phase pairs in each call
 
-FILE = "growth.json"
-SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
-BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies of a growing scene
-DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion
-PHASE_PAIRS = "phase pairs"  # name of a quantity over which the cost is measured
-PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)  # numbers of phase pairs in one call
-PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations, by code
-TALL_DURATION = 5.0  # s, duration of motion of scenes with many bodies
-# Factor on the loading of the scene: with a smaller one friction holds a tall platform, which costs nothing
+FILE = "growth.json"  # name of the file with the measured growth
+SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # name of its format
+BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies for which the processor time is measured
+DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion for which the processor time is measured
+PHASE_PAIRS = "phase pairs"  # name of a quantity with which the processor time grows
+PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)  # numbers of phase pairs in one call for which the processor time is measured
+PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs while bodies or duration vary, by code
+TALL_DURATION = 5.0  # s, duration of motion while the number of bodies varies
+# Factor by which the loading is multiplied when bodies are added, or friction would hold the platform at rest
 TALL_LOADING_FACTOR = 3.0
-TALL_STOREY_HEIGHT = 1.0  # m between the bodies of a tall scene, whose ring of supports is as wide as the scene is high
-MEASUREMENT_TIME_LIMIT = 60.0  # s, largest processor time of one measurement
-MAX_WORK = 1e9  # largest number of engine steps: it refuses nothing, because the time limit ends long measurements
+TALL_STOREY_HEIGHT = 1.0  # m, vertical distance of the bodies that are added; the ring of supports grows with them
+MEASUREMENT_TIME_LIMIT = 60.0  # s, processor time after which one measurement is stopped
+MAX_WORK = 1e9  # largest number of Exudyn's steps: never reached, because the time limit stops long measurements first
 
 
 def split_upper_body(scene: Scene, bodies: int) -> Scene:
     """
-    Return the scene with its upper body cut into `bodies` - 1 stacked ones, on links of the same period.
+    Return the scene with its upper body split into `bodies` - 1 bodies above each other, on links of the same period.
 
     Raises SceneError for a scene that cannot grow, such as one of a platform alone.
     """
@@ -57,7 +57,7 @@ def split_upper_body(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """Quantity over which processor time is measured. scene: function that puts a value of it into a scene."""
+    """Quantity with which processor time grows. scene: function that returns a scene with one of its values."""
 
     name: str
     unit: str
@@ -66,8 +66,8 @@ class GrowingQuantity:
     models: tuple[Model, ...]
 
 
-_MEASURED_MODELS = EXACT, TRANSLATIONAL, SPATIAL  # models whose cost is measured
-QUANTITIES = (  # quantities over which the cost is measured
+_MEASURED_MODELS = EXACT, TRANSLATIONAL, SPATIAL  # models whose processor time is measured
+QUANTITIES = (  # quantities with which processor time grows, their values, and the models that are measured
     GrowingQuantity("bodies", "", BODY_COUNTS, lambda scene, n: split_upper_body(scene, int(n)), _MEASURED_MODELS),
     GrowingQuantity(
         "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _MEASURED_MODELS
@@ -78,7 +78,7 @@ QUANTITIES = (  # quantities over which the cost is measured
 
 @result
 class CostSeries:
-    """Processor time of one model over the values of one quantity that grows, with the fitted slope."""
+    """Processor time of one model at every value of a growing quantity, and the slope fitted in log-log coordinates."""
 
     quantity: Annotated[str, "what grows"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -92,7 +92,7 @@ class CostSeries:
     uncertainty: Annotated[float | None, "standard error of the slope"]
 
     def __post_init__(self) -> None:
-        """Refuse a series without values, or with times that do not fit them."""
+        """Raise an error unless there are values, and one time for each."""
         require(len(self.values) > 0, "values must be at least one")
         require_size("seconds", self.seconds, len(self.values))
         require((self.slope is None) == (self.uncertainty is None), "slope and uncertainty are known both or not")
@@ -100,7 +100,7 @@ class CostSeries:
 
 @result
 class MeasuredGrowth:
-    """Content of growth.json: the cost of each model over bodies, duration, phase pairs and workers."""
+    """Content of growth.json: how each model's compute time grows with bodies, duration, phase pairs and workers."""
 
     schema: Annotated[Literal["phase-resonance/growth"], "what the file is"]
     scene: Annotated[str, "name of the scene that grows"]
@@ -115,14 +115,14 @@ STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance 
 def make_cost_series(
     quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]
 ) -> CostSeries:
-    """Return the series with its slope; NaN where there is no measurement."""
+    """Return the series of times with its fitted slope; seconds: NaN where there is no measurement."""
     slope = map(finite_or_none, fit_slope(values, seconds))
     return CostSeries(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Return the exponent p of seconds ~ values^p, fitted to the larger half, and its standard error; or NaN."""
-    known = int(np.isfinite([*seconds, np.nan]).argmin())  # Values after one without a measurement are not fitted.
+    """Return p of seconds ~ values^p, fitted to the larger half, and its standard error; NaN for under 3 values."""
+    known = int(np.isfinite([*seconds, np.nan]).argmin())  # number of values before the first without a measurement
     if known < 3:
         return float("nan"), float("nan")
     x, y = np.log(values[:known]), np.log(seconds[:known])
@@ -133,16 +133,16 @@ def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float,
 
 @dataclass(frozen=True)
 class CostGrowth:
-    """Task list of the cost series of a scene with phases."""
+    """Measurement of how processor time grows with bodies, duration and phase pairs, from one scene with phases."""
 
     scene: Scene
 
     def tasks(self) -> list[Task]:
-        """Return one task for every quantity, model and value."""
+        """Return one task for each growing quantity, model and value that makes a valid scene."""
         return [task for _, _, tasks in self._series() for task in tasks if task is not None]
 
     def collect(self, results: TaskResults) -> list[CostSeries]:
-        """Return the cost series in the order of quantities and models."""
+        """Return the series of processor times, one for each growing quantity and model."""
         collected = []
         for quantity, model, tasks in self._series():
             answers = [None if task is None else results.value(task, without_value) for task in tasks]
@@ -156,7 +156,7 @@ class CostGrowth:
         return collected
 
     def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task | None]]]:
-        """Return the tasks by growing quantity and model; None for a value that makes no valid scene."""
+        """Return for each growing quantity and model a task for every value; None if a value makes no valid scene."""
         return [
             (quantity, model, [self._task(quantity, model, value) for value in quantity.values])
             for quantity in QUANTITIES
@@ -165,7 +165,7 @@ class CostGrowth:
         ]
 
     def _task(self, quantity: GrowingQuantity, model: Model, value: float) -> Task | None:
-        """Return the task that measures the cost of a model at one value of a quantity; None without a valid scene."""
+        """Return the task that measures a model's time at one value of a quantity; None if the scene is not valid."""
         try:
             grown = quantity.scene(self.scene, value)
         except SceneError:
@@ -178,7 +178,7 @@ class CostGrowth:
 
 
 def measure_by_workers(scene: Scene, pool: Callable[[int], Executor]) -> CostSeries:
-    """Return the wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
+    """Return the series of wall times, s, of the same calls of the reference equations by 1, 2, 4 ... workers."""
     most = count_cores()
     counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
     settings = {**EXACT.settings, "tolerance": 1e-6}

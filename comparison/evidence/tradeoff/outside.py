@@ -16,22 +16,22 @@ from reference.problem.phases import check_phases
 from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack_scene
 
-ABSOLUTE_TOLERANCE_RATIO = 1e-2  # absolute tolerance of a step, m and m/s, over its relative tolerance
-MOTION_SAMPLES = 2001  # number of samples, in addition to the solver's own steps, that locate the peaks
-# Around samples within this share of the peak, the motion is sampled PEAK_REFINEMENT times as densely.
+ABSOLUTE_TOLERANCE_RATIO = 1e-2  # absolute tolerance of SciPy's steps, m and m/s, divided by the relative tolerance
+MOTION_SAMPLES = 2001  # number of instants, besides those of the solver's steps, at which the peak is looked for
+# Where the acceleration is below its peak by at most this share, instants are then PEAK_REFINEMENT times as dense.
 PEAK_NEIGHBORHOOD = 1e-3
-PEAK_REFINEMENT = 50  # factor on the sampling rate near a peak
-LUBRICATED_V_REG = 1e6  # m/s, v_reg above any speed: it makes the lubricated law mu = f_c |v| linear throughout
+PEAK_REFINEMENT = 50  # factor by which the sampling rate rises near a peak
+LUBRICATED_V_REG = 1e6  # m/s, v_reg in lubricated scenes: above any speed, so that friction is f_c |v| at every speed
 
 
 @njit  # type: ignore[untyped-decorator]
 def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
-    """Return the time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13), (4.4) and regularized friction."""
+    """Return d/dt of the state y = (x, v), each (N, 2), by (3.9)-(3.13), (4.4); friction linear below `corner`, m/s."""
     below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
     z = np.exp(s * t + 1j * phase)
     u = (system.amplitudes[:, 0] * z[0] + system.amplitudes[:, 1] * z[1]).real
-    state = np.ascontiguousarray(y)  # Radau passes columns of a matrix, which are not contiguous
+    state = np.ascontiguousarray(y)  # in one piece of memory: SciPy's Radau passes columns of a matrix
     x, v = state[: 2 * count].reshape((count, 2)), state[2 * count :].reshape((count, 2))
     px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]
     speed2 = vx * vx + vy * vy + (px * vx + py * vy) ** 2 / (radius * radius - px * px - py * py)
@@ -62,7 +62,7 @@ def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Arr
 
 @njit  # type: ignore[untyped-decorator]
 def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Array:
-    """Return the time derivatives of the states (T, 4 N) at times (T,)."""
+    """Return the time derivatives (T, 4 N) of states (T, 4 N) at T times; N bodies: positions, then velocities."""
     out = np.empty_like(states)
     for n in range(len(times)):
         out[n] = compute_state_derivative(times[n], states[n], *constants)
@@ -70,7 +70,7 @@ def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Ar
 
 
 def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
-    """Return the arguments of `compute_state_derivative` after t and y."""
+    """Return what `compute_state_derivative` takes after t and y: constants of the scene, harmonics, phases, v_reg."""
     system = pack_scene(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * LUBRICATED_V_REG), LUBRICATED_V_REG
@@ -80,7 +80,7 @@ def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, .
 def integrate_motion(
     scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float
 ) -> tuple[Array, Array]:
-    """Return instants, s, dense near the peaks, and states (T, 4 N) by SciPy. Raises ValueError if it fails."""
+    """Return T instants, s, dense near the peaks, and SciPy's states there, (T, 4 N). Raises ValueError if it fails."""
     run = solve_ivp(
         compute_state_derivative, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
         args=pack_constants(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE_TOLERANCE_RATIO,
@@ -90,7 +90,7 @@ def integrate_motion(
     times = np.union1d(run.t, np.linspace(0.0, scene.duration, MOTION_SAMPLES))
 
     def states(instants: Array) -> Array:
-        """Return the states (T, 4 N) at instants between the steps, by the solver's interpolation."""
+        """Return the states at T instants, s, (T, 4 N), interpolated by the solver between its steps."""
         return np.ascontiguousarray(run.sol(instants).T)
 
     high = compute_absolute_accelerations(scene, phase, times, states(times), v_reg)
@@ -102,7 +102,7 @@ def integrate_motion(
 
 
 def compute_absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """Return the magnitudes of the absolute accelerations of a motion, (T, N)."""
+    """Return the magnitudes of the N bodies' absolute accelerations at T times, m/s^2, (T, N)."""
     constants, count = pack_constants(scene, phase, v_reg), len(scene.bodies)
     a = compute_state_derivatives(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
@@ -116,7 +116,7 @@ def compute_absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array,
 
 
 def compute_amplification_factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """Return the amplification mu_i (N,) of a motion."""
+    """Return the amplification of each body, (N,): its largest absolute acceleration / that of the ground."""
     peaks: Array = (
         compute_absolute_accelerations(scene, phase, times, states, v_reg).max(axis=0)
         / ground_peak(scene, np.reshape(phase, (1, 2)))[0]
@@ -125,7 +125,7 @@ def compute_amplification_factors(scene: Scene, phase: ArrayLike, times: Array, 
 
 
 def solve_factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
-    """Return amplification mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if it fails at a phase pair."""
+    """Return the amplification at M phase pairs, (M, N), by SciPy's `solve_ivp`. Raises ValueError if it fails."""
     pairs: Array = check_phases(phases)
     return np.array(
         [

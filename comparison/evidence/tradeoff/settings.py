@@ -16,49 +16,50 @@ from comparison.study.user_models import engine_description
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
 
-REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification  # import paths of the functions
-# Functions of one run without error control: of the equations, of the engine, of the engine at constant steps
+REFERENCE, ENGINE = EXACT.amplification, TRANSLATIONAL.amplification  # import paths of the amplification functions
+# Import paths of functions for a single run without error control: equations, Exudyn, Exudyn at constant steps
 REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN = (
     f"comparison.evidence.tradeoff.single_runs:{name}"
     for name in ("run_reference_once", "run_engine_once", "run_at_constant_step")
 )
-SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"  # function that computes mu by SciPy
+SCIPY_FACTORS = "comparison.evidence.tradeoff.outside:solve_factors_by_scipy"  # import path: amplification by SciPy
 
-REFERENCE_SOLUTION_TOLERANCE = 1e-10  # smallest relative error that the equations can be asked for
-SPATIAL_SOLUTION_TOLERANCE = 1e-5  # relative error of the spatial engine's reference solution
-# Constant time steps by integrator, s
+REFERENCE_SOLUTION_TOLERANCE = 1e-10  # relative error of reference solutions by the equations: smallest allowed
+SPATIAL_SOLUTION_TOLERANCE = 1e-5  # relative error asked of Exudyn's reference solution with bodies that rotate
+# s, constant time steps that are measured, by name of Exudyn's integrator
 STEPS_OF_INTEGRATOR = {
     "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "trapezoidal": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
     "RK44": (4e-4, 2e-4, 1e-4),
     "velocity Verlet": (4e-4, 2e-4, 1e-4, 5e-5),
 }
-DRY_REGULARIZATIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, v_reg of dry friction
+DRY_REGULARIZATIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, speeds v_reg below which dry friction is linear
 
-# Name of the varied contact compliance: static penetration over the radius of the path
+# Name of the parameter that varies contact compliance: penetration under the weight / radius of the sliding path
 PENETRATION_PARAMETER = "penetration under the weight, over rho"
 
-Settings = Mapping[str, Any]  # keyword arguments of a function
+Settings = Mapping[str, Any]  # keyword arguments of a function that computes the amplification
 
 
 @dataclass(frozen=True)
 class TradeoffQuestion:
-    """Equations that several methods solve, with a reference solution. points, quick: numbers of phase pairs."""
+    """Equations to solve, and reference solution (import path, arguments); points, quick: numbers of phase pairs."""
 
     key: str
     title: str
     reference_solution: tuple[str, Settings]
     points: int
     quick: int
-    seconds: float  # s, rough cost of the reference solution per phase pair
+    seconds: float  # s per phase pair, rough processor time of the reference solution
 
 
 @dataclass(frozen=True)
 class Setting(StatedSetting):
     """
-    Setting of a method, a point of the plot of error over cost. function: called as (scene, phases, **settings).
+    A method with one value of its varied parameter; its error and time are measured as one point of a plot.
 
-    against: reference solution in place of the question's. seconds: rough cost per phase pair.
+    function: import path, called as (scene, phases, **settings). seconds: s per phase pair, rough processor time.
+    against: reference solution if not the question's.
     """
 
     function: str
@@ -67,18 +68,19 @@ class Setting(StatedSetting):
     against: tuple[str, Settings] | None = None
 
 
-# Settings of the equations by question
+# Keyword arguments of the reference equations, by key of the question
 _LAWS: Mapping[str, Settings] = {
     "exact": {},
     "small": {"equations": "small"},
     "regularised": {"regularization": DEFAULT_V_REG},
 }
+# Keyword arguments of Exudyn for the reference solution with bodies that rotate
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_SOLUTION_TOLERANCE}
-# Function and keyword arguments of the most accurate answer to each question
+# Function and keyword arguments of each question's reference solution, the most accurate answer to it
 _REFERENCE_SOLUTIONS = {
     question: (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE}) for question, law in _LAWS.items()
 }
-# Questions that every method answers, with sample sizes and cost of their reference solutions
+# Questions: key, title, reference solution, numbers of phase pairs (usual, --quick), s per phase pair of the solution
 QUESTIONS = (
     TradeoffQuestion("exact", "exact equations, supremum", _REFERENCE_SOLUTIONS["exact"], 48, 12, 0.006),
     TradeoffQuestion("small", "small equations, supremum", _REFERENCE_SOLUTIONS["small"], 48, 12, 0.006),
@@ -90,12 +92,12 @@ QUESTIONS = (
 
 
 def list_questions(scene: Scene) -> list[TradeoffQuestion]:
-    """Return the questions (equations to solve) that a scene has the data for."""
+    """Return the questions (equations to solve) for which a scene has the data."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
 def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Return every setting that is measured for a scene; quick: every second one of the expensive ones."""
+    """Return every setting that is measured for a scene; quick: fewer values of parameters whose runs take long."""
     keys = {question.key for question in list_questions(scene)}
     every = [
         *_reference_settings(scene),
@@ -107,7 +109,7 @@ def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
 
 
 class _VariedCall(NamedTuple):
-    """A function with the argument that varies along a curve, and its other arguments."""
+    """Function (import path), name of its argument that varies along a curve, and its other keyword arguments."""
 
     function: str
     argument: str
@@ -119,7 +121,7 @@ def _make_curve_settings(
     seconds: float | Sequence[float], **stated: Any,
 ) -> list[Setting]:  # fmt: skip
     """
-    Return a setting for each of `values`, which the varied argument of `call` takes.
+    Return the settings of one method, one for each of `values` of the argument of `call` that is varied.
 
     question, method, parameter: as `StatedSetting` has them. seconds: s, per point, of each or of all. stated: other
     fields of `Setting`, as `unit` or `against`, by name.
@@ -135,7 +137,7 @@ def _make_curve_settings(
 
 
 def _reference_settings(scene: Scene) -> Iterator[Setting]:
-    """Yield settings of the equations: with error control, in single runs, regularized against rigid friction."""
+    """Yield settings of the reference equations: error-controlled, single runs, regularized against rigid friction."""
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
         controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(REFERENCE_RUN, "step_tolerance", law)
@@ -169,7 +171,7 @@ def _scipy_settings(quick: bool) -> Iterator[Setting]:
 
 
 def _engine_settings(quick: bool) -> Iterator[Setting]:
-    """Yield settings of the engine: as the package runs it, with error control; single runs, one parameter changed."""
+    """Yield settings of Exudyn: runs with error control, then single runs in which one parameter is changed."""
     parameters = (
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
         ("contact compliance", PENETRATION_PARAMETER, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
@@ -192,7 +194,7 @@ def _engine_settings(quick: bool) -> Iterator[Setting]:
 
 
 def _constant_step_settings(quick: bool) -> Iterator[Setting]:
-    """Yield settings of the engine's own integrators at constant time steps, s."""
+    """Yield settings of Exudyn's own time integrators at constant time steps."""
     for solver, steps in STEPS_OF_INTEGRATOR.items():
         call = _VariedCall(CONSTANT_STEP_RUN, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
         few = steps[:: 2 if quick else 1]
@@ -203,7 +205,7 @@ def _constant_step_settings(quick: bool) -> Iterator[Setting]:
 
 
 def list_user_settings(models: Sequence[Model]) -> list[Setting]:
-    """Return the settings of a user's engines at the tolerances that they take, or as they are."""
+    """Return settings of users' engines: one for each of several tolerances, or one if the engine takes none."""
     measured = []
     for model in models:
         law = {key: value for key, value in model.settings.items() if key != "engine"}

@@ -15,8 +15,8 @@ from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import prepare_run
 
-DISCONTINUOUS_TOLERANCE = 1.0  # tolerance of discontinuous iterations, as the engine's own default
-DEFAULT_ENGINE_LEVEL = 1  # level of the engine that usually answers at the default tolerance
+DISCONTINUOUS_TOLERANCE = 1.0  # Exudyn's default tolerance when it iterates on contacts that open within a step
+DEFAULT_ENGINE_LEVEL = 1  # index of the accuracy level with which Exudyn usually reaches the default tolerance
 
 
 def run_reference_once(
@@ -26,7 +26,7 @@ def run_reference_once(
     equations: str = "exact",
     regularization: float | None = None,
 ) -> tuple[Array, float]:
-    """Return mu of one run of the equations by phase pair, with steps to `step_tolerance`; and the mean step, s."""
+    """Return the amplification, (phase pairs, bodies), and the mean step, s, by one run of the equations."""
     pairs = check_phases(phases)
     system, demand = prepare_run(scene, equations, regularization, 1e-6, None, "consistent")
     peaks = peaks_at(system, pairs, demand, step_tolerance)
@@ -37,14 +37,14 @@ def run_reference_once(
 def run_engine_once(
     scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """Return mu of one run of the engine by phase pair. step: factor on its steps; level: changed fields of `Level`."""
+    """Return amplification (M, N) by one run of Exudyn each; step: factor on steps; level: changed `Level` fields."""
     usual = multibody.levels(scene, model, regularization=regularization)[DEFAULT_ENGINE_LEVEL]
     changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
     return _compute_factors(scene, phases, lambda run: run.peak, model, regularization, level=changed)
 
 
 def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
-    """Return mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN if it gives up."""
+    """Return the translational amplification (M, N) by an integrator of `multibody.single_run`; NaN if it gives up."""
 
     def largest(run: Any) -> Array:
         """Return the largest absolute acceleration of every body over its motion, m/s^2."""
@@ -58,7 +58,7 @@ def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: flo
 def _compute_factors(
     scene: Scene, phases: ArrayLike, peak: Callable[[Any], Array], model: str, v_reg: float, **how: Any
 ) -> Array:
-    """Return the amplification mu (M, N) of one run for each phase pair; NaN where it ends early."""
+    """Return the amplification by one run of Exudyn at each of M phase pairs, (M, N); NaN where a run ends early."""
     pairs = check_phases(phases)
     runs = [multibody.single_run(scene, phase, model, v_reg, **how) for phase in pairs]
     nothing = np.full(len(scene.bodies), np.nan)

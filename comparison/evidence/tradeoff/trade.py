@@ -13,9 +13,9 @@ from comparison.json_file import StoredFile
 from comparison.result_types import Array, require, require_size, result
 from reference.problem.scene import MAX_BODIES
 
-FILE = "tradeoff.json"
-SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
-MEANINGS = {  # meaning of each variable of the netCDF file
+FILE = "tradeoff.json"  # name of the file with the measured trade-offs
+SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # name of its format
+MEANINGS = {  # descriptions of the variables in the netCDF file of all measured values
     "mu": "amplification factor (5.1)",
     "reference_solution": "the same by the reference solution of the question",
     "error_estimate": "estimated absolute error of mu",
@@ -24,7 +24,7 @@ MEANINGS = {  # meaning of each variable of the netCDF file
 
 @result
 class StatedSetting:
-    """Setting of a method (its varied parameter at one value), before its error and time are measured."""
+    """A method with one value of its varied parameter, before its error and time are measured."""
 
     question: Annotated[str, "key of the question that it answers"]
     method: Annotated[str, "the curve that it belongs to"]
@@ -36,13 +36,13 @@ class StatedSetting:
 
     @property
     def setting(self) -> str:
-        """Return parameter, value and unit."""
+        """Return the varied parameter's name, value and unit as text."""
         return f"{self.parameter} {self.value:.3g} {self.unit}".strip()
 
 
 @result
 class MeasuredSetting(StatedSetting):
-    """Setting of a method (its varied parameter at one value) with its measured errors and processor time."""
+    """A method with one value of its varied parameter, and the errors and processor time measured with it."""
 
     points: Annotated[int, "phase pairs at which the reference solution has a value"]
     answered: Annotated[int, "of these, phase pairs with a value"]
@@ -74,7 +74,7 @@ class SolvedQuestion:
 
 @result
 class SceneTrade:
-    """Relative error against processor time of every setting for one scene, as measured."""
+    """Measured relative error and processor time of every setting (method and parameter value) for one scene."""
 
     scene: Annotated[str, "name of the scene"]
     title: Annotated[str, "title of the scene"]
@@ -85,7 +85,7 @@ class SceneTrade:
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def __post_init__(self) -> None:
-        """Refuse entries that do not fit the bodies or the questions."""
+        """Raise an error if an entry has errors of another number of bodies, or answers an unlisted question."""
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
         keys = {question.key for question in self.questions}
         for each in self.entries:
@@ -94,11 +94,11 @@ class SceneTrade:
             require(each.question in keys, f"question {each.question[:40]!r} of an entry is none of the questions")
 
     def entries_of(self, question: str) -> list[MeasuredSetting]:
-        """Return the entries of one question in the order in which they were listed."""
+        """Return the measured settings that answer one question, in the order in which they were listed."""
         return [entry for entry in self.entries if entry.question == question]
 
     def methods(self, question: str) -> dict[str, list[MeasuredSetting]]:
-        """Return the entries of one question by method; those of a method run from cheap to expensive."""
+        """Return the measured settings that answer one question, grouped by method."""
         curves: dict[str, list[MeasuredSetting]] = {}
         for entry in self.entries_of(question):
             curves.setdefault(entry.method, []).append(entry)
@@ -106,28 +106,28 @@ class SceneTrade:
 
 
 def find_error_quantile(errors: Array, share: float) -> float | None:
-    """Return the smallest of the errors that a share of the points does not exceed; None if no error is known."""
+    """Return the quantile of the known errors at `share` (the higher of two neighbors); None if no error is known."""
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
 def is_pareto_optimal(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
-    """Return whether no other setting is at least as good in cost and error and better in one of them."""
+    """Return whether no other pair (time, error) is at least as small in both and smaller in one."""
     beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
     return math.isfinite(sum(mine)) and not beaten
 
 
 def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[MeasuredSetting]:
-    """Return the entries with `pareto_front` set, among those that answer their question at every point."""
+    """Return the entries with `pareto_front` set; only settings that answer at every phase pair can be on a front."""
     complete = [entry for entry in entries if entry.complete and not entry.model_error]
 
     def time_and_error(entry: MeasuredSetting, body: int) -> tuple[float, float]:
-        """Return cost, s, and error of a setting for a body; the error is infinite where it is not known."""
+        """Return processor time, s, and relative error of a setting for a body; an unknown error is infinite."""
         error = entry.most[body]
         return entry.seconds, math.inf if error is None else error
 
     def is_on_front(entry: MeasuredSetting, body: int) -> bool:
-        """Return whether no other setting for the same question is better in cost and error, `is_pareto_optimal`."""
+        """Return whether no other setting for the same question is better in time and error, by `is_pareto_optimal`."""
         rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
         return entry in complete and is_pareto_optimal(time_and_error(entry, body), rivals)
 
@@ -146,14 +146,14 @@ STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeo
 
 
 def load_trades(folder: Path) -> list[SceneTrade] | None:
-    """Return the trade-offs that a command left in a folder, as `StoredFile.load` does."""
+    """Return the trade-offs in the file tradeoff.json of a folder; None if there is no such file."""
     content = STORED.load(folder)
     return None if content is None else content.trades
 
 
 @dataclass(frozen=True)
 class MeasuredTrade:
-    """Measured trade-off of one scene with every value behind it by setting, point and body."""
+    """Measured trade-off of one scene, and all values behind it by setting, phase pair and body."""
 
     trade: SceneTrade
     values: xr.Dataset
@@ -162,7 +162,7 @@ class MeasuredTrade:
 def label_values(
     entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array
 ) -> xr.Dataset:
-    """Return every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
+    """Return all measured values by setting, phase pair and body; NaN where a question has fewer phase pairs."""
     axes = ("setting", "point", "body")
     variables: dict[str, Any] = {}
     for name, rows in values.items():

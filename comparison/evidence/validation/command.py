@@ -35,12 +35,12 @@ from comparison.verdicts import NOT_COMPARED, word_counts
 from comparison.wording import word_exception
 from reference.problem import SceneError
 
-MAX_REASON_LETTERS = 150  # largest number of letters of a library's error message that is shown
+MAX_REASON_LETTERS = 150  # number of letters after which a library's error message is cut off
 
 
 @command
 def main(argv: Sequence[str]) -> int:
-    """Compare with the measured files that the command line names, or print the record; return the exit code."""
+    """Compare computed motions with measured files, or print the recorded comparison; return the exit code."""
     parser = CommandParser(
         "validation", "Measured motions compared with what the equations and the engine compute of them."
     )
@@ -72,7 +72,7 @@ def main(argv: Sequence[str]) -> int:
 
 
 def compare_folder(folder: Path) -> Validation:
-    """Return every comparison that a folder of measured files allows."""
+    """Return the comparisons of computed motions with every measured file that a folder has."""
     begin = time.process_time()
     measured = read_folder(folder)
     found = [_compare_file("s_b_<weight>g_x.mat", frame.compare_frame, measured.runs)] if measured.runs else []
@@ -84,7 +84,7 @@ def compare_folder(folder: Path) -> Validation:
 
 
 def _compare_file(file: str, compare: Callable[[Any], ExperimentFindings], measured: Any) -> ExperimentFindings:
-    """Return the findings of an experiment. Raises SceneError, one line, for a motion that cannot be compared."""
+    """Return what `compare` finds for a measured motion; raise SceneError, naming the file, if it cannot compare it."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -97,14 +97,14 @@ def _compare_file(file: str, compare: Callable[[Any], ExperimentFindings], measu
         LookupError,
         TypeError,
         AssertionError,
-    ) as error:  # raised by NumPy, SciPy or pydantic
+    ) as error:  # what NumPy, SciPy or pydantic raise for unsuitable measurements
         reason = word_exception(error)[:MAX_REASON_LETTERS]
         rule = f"must hold motions like the published ones: none can be compared with these ({reason})"
         raise make_file_error(file, rule) from error
 
 
 def print_validation(console: Console, table: Validation) -> None:
-    """Print a row for every quantity, the causes, the inputs, and the counts."""
+    """Print measured and computed quantities, causes of differences, inputs, and the number of quantities met."""
     heads = ("D", "u_D", "u_input", "E equations", "u_num", "E engine", "u_num", "u_val", "verdict")
     lines = make_table("quantity", *heads)
     for each in table.quantities:

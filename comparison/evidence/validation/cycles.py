@@ -9,40 +9,40 @@ from scipy.optimize import least_squares
 from comparison.evidence.validation.files import FrameRun, make_file_error
 from comparison.result_types import Array
 
-CYCLE_SAMPLES = 250  # samples per cycle, as in the measurement
-MIN_CYCLES = 3  # smallest number of whole cycles in a run
-BASE_HARMONICS = 6  # number of harmonics fitted to the base motion
-MAX_UNEXPLAINED_SHARE = 0.1  # largest rms share of the base motion outside BASE_HARMONICS; published runs have 0.003
-MAX_DRIFT_SHARE = 0.1  # largest shift of the plate's middle position between cycles, as a share of its range
-REST_SPEED = 2.0  # mm/s, speed below which the plate is at rest
-VELOCITY_HALF_WIDTH = 4  # samples on either side of the instant at which a velocity is computed
+CYCLE_SAMPLES = 250  # number of samples in each cycle of a folded run; the measurements have as many
+MIN_CYCLES = 3  # A measured run with fewer whole cycles is refused.
+BASE_HARMONICS = 6  # number of harmonics of the base frequency that are fitted to the measured base motion
+MAX_UNEXPLAINED_SHARE = 0.1  # Runs with a larger rms share of base motion outside these are refused; published: 0.003.
+MAX_DRIFT_SHARE = 0.1  # Runs whose plate's mean shifts between cycles by a larger share of its range are refused.
+REST_SPEED = 2.0  # mm/s, speed below which the plate counts as at rest
+VELOCITY_HALF_WIDTH = 4  # A velocity is computed from the positions this many samples before and after.
 
 
 class Cycles(NamedTuple):
-    """A measured run folded into cycles (J, samples), mm, each from the largest position of the base on."""
+    """A measured run of the frame cut into J cycles (J, samples), mm, each from the largest position of the base on."""
 
     run: FrameRun
     motions: Array
     frequency: float  # Hz, frequency of the base
     amplitude: float  # mm, amplitude of the base's fundamental
-    second: complex  # mm, second harmonic of the base
+    second: complex  # mm, complex amplitude of the base's second harmonic, relative to the fundamental's phase
 
     @property
     def mean(self) -> Array:
-        """Return the mean of all cycles, less its mean position, mm."""
+        """Return the plate's motion in the mean cycle, mm, about its mean position, (samples,)."""
         mean = self.motions.mean(axis=0)
         about: Array = mean - mean.mean()
         return about
 
 
 def fold_run(run: FrameRun) -> Cycles:
-    """Return the whole cycles of a run, by the fundamental of the base motion."""
+    """Return a measured run cut into whole cycles of the base motion's fundamental frequency."""
     time = run.time - run.time[0]
     spectrum = np.abs(np.fft.rfft(run.base - run.base.mean()))
     first = float(np.argmax(spectrum)) / (time[-1] + time[1])
 
     def fit_harmonics(frequency: float) -> tuple[Array, Array]:
-        """Return Fourier coefficients of the base motion at a frequency, Hz, by least squares, and the residual."""
+        """Return Fourier coefficients fitted to the base motion for a fundamental frequency, Hz, and the residual."""
         turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(BASE_HARMONICS + 1))
         terms = np.hstack([np.cos(turns), np.sin(turns[:, 1:])])
         factors: Array = np.linalg.lstsq(terms, run.base, rcond=None)[0]
@@ -82,7 +82,7 @@ def fold_run(run: FrameRun) -> Cycles:
 
 def measure_cycle(motion: Array, frequency: float) -> Array:
     """
-    Return the quantities of the motion of one cycle (samples,), mm, in the order and units of `frame.NAMES`.
+    Return the quantities of one cycle of the plate's motion (samples,), mm, in the order and units of `frame.NAMES`.
 
     The plate starts and stops where its speed passes REST_SPEED, before and behind each of its two largest speeds; the
     phases are from the turn of the base on, means of both directions.
@@ -109,7 +109,7 @@ def measure_cycle(motion: Array, frequency: float) -> Array:
 
 
 def _find_end_of_motion(speed: Array) -> float:
-    """Return the interpolated index at which a speed that begins above REST_SPEED falls to it."""
+    """Return the index, interpolated between samples, at which a speed falls to REST_SPEED; NaN if it does not."""
     below = np.flatnonzero(speed < REST_SPEED)
     if not len(below) or below[0] == 0:
         return math.nan

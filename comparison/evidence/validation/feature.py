@@ -11,7 +11,7 @@ from comparison.report.panels import Panel, make_panel
 from comparison.report.section import Section
 from comparison.verdicts import MEANING_OF_VERDICT, STYLE_CLASSES
 
-LINE_STYLES: dict[str, dict[str, Any]] = {  # look of measured and computed lines in the plots
+LINE_STYLES: dict[str, dict[str, Any]] = {  # color, width and dashes of measured and computed motions in the plots
     "measured": {"color": "ink", "width": 2.4},
     EQUATIONS: {"color": 0},
     ENGINE: {"color": 1, "dash": "5 3"},
@@ -19,7 +19,7 @@ LINE_STYLES: dict[str, dict[str, Any]] = {  # look of measured and computed line
 
 
 def make_experiment_panels(table: Validation) -> list[Panel]:
-    """Return a plot for every experiment: measured and computed motion."""
+    """Return one plot for each experiment, with measured and computed motions."""
     drawn = []
     for title, group in groupby(table.curves, key=lambda curve: curve.panel):
         curves = list(group)
@@ -35,8 +35,9 @@ def make_experiment_panels(table: Validation) -> list[Panel]:
     return drawn
 
 
+# Results field with the comparisons that the command left next to the report
 FOUND = make_stored_field(STORED, "validation", "measured motions, compared with what both sides compute")
-FEATURE = Feature(
+FEATURE = Feature(  # results field and report section
     "validation",
     (FOUND,),
     section=Section(

@@ -28,30 +28,31 @@ try:
 except ImportError:  # Windows cannot limit the memory or time of a process.
     resource = None  # type: ignore[assignment]
 
-MAX_FILE_BYTES = 2**24  # bytes of the largest file that is read
-MAX_SAMPLES = 2_000_000  # largest number of samples in a column
-MAX_READING_SECONDS = 30.0  # s of processor time that reading a file may take: the published ones take less than 1 s
-MAX_READING_BYTES = 2**29  # bytes that reading a file may take: a column of MAX_SAMPLES takes 2^24
-DURATION_RANGE = (1.0, 1e4)  # s, shortest and longest motion that is compared
-MAX_READINGS = {"mm": 1e4, "rad": 1e3}  # largest credible reading in each unit
-# Types that count as numbers in a MATLAB file; logical values do not
+MAX_FILE_BYTES = 2**24  # size in bytes above which a measured file is refused
+MAX_SAMPLES = 2_000_000  # number of samples in a column of a measured file above which it is refused
+MAX_READING_SECONDS = 30.0  # s of processor time after which reading a file is given up; published ones take below 1 s
+MAX_READING_BYTES = 2**29  # bytes of memory that reading a file may take: a column of MAX_SAMPLES takes 2^24
+DURATION_RANGE = (1.0, 1e4)  # s, shortest and longest measured motion that is not refused
+MAX_READINGS = {"mm": 1e4, "rad": 1e3}  # largest measured displacement or angle that is not refused, by unit
+# Data types of a MATLAB file that are accepted as columns of numbers; logical values are not
 NUMERIC_TYPES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
-FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")  # weight of the disc, g; x: plate, y: base
+FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")  # matches frame files: disc in g; x plate or y base
+# Names of the published files with the pendulum's decay and with its large swings
 DECAY_FILE, LARGE_SWING_FILE = "SingleDataFreeSwing_1_Dt_0_0001.mat", "SinglePendulumDataForParameterEstimation.mat"
-FRAME_SOURCE = (
+FRAME_SOURCE = (  # publication and download place of the measured frame runs
     "single-storey frame with a brass-to-steel contact, Marino, Cicirello, Data-Centric Engineering 2023 "
     "(arXiv 2303.03858), rig in Nonlinear Dynamics 99 (2020) 1781-1799: github.com/l-marino/switching-GPLFM, commit "
     "01dc3d9 (GPL-3.0), files s_b_<weight>g_x.mat and s_b_<weight>g_y.mat"
 )
-LARGE_SWING_VARIABLES = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # times, then angles, in the file of large swings
-PENDULUM_SOURCE = (
+LARGE_SWING_VARIABLES = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # names of times, then angles, in LARGE_SWING_FILE
+PENDULUM_SOURCE = (  # download place of the measured pendulum swings
     "swinging pendulum: github.com/dynamicslab/MultiArm-Pendulum, commit e99a7e1 (MIT), files "
     f"{DECAY_FILE} and {LARGE_SWING_FILE}"
 )
 
 
 class FrameRun(NamedTuple):
-    """One run of the frame: weight of the disc, kg; time, s; motions of top plate and base, mm, (T,)."""
+    """One measured run of the shaken frame: mass of its disc, kg; T instants, s; motions of top plate and base, mm."""
 
     weight: float
     time: Array
@@ -60,19 +61,19 @@ class FrameRun(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Return the name of the run for tables."""
+        """Return the name of the run with the mass of its disc, for tables."""
         return f"frame, {1e3 * self.weight:g} g"
 
 
 class FreeSwing(NamedTuple):
-    """A free swing: time, s, and angle from hanging, rad, (T,)."""
+    """A measured free swing of a pendulum: T instants, s, and angles from its lowest position, rad."""
 
     time: Array
     angle: Array
 
 
 class MeasuredFiles(NamedTuple):
-    """Measurements found in a folder."""
+    """Measurements found in a folder: runs of the frame (may be none); pendulum's decay and large swings, or None."""
 
     runs: list[FrameRun]
     decay: FreeSwing | None
@@ -80,7 +81,7 @@ class MeasuredFiles(NamedTuple):
 
 
 def read_folder(folder: Path) -> MeasuredFiles:
-    """Return the measured files in a folder and its direct subfolders. Raises SceneError, one line."""
+    """Return the measurements in a folder and its direct subfolders. Raises SceneError for a faulty or missing file."""
     if not os.path.isdir(folder):
         raise make_file_error(folder, "must be a folder with the measured files")
     files: dict[str, Path] = {}
@@ -114,7 +115,7 @@ def read_folder(folder: Path) -> MeasuredFiles:
 
 
 def _read_frame_run(workers: Workers, grams: int, plate: Path, base: Path) -> FrameRun:
-    """Return a measured run of the frame with a disc of so many grams: motions of plate and base, mm."""
+    """Return a measured run of the frame, read from the files of its plate and base; grams: mass of its disc, g."""
     x, y = (_read_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
     time = _check_series(plate, "t", x["t"])
     motion = _check_series(plate, "x", x["x"], len(time), "mm")
@@ -162,7 +163,7 @@ def select_large_swing_columns(content: Mapping[str, Any]) -> dict[str, Any]:
 def _read_columns(
     workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]
 ) -> Mapping[str, Any]:
-    """Return the columns of numbers in a file, read by a process of its own. Raises SceneError, one line."""
+    """Return the columns of a measured file, read in a separate process. Raises SceneError if it is faulty."""
     try:
         found: Any = workers.start(partial(read_columns, file, columns, tuple(names)), MAX_READING_SECONDS).result()
     except TimeLimitError:
@@ -177,7 +178,7 @@ def _read_columns(
 def read_columns(
     file: Path, columns: Callable[[Any], Mapping[str, Any]], names: tuple[str, ...]
 ) -> Mapping[str, Any] | str:
-    """Return the columns of variables in a file, or its fault as text. Runs inside a worker process."""
+    """Return the columns of numbers in a file, by name, or what is wrong with it. Runs inside a worker process."""
     try:
         with limit_memory(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -194,7 +195,7 @@ def read_columns(
     except MemoryError:
         limit = f"{MAX_READING_BYTES / 2**20:.0f} MiB"
         return f"takes more than {limit} to read: must be a MATLAB file with columns of numbers"
-    except Exception:  # SciPy raises all kinds of errors for bytes that are no such file.
+    except Exception:  # SciPy raises errors of many types for a file that is not a MATLAB file.
         return "must be a MATLAB file of version 5 to 7.2"
     try:
         listed = columns({name: found[name] for name in names})
@@ -208,7 +209,7 @@ def read_columns(
 
 @contextmanager
 def limit_memory() -> Iterator[None]:
-    """Limit the process to MAX_READING_BYTES more than it has, if the system states how much that is."""
+    """Let this process take at most MAX_READING_BYTES of memory more than now, if the system states how much it has."""
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[0])
     except (OSError, ValueError):
@@ -231,7 +232,7 @@ def _rule_of_column(name: str) -> str:
 
 
 def _check_series(file: Path, name: str, values: Any, count: int | None = None, unit: str = "") -> Array:
-    """Return a column of finite samples; `count` None marks the time, which must rise in even steps."""
+    """Return a column of a file as floats; raise SceneError if it is faulty. count: its length, None for the time."""
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
         raise make_file_error(file, _rule_of_column(name))
@@ -249,7 +250,7 @@ def _check_series(file: Path, name: str, values: Any, count: int | None = None, 
 
 
 def _refuse_time(file: Path, name: str, series: Array) -> None:
-    """Raise SceneError where a column is no time that rises in even steps."""
+    """Raise SceneError if a time column does not rise in even steps or its duration is outside DURATION_RANGE."""
     with np.errstate(all="ignore"):
         steps, span = np.diff(series), float(series[-1] - series[0])
         even = steps.min() > 0.0 and np.ptp(steps) < 1e-3 * steps.mean()
@@ -262,7 +263,7 @@ def _refuse_time(file: Path, name: str, series: Array) -> None:
 
 
 def make_file_error(file: Path | str, rule: str) -> SceneError:
-    """Return the error for a faulty file, one line that names the file however long its path is."""
+    """Return the error for a faulty measured file, named however long its path is; rule: what it must be, in words."""
     if isinstance(file, Path) and file.suffix == ".mat":
         return SceneError("command line", "FOLDER", str(file.parent), f"{file.name}: {rule}")
     return SceneError("command line", "FOLDER", str(file), rule)

@@ -10,7 +10,7 @@ With y the motion of the base, z that of the top plate, both absolute, and r w g
     M z'' + C z' + K z + r w g sign(z') = K y + C y'
 
 is the platform on the isolator, shaken by -(K y + C y') / M. Viscous damping is friction that grows with the speed,
-mu(v) = mu_0 + C v / (m_sum g), of the velocity-dependent law far below its upper limit. A second body ten times as
+friction coefficient f_0 + C v / (m_sum g), the velocity-dependent law far below its limit. A second body ten times as
 heavy on a link so soft that it does nothing lends its weight: the sphere is then eleven times as large and as good
 as a parabola, as a spring is.
 """
@@ -29,33 +29,33 @@ from comparison.result_types import Array
 from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import GRAVITY, Scene, Trajectory
 
-# Mass of a second body, which only lends its weight, over that of the platform; period of its soft link, s
+# Second body, which only presses on the platform: its mass / that of the platform; period of its soft link, s
 SHAKER_MASS_RATIO, SHAKER_LINK_PERIOD = 10.0, 1e4
-FRICTION_GROWTH = 1.0  # rise of friction at infinite speed; its slope at zero speed is the frame's viscous damping
-COMPUTED_CYCLES = 12  # cycles that are computed, of which the last one is read
-ENGINE_V_REG = 1e-4  # m/s, v_reg of the engine
-FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run to which the friction ratio is fitted, if the folder has it
-# kg, disc of the second run to which load-dependent friction is fitted, if the folder has it
+FRICTION_GROWTH = 1.0  # fast minus slow friction coefficient: its slope at zero speed stands for viscous damping
+COMPUTED_CYCLES = 12  # number of cycles computed; only the last one is compared with the measurement
+ENGINE_V_REG = 1e-4  # m/s, sliding speed below which friction is linear in Exudyn
+FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run to which the constant friction ratio is fitted, if it was measured
+# kg, disc of the second run, to which load-dependent friction is fitted as well, or the disc closest to it
 SECOND_FITTED_WEIGHT = 0.450
-DIFFERENCE_STEP = 0.005  # relative step of friction ratio and base scale in difference quotients
+DIFFERENCE_STEP = 0.005  # change of friction ratio, or of base scale, in the difference quotients of the fit
 # Quantities of a cycle of the plate that are compared, and their units
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
 
 class Setup(NamedTuple):
-    """Inputs of the computation of a frame run: plate and frame, base motion, weight and friction of the disc."""
+    """Inputs with which a frame run is computed: mass, stiffness, damping, base motion, weight and friction of disc."""
 
     mass: float = 3.0799  # kg, mass of the plate
     stiffness: float = 1191.0  # N/m, stiffness of the frame
     damping: float = 0.6690  # N s/m, damping of the frame
-    scale: float = 1.0  # factor on the base motion
-    second: float = 0.0  # share of the measured second harmonic of the base
-    disc: float = 1.0  # weight of the disc over the stated one
-    ratio: float = 0.3  # friction ratio
+    scale: float = 1.0  # factor by which the measured base motion is multiplied
+    second: float = 0.0  # share of the base's measured second harmonic that is applied: 0 none, 1 all
+    disc: float = 1.0  # weight of the disc / stated weight
+    ratio: float = 0.3  # friction force / weight of the disc
 
 
-INPUT_UNCERTAINTIES = {  # uncertainty of each input with its name, unit and source
+INPUT_UNCERTAINTIES = {  # for each field of Setup: its uncertainty, name, unit and source
     "mass": (0.01 * Setup().mass, "mass", "kg", "authors; 1 % assumed"),
     "stiffness": (0.01 * Setup().stiffness, "stiffness", "N/m", "authors; 1 % assumed"),
     "damping": (0.2 * Setup().damping, "viscous damping", "N s/m", "authors; 20 % assumed"),
@@ -63,12 +63,12 @@ INPUT_UNCERTAINTIES = {  # uncertainty of each input with its name, unit and sou
     "second": (1.0, "share of the second harmonic of the base", "", "0 or the measured one, 1 % of the first: assumed"),
     "disc": (0.01, "weight of the disc over the stated one", "", "authors; 1 % assumed"),
 }
-# inputs whose change by their uncertainty requires a new fit of the friction ratio
+# Fields of Setup: when one is changed by its uncertainty, the friction ratio is fitted again
 REFITTED_INPUTS = ("mass", "stiffness", "damping", "scale", "second")
 
 
 def make_frame_scene(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
-    """Return the frame as a scene with its phases."""
+    """Return a scene equivalent to a run of the frame, and the phases of its two harmonics, rad."""
     weight = (1.0 + SHAKER_MASS_RATIO) * setup.mass * GRAVITY
     base = setup.scale * np.array([cycles.amplitude, setup.second * cycles.second]) * 1e-3
     turns = 2j * np.pi * cycles.frequency * np.array([1.0, 2.0])
@@ -97,7 +97,7 @@ def make_frame_scene(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, 
 
 
 def read_last_cycle(motion: Trajectory, frequency: float) -> Array:
-    """Return the last computed cycle, mm about its mean."""
+    """Return the platform's motion in the last computed cycle, mm, about its mean position, (samples,)."""
     grid = (COMPUTED_CYCLES - 1 + np.arange(CYCLE_SAMPLES) / CYCLE_SAMPLES) / frequency
     place = 1e3 * interpolate_platform(motion)(grid)
     about: Array = place - place.mean()
@@ -105,25 +105,25 @@ def read_last_cycle(motion: Trajectory, frequency: float) -> Array:
 
 
 def compute_frame_motion(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
-    """Return the motion of a run by one code, from the largest position of the base on."""
+    """Return the motion of a frame run as computed by one code; it begins at the base's largest position."""
     scene, phases = make_frame_scene(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
     return table.compute_released_motion(side, scene, phases, place, ENGINE_V_REG, STUDY_TOLERANCE, "small")
 
 
 def read_quantities(cycles: Cycles, motion: Trajectory) -> table.ComputedValues:
-    """Return the compared quantities, `NAMES`, of a computed motion of a run."""
+    """Return the quantities `NAMES` of the last cycle of a computed frame motion, with numerical errors."""
     rate = cycles.frequency
     return table.read_motion_values(motion, lambda each: measure_cycle(read_last_cycle(each, rate), rate), len(NAMES))
 
 
 def solve_quantities(cycles: Cycles, setup: Setup) -> Array:
-    """Return the compared quantities, `NAMES`, of a run by the equations."""
+    """Return the quantities `NAMES` of a frame run as computed by the reference equations."""
     return read_quantities(cycles, compute_frame_motion(EQUATIONS, cycles, setup)).values
 
 
 def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
-    """Return the inputs with which the equations come closest to the mean cycle, and their scatter (J, names)."""
+    """Return the inputs, those named fitted to the mean cycle by the equations; and their scatter, (cycles, names)."""
 
     def curve(at: Setup) -> Array:
         """Return the last computed cycle of the plate with these inputs."""
@@ -146,8 +146,8 @@ class FittedRun(NamedTuple):
     """
     A run with the friction ratio fitted to its motion.
 
-    spread: of the ratio, by the scatter over the cycles. changed: fitted again with each input of REFITTED_INPUTS
-    changed by its uncertainty. shifted: fitted with the base motion that the run of the constant ratio fits best.
+    setup: fitted inputs. spread: uncertainty of the ratio, from its scatter over the cycles. changed: inputs fitted
+    with each of REFITTED_INPUTS changed by its uncertainty. shifted: inputs fitted with the first run's base scale.
     """
 
     cycles: Cycles
@@ -157,13 +157,13 @@ class FittedRun(NamedTuple):
     shifted: Setup
 
     def variations(self) -> list[Setup]:
-        """Return setups in which each input is changed by its uncertainty."""
+        """Return the fitted inputs with, in turn, each one changed by its uncertainty."""
         heavier = self.setup._replace(disc=self.setup.disc + INPUT_UNCERTAINTIES["disc"][0])
         return [self.setup._replace(ratio=self.setup.ratio + self.spread), heavier, *self.changed]
 
 
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
-    """Return a run with its fitted friction ratio. shift: setup whose base scale `shifted` takes; None to fit it."""
+    """Return a run with its fitted friction ratio; shift: inputs whose base scale `shifted` takes, None to fit it."""
     setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = table.COVERAGE_FACTOR * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + INPUT_UNCERTAINTIES[name][0]} for name in REFITTED_INPUTS)
@@ -176,7 +176,7 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedR
 
 
 def compare_frame(runs: Sequence[FrameRun]) -> table.ExperimentFindings:
-    """Return the comparison of all runs: by one ratio, and by load-dependent friction if runs remain to predict."""
+    """Compare all frame runs with predictions by one friction ratio, and by load-dependent friction if possible."""
     folded = [fold_run(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST_FITTED_WEIGHT) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
@@ -198,18 +198,18 @@ def compare_frame(runs: Sequence[FrameRun]) -> table.ExperimentFindings:
 
 
 def _is_sliding(cycles: Cycles) -> bool:
-    """Return whether the plate slides for a part of the mean cycle."""
+    """Return whether the plate of a run slides during part of its mean cycle."""
     return bool(measure_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
 
 
 def _word_fitted_friction_ratio(fitted: FittedRun) -> str:
-    """Return the fitted friction ratio as a row of the inputs, with its scatter over the cycles."""
+    """Return in words the fitted friction ratio and its scatter over the measured cycles, for the list of inputs."""
     source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
     return table.word_input("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 
 
 def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> table.ExperimentFindings:
-    """Return predictions of runs by friction that is a power of the load, fitted to two other runs."""
+    """Compare frame runs with predictions by friction that is a power of the load, fitted to two of the runs."""
     sliding = [cycles for cycles, _ in rest if _is_sliding(cycles)]
     chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND_FITTED_WEIGHT))
     second = fit_run(chosen, first.setup, first.shifted)
@@ -225,7 +225,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 
         def between(setup: Setup, low: float, high: float, share: float = share) -> Setup:
-            """Return the inputs with a friction ratio interpolated as a power of the load."""
+            """Return the inputs with a friction ratio between `low` and `high`, interpolated as a power of the load."""
             return setup._replace(ratio=low * (high / low) ** share)
 
         pairs = zip([*first.changed, first.shifted], [*second.changed, second.shifted])
@@ -243,7 +243,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
 def _compare_run(
     cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
 ) -> table.ExperimentFindings:
-    """Return the comparison of one run. other: setup with fitted base scale; own: setup with the ratio of this run."""
+    """Compare one run; varied: inputs changed one by one; other: with fitted base scale; own: with this run's ratio."""
     title = cycles.run.name + law
     found = [measure_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.MeasuredData(
@@ -254,7 +254,7 @@ def _compare_run(
     by_input, by_ratio = (np.abs(solve_quantities(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> str:
-        """Return which change of the inputs brings quantity `k` within the allowed difference."""
+        """Return in words which change of the inputs makes the error of quantity `k` at most `allowed`."""
         shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
         if by_input[k] <= allowed:
             return f"{table.INPUT_CAUSE}: gone with {shift}"

@@ -16,27 +16,27 @@ from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE, F
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
-ENGINE_V_REG, ENGINE_TOLERANCE = 1e-5, 1e-4  # v_reg of the engine, m/s, and its tolerance
-TURN_ENCODER_STEPS = 3  # number of encoder steps by which the pendulum must go back at a turn
-# Number of half swings to which the loss of angle is fitted; number of those to which the period is fitted
+ENGINE_V_REG, ENGINE_TOLERANCE = 1e-5, 1e-4  # Exudyn: speed below which friction is linear, m/s; relative error
+TURN_ENCODER_STEPS = 3  # A turning point counts if the angle then goes back by more than this many encoder steps.
+# Number of first half swings to which the loss of angle per half swing, and the half period, are fitted
 FITTED_HALF_SWINGS, PERIOD_HALF_SWINGS = 10, 5
-SHOWN_TURNING_POINTS = (5, 10, 11, 12, 13)  # numbers of the turning points in the table; the first one is number 0
-HALF_SWING_INSTANTS = 20_001  # number of instants in a half swing
-# rad, amplitudes at which half periods are predicted, fitted, and fitted again
+SHOWN_TURNING_POINTS = (5, 10, 11, 12, 13)  # numbers of the turning points that are compared; the first is number 0
+HALF_SWING_INSTANTS = 20_001  # number of instants in a computed half swing at which its turning point is looked for
+# rad, amplitudes at which half periods are predicted, fitted for this, and fitted again to explain a difference
 PREDICTED_ANGLES, FITTED_ANGLE, REFITTED_ANGLE = (1.5, 1.25, 1.0), 0.3, 0.6
-# rad, half width of the window of amplitudes around each angle; smallest number of half swings in it
+# Half periods at an angle come from half swings whose amplitude is within this of it, rad; least number of them
 ANGLE_HALF_WIDTH, MIN_HALF_SWINGS = 0.1, 4
 
 
 def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
-    """Return the comparison of turning points and half periods of the swing to rest."""
+    """Compare turning points and half period of a pendulum that swings to rest with computed ones."""
     step = float(np.min(np.diff(np.unique(swing.angle))))
     instants, turns = _find_turns(swing, TURN_ENCODER_STEPS * step)
     numbers = np.arange(SHOWN_TURNING_POINTS[-1] + 1)
     if len(turns) < len(numbers):
         raise make_file_error(DECAY_FILE, f"Theta1 must have {len(numbers)} turning points, not {len(turns)}")
     sides = (-1.0) ** numbers
-    # Columns: first angle, loss per half swing, middle of the swings
+    # Columns of the fit, by what they multiply: first angle, loss per half swing, offset of the rest position
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
     along, fitted = np.sign(turns[0]) * sides * turns[: len(numbers)], slice(0, FITTED_HALF_SWINGS + 1)
     (start, loss, middle), *_ = np.linalg.lstsq(terms[fitted], along[fitted])
@@ -65,7 +65,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     )
 
     def read(motion: Trajectory) -> Array:
-        """Return the turning points shown, mrad, and the mean half period after the fitted ones, ms, of a motion."""
+        """Return a computed motion's SHOWN_TURNING_POINTS, mrad, and mean half period after the fitted swings, ms."""
         passed, angles = _compute_turns(motion)
         return 1e3 * np.array(
             [
@@ -75,7 +75,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
-        """Return the motion by one code from half period, s, loss of angle per half swing and first angle, rad."""
+        """Return the pendulum's motion by one code; values: half period, s, loss per half swing, first angle, rad."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 
@@ -105,7 +105,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
 
 
 def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
-    """Return the comparison of half periods at large angles."""
+    """Compare half periods of a pendulum at large angles with those computed from its half period at a small one."""
     passages = _find_passage_times(swing)
     sizes = np.array([np.abs(swing.angle[(swing.time > a) & (swing.time < b)]).max() for a, b in pairwise(passages)])
     periods = np.diff(passages)
@@ -123,7 +123,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     data = table.MeasuredData(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
     def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
-        """Return the half periods at PREDICTED_ANGLES by one code, from the half period at small angles."""
+        """Return half periods at PREDICTED_ANGLES, ms, by one code; half: half period at vanishing angle, s."""
         motions = [_compute_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in PREDICTED_ANGLES]
         parts = [table.read_motion_values(each, _read_half_period, 1) for each in motions]
         return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
@@ -134,7 +134,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     gone = f"gone with the half period fitted at {REFITTED_ANGLE} rad"
 
     def explain(k: int, allowed: float) -> str:
-        """Return whether the half period fitted at another angle brings quantity `k` within the allowed difference."""
+        """Return in words whether quantity `k` is met with the half period fitted at REFITTED_ANGLE instead."""
         if abs(again[k] - data.values[k]) <= allowed:
             return f"{table.INPUT_CAUSE}: {gone}, where friction weighs less"
         return f"{table.NO_CAUSE}: not {gone}"
@@ -157,7 +157,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
 def _compute_half_swings(
     side: str, half: float, friction: float, start: float, swings: float, equations: str = "exact"
 ) -> Trajectory:
-    """Return the motion of the pendulum by one code: `swings` half swings from rest at the angle `start`, rad."""
+    """Return the pendulum's motion by one code over `swings` half periods, released from rest at `start`, rad."""
     scene = {
         "title": "Swinging pendulum",
         "name": "pendulum",
@@ -172,7 +172,7 @@ def _compute_half_swings(
 
 
 def _find_turns(swing: FreeSwing, back: float) -> tuple[Array, Array]:
-    """Return instants and angles of the turns, where the angle goes back by more than `back`, and of the final rest."""
+    """Return instants, s, and angles, rad, of the final rest and of turns where the angle goes back by > `back`."""
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
     for time, angle in zip(swing.time, swing.angle):
@@ -196,7 +196,7 @@ def _compute_uncertainty_of_mean(values: Array) -> float:
 
 
 def _find_passage_times(swing: FreeSwing) -> Array:
-    """Return the instants at which the pendulum passes its lowest position, s."""
+    """Return the instants at which the measured pendulum passes its lowest position, s."""
     k = np.flatnonzero((swing.angle[:-1] < 0.0) != (swing.angle[1:] < 0.0))
     before, after = swing.angle[k], swing.angle[k + 1]
     instants: Array = swing.time[k] + (swing.time[k + 1] - swing.time[k]) * before / (before - after)
@@ -204,25 +204,25 @@ def _find_passage_times(swing: FreeSwing) -> Array:
 
 
 def _fit_half_period(sizes: Array, periods: Array, angle: float) -> tuple[float, float]:
-    """Return the half period at an amplitude and its uncertainty, by a line in squares of nearby amplitudes."""
+    """Return half period at amplitude `angle`, and uncertainty: linear fit in squares of nearby amplitudes `sizes`."""
     near = np.abs(sizes - angle) < ANGLE_HALF_WIDTH
     line = np.polyfit(sizes[near] ** 2 - angle**2, periods[near], 1)
     return float(line[1]), _compute_uncertainty_of_mean(periods[near] - np.polyval(line, sizes[near] ** 2 - angle**2))
 
 
 def _find_zeros(motion: Trajectory) -> Array:
-    """Return the instants at which the platform passes its lowest point, s."""
+    """Return the instants at which the platform passes its lowest point in a computed motion, s."""
     zeros: Array = interpolate_platform(motion).roots(extrapolate=False)
     return zeros
 
 
 def _read_half_period(motion: Trajectory) -> Array:
-    """Return the time between the first two passages, ms."""
+    """Return the time between the first two passages of the lowest point in a computed motion, ms, (1,)."""
     return 1e3 * np.diff(_find_zeros(motion))[:1]
 
 
 def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
-    """Return instants and angles, positive to either side, of the turning points from the first on and of the rest."""
+    """Return instants, s, and angle sizes, rad, of a computed motion's turning points and its end; NaN beyond it."""
     place, end = interpolate_platform(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
     for begin, stop in pairwise([0.0, *_find_zeros(motion), end]):

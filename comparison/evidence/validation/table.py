@@ -26,22 +26,22 @@ from comparison.verdicts import (
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import Scene, State, Trajectory
 
-# Codes that are compared: equations with rigid and with regularized friction, and the multibody engine
+# Codes whose motions are compared with measured ones: equations with rigid and with regularized friction, and Exudyn
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE_FACTOR = 2.0  # number of standard deviations in an expanded uncertainty
-# First words of the explanation of a quantity that is not met
+# First words of the cause of a difference: friction law, an input, or unknown
 LAW_CAUSE, INPUT_CAUSE, NO_CAUSE = "the friction law", "an input", "not explained"
 # Suffix of the name of a run that is computed with load-dependent friction
 LOAD_FRICTION_SUFFIX = ", friction of the load"
-DEGREES, CYCLE = "deg", "% of a cycle"  # units of phases within a cycle
-JUDGED_SIDES = EQUATIONS, ENGINE  # codes whose deviations get a verdict
-VERDICTS_BEST_FIRST: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # verdicts from the best to the worst
-ABSOLUTE_UNITS = (DEGREES, CYCLE)  # units for which a relative error has no meaning
+DEGREES, CYCLE = "deg", "% of a cycle"  # units: of phases within a cycle of the base, and of parts of the cycle
+JUDGED_SIDES = EQUATIONS, ENGINE  # codes whose differences from measured values are counted as met or not met
+VERDICTS_BEST_FIRST: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # verdicts on a quantity, from best to worst
+ABSOLUTE_UNITS = (DEGREES, CYCLE)  # Differences in these units are stated as they are, not relative to the value.
 
 
 @result
 class SideComparison:
-    """One measured quantity as computed by one code: value, errors and verdict."""
+    """What one code computes for a measured quantity: value, difference, uncertainties and verdict."""
 
     value: Annotated[float | None, "S; null without an answer"]
     error: Annotated[float | None, "E = S - D"]
@@ -50,14 +50,14 @@ class SideComparison:
     verdict: Annotated[Verdict, "met: |E| is within u_val; not met; not compared: no E or no u_val"]
 
     def __post_init__(self) -> None:
-        """Refuse a verdict that contradicts the errors."""
+        """Raise ValueError if the verdict contradicts the difference and its uncertainty."""
         if self.verdict != judge_error(self.error, self.validation):
             raise ValueError(f"verdict {self.verdict!r} contradicts E = {self.error} and u_val = {self.validation}")
 
 
 @result
 class MeasuredQuantity:
-    """One measured quantity with its uncertainties, compared with equations and engine."""
+    """One measured quantity with its uncertainties, compared with what reference equations and Exudyn compute."""
 
     experiment: Annotated[str, "frame or pendulum, and the run"]
     name: Annotated[str, "what it is"]
@@ -72,22 +72,22 @@ class MeasuredQuantity:
     ]
 
     def __post_init__(self) -> None:
-        """Refuse a quantity that lacks the comparison with the equations or with the engine."""
+        """Raise an error if the comparison with the equations or with Exudyn is missing."""
         for side in JUDGED_SIDES:
             require(side in self.sides, f"sides must have {side}")
 
     @property
     def base(self) -> float | None:
-        """Return the value to which the error is relative, None for units without relative errors."""
+        """Return the measured value if differences are stated relative to it, else None."""
         return None if self.unit in ABSOLUTE_UNITS else self.measured
 
     def word(self, side: str) -> str:
-        """Return the verdict on one code in words."""
+        """Return in words whether one code's value of this quantity is met, and the difference."""
         found = self.sides[side]
         return word_verdict(found.verdict, found.error, self.base, self.unit)
 
     def word_both(self) -> str:
-        """Return the verdicts on equations and engine in words, once where they are alike."""
+        """Return in words the verdicts on the equations' and on Exudyn's value, once if they are equal."""
         one, two = (self.word(side) for side in JUDGED_SIDES)
         if one == two:
             return one
@@ -98,7 +98,7 @@ class MeasuredQuantity:
 
 @result
 class PlotCurve:
-    """One line of a plot; empty in the table that the package holds."""
+    """One curve of a plot: measured, or computed by one code."""
 
     panel: Annotated[str, "title of its plot"]
     axes: Annotated[tuple[str, str], "titles of the axes, with units"]
@@ -107,7 +107,7 @@ class PlotCurve:
     y: Annotated[Sequence[float], "along the second axis"]
 
     def __post_init__(self) -> None:
-        """Refuse an unknown name, and x and y of different lengths."""
+        """Raise an error for an unknown curve name, or for x and y of different lengths."""
         known = ("measured", EQUATIONS, ENGINE)
         require(self.name in known, f"name of a curve must be one of {', '.join(known)}, not {self.name[:40]!r}")
         require_size("y", self.y, len(self.x))
@@ -115,7 +115,7 @@ class PlotCurve:
 
 @result
 class CycleResidual:
-    """Difference of the whole motion over a cycle, which no single quantity shows."""
+    """Rms difference between computed and measured motion of the frame over a whole cycle."""
 
     experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
     use: Annotated[str, "calibrated or predicted"]
@@ -124,7 +124,7 @@ class CycleResidual:
 
 @result
 class Validation:
-    """All measured quantities. Every uncertainty is expanded, about 95 %."""
+    """All measured quantities compared with computed ones; every uncertainty is expanded, with about 95 % coverage."""
 
     quantities: Annotated[Sequence[MeasuredQuantity], "in the order of the experiments"]
     inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
@@ -134,7 +134,7 @@ class Validation:
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
     def explanations(self) -> dict[str, list[MeasuredQuantity]]:
-        """Return the quantities that are not met, grouped by their explanation."""
+        """Return the quantities that are not met, grouped by the cause of the difference."""
         groups: dict[str, list[MeasuredQuantity]] = {}
         for each in self.quantities:
             if each.cause:
@@ -142,26 +142,27 @@ class Validation:
         return groups
 
     def counts(self) -> dict[Verdict, int]:
-        """Return how many quantities of the equations and of the engine have each verdict."""
+        """Return the number of quantities met, not met, and not compared, counted for the equations and for Exudyn."""
         return count_verdicts(each.sides[side].verdict for each in self.quantities for side in JUDGED_SIDES)
 
 
+# File of the comparisons: name, content, content in words, command that writes it
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
 
 
 def find_worse_side(each: MeasuredQuantity) -> str:
-    """Return the code with the worse verdict on a quantity; of equal verdicts, that with the larger error."""
+    """Return the code, equations or Exudyn, with the worse verdict on a quantity; if equal, with the larger error."""
     rank = {side: VERDICTS_BEST_FIRST.index(each.sides[side].verdict) for side in JUDGED_SIDES}
     return max(JUDGED_SIDES, key=lambda side: (rank[side], abs(each.sides[side].error or 0.0)))
 
 
 def worse_verdict(each: MeasuredQuantity) -> Verdict:
-    """Return the worse of the verdicts on equations and engine for a quantity: met if both meet it."""
+    """Return the worse verdict on a quantity of those on the equations' and on Exudyn's value."""
     return each.sides[find_worse_side(each)].verdict
 
 
 def verdict_line(table: Validation) -> str:
-    """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
+    """Return one line of text: how many measured quantities are met, and the largest relative error that is not."""
     off = [
         (each.sides[find_worse_side(each)].error or 0.0, each.base or 0.0, f"{each.experiment}, {each.name}")
         for each in table.quantities
@@ -171,20 +172,20 @@ def verdict_line(table: Validation) -> str:
 
 
 def load_record() -> Validation:
-    """Return the stored table of the published files, without their motions."""
+    """Return the comparisons with published measurements that come with the package, without curves."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
     return STORED.read(file.read_bytes())
 
 
 class ComputedValues(NamedTuple):
-    """Values of Q quantities that one code computes, (Q,), with their numerical errors."""
+    """Q quantities as computed by one code, (Q,), with their numerical errors."""
 
     values: Array
     errors: Array
 
 
 class ExperimentFindings(NamedTuple):
-    """Findings of one experiment: compared quantities, inputs, facts, residuals over a cycle, curves to plot."""
+    """Findings of one experiment: compared quantities, inputs and facts in words, rms differences, curves to plot."""
 
     quantities: list[MeasuredQuantity]
     inputs: list[str]
@@ -194,12 +195,12 @@ class ExperimentFindings(NamedTuple):
 
 
 def join_findings(parts: Sequence[ExperimentFindings]) -> ExperimentFindings:
-    """Return the findings of several experiments as one."""
+    """Return the findings of several experiments joined into one."""
     return ExperimentFindings(*([each for part in column for each in part] for column in zip(*parts)))
 
 
 class MeasuredData(NamedTuple):
-    """Measurements: names and units of the quantities, their use, measured values D and uncertainties u_D."""
+    """Measured quantities: names, units, use (calibrated or predicted), values and expanded uncertainties."""
 
     names: Sequence[str]
     units: Sequence[str]
@@ -217,7 +218,7 @@ def compute_released_motion(
     tolerance: float,
     equations: str = "exact",
 ) -> Trajectory:
-    """Return the motion of bodies released from rest at `place` (N,), m along x; the tolerance is the engine's."""
+    """Return the motion by one code of N bodies released from rest at `place` (N,), m along x; tolerance: Exudyn's."""
     start = np.column_stack([place, np.zeros_like(place)])
     initial = State(start, np.zeros_like(start))
     if side == ENGINE:
@@ -227,7 +228,7 @@ def compute_released_motion(
 
 
 def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
-    """Return `count` values read from a motion, and their errors; NaN from one that ended early."""
+    """Return `count` quantities read from a computed motion by `read`, with numerical errors; NaN if it ended early."""
     nothing = np.full(count, np.nan)
     if motion.status not in FULL_LENGTH_OUTCOMES or motion.accuracy is None:
         return ComputedValues(nothing, nothing)
@@ -237,7 +238,7 @@ def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], 
 
 
 def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
-    """Return an input of a computation in words: name, value, uncertainty, unit and source."""
+    """Return in words an input of the computations: name, value, uncertainty, unit and source."""
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
 
@@ -249,10 +250,10 @@ def compare_quantities(
     explain: Callable[[int, float], str],
 ) -> list[MeasuredQuantity]:
     """
-    Return the comparisons of measured and computed values in one run, one for each quantity.
+    Return the comparisons of measured quantities with computed ones in one experiment.
 
-    varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
-    changes. explain: why quantity k has an E beyond this u_val.
+    answers: quantities by code. varied: by the equations, with each input changed by its uncertainty; u_input is the
+    root of the sum of the squared changes. explain: returns the cause why quantity k differs by more than allowed.
     """
     rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
@@ -275,5 +276,5 @@ def compare_quantities(
 def make_plot_curves(
     title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]
 ) -> list[PlotCurve]:
-    """Return the lines of one plot by name."""
+    """Return the curves of one plot; lines: x and y of each curve, by its name."""
     return [PlotCurve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]
