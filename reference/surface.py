@@ -1,4 +1,4 @@
-"""The amplification surface: mu with its error estimate for every phase pair, on all threads."""
+"""Amplification surface: amplification of all bodies, with error estimate, for every phase pair, on all threads."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from reference.solver.system import (
 )
 from reference.support.arguments import check_choice, check_number
 
-# Outcome that a user reads for each status of the compiled solver
+# Outcome that a user is told, for each integer code of an outcome in compiled code
 OUTCOMES = {
     SOLVED: Outcome.OK,
     NOT_MET: Outcome.TOLERANCE_NOT_MET,
@@ -46,15 +46,16 @@ OUTCOMES = {
     STEP_LIMIT: Outcome.STEP_LIMIT,
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
-STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and BASE_STEPS more
-STEP_LIMIT_PER_KNOT = 10  # steps added to the step limit of a run for each knot of a record
-# Further steps per period of the chain's fastest vibration, and the largest number that these add
+STEPS_PER_PERIOD = 1000  # part of the limit of steps in a run: steps per period of the loading
+STEP_LIMIT_PER_KNOT = 10  # part of the limit of steps in a run: steps per sample of a recorded ground motion
+# Part of the limit of steps in a run: steps per period of the bodies' fastest vibration, and the most that these add
 STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
-# Periods of the chain's fastest vibration in which forces hardly change, so that stiff links follow without vibrating
+# The time in which forces change is at most this number of periods of the bodies' fastest vibration: stiff links then
+# follow without vibrating
 VIBRATIONS_PER_TIME_SCALE = 10.0
-BASE_STEPS = 20_000  # steps that a run may take, before those for the length of the loading and for vibrations
-MAX_STEPS = 3_000_000  # hard limit of steps per run; about 30 s for two bodies
-PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that no thread waits long for another
+BASE_STEPS = 20_000  # part of the limit of steps in a run that does not depend on the scene
+MAX_STEPS = 3_000_000  # largest limit of steps in a run without BASE_STEPS; about 30 s for two bodies
+PARTS_PER_THREAD = 8  # number of slices of the phase pairs per thread, so that no thread waits long for another
 
 
 @require_scene
@@ -69,9 +70,9 @@ def amplification(
     full: bool = False,
 ) -> Amplification:
     """
-    Return the amplification factors mu_i of (5.1) by the paper's equations, from rest, with error estimates.
+    Return the amplification mu_i (5.1) of every body i, from rest, by the paper's equations, with error estimates.
 
-    By default mu is the literal supremum of (5.1). ``cutoff=1e-3`` gives mu as integrated.
+    By default the amplification is the literal supremum of (5.1). ``cutoff=1e-3`` gives it as integrated.
 
     Parameters
     ----------
@@ -84,11 +85,11 @@ def amplification(
         v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none;
         friction that yields elastically has no v_reg.
     tolerance : float
-        Relative error asked of every mu; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
+        Relative error asked of every amplification; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
     cutoff : float, optional, m/s
-        v_c: mu as integrated, the resolved peak, in which only rest and sliding faster than v_c count. 1e-3 is what
-        steps of about 1 ms resolve. None: the literal supremum with its one-sided limits, which no integration reaches.
-        With the set-valued law only.
+        v_c: amplification as integrated, the resolved peak, in which only rest and sliding faster than v_c count.
+        1e-3 is what steps of about 1 ms resolve. None: the literal supremum with its one-sided limits, which no
+        integration reaches. With the set-valued law only.
     rest_condition : {"consistent", "printed"}
         "printed" takes (4.6) as it stands in the paper.
     full : bool
@@ -97,8 +98,8 @@ def amplification(
     Returns
     -------
     Amplification
-        `mu` and `error` have the shape (..., N). A point without an answer is NaN; its status says why. The other
-        points do not depend on it.
+        `mu`, the amplification, and `error` have the shape (..., N). A point without an answer is NaN, and its status
+        says why. The other points do not depend on it.
 
     Raises
     ------
@@ -108,12 +109,12 @@ def amplification(
     Notes
     -----
     Every run is made twice with different tolerances; docs/reference.md says how the error follows from both. A run
-    ends where mu, the largest displacement and the outcome can no longer change, unless `full`. Statuses are the values
-    of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
+    ends where amplifications, largest displacement and outcome can no longer change, unless `full`. Statuses are values
+    of `Outcome`: "ok"; "tolerance not met", with amplification and larger error; all others come with NaN.
 
     `reading` of the result says which reading of (5.1) it has, "literal supremum" or "as integrated"; `law` names the
     law of friction. The error is numerical: it leaves out what another law changes. With `regularization` a motion has
-    no supremum at a stop, and mu is as integrated. Under viscous friction, and without friction, both readings agree.
+    no supremum at a stop: amplification is as integrated. In viscous friction, and without any, both readings agree.
 
     Examples
     --------
@@ -126,7 +127,7 @@ def amplification(
     True
     """
     pairs, shape = flat_phases(phases)
-    # Not reduced to one axis: (4.6) as printed, which distinguishes directions, and friction that yields
+    # Two cases are not reduced to one axis: (4.6) as printed, which distinguishes directions, and friction that yields
     flat = not full and rest_condition == "consistent" and is_planar(scene).allowed and not scene.dry_friction.elastic
     moving, axes = (turn_loading_to_x(scene), 1) if flat else (scene, 2)
     system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
@@ -142,7 +143,7 @@ def amplification(
         summed = system.small and not full and is_linear(scene).allowed
 
         def solve(part: slice) -> float:
-            """Solve a slice of the phase pairs; return the time it took, s."""
+            """Compute the amplifications at a slice of the phase pairs, into `found`; return the time it took, s."""
             return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
 
         cost = _solve_on_threads(solve, len(pairs), alone=summed)
@@ -153,17 +154,17 @@ def amplification(
 
 
 class _PointAnswers(NamedTuple):
-    """Answers at M phase pairs for N bodies, which the runs fill in."""
+    """Results at M phase pairs for N bodies, which the runs fill in."""
 
-    mu: Array  # (M, N)
-    error: Array  # (M, N)
-    status: NDArray[np.str_]  # (M,)
-    instant: Array  # (M,), s
-    displacement: Array  # (M,), m
+    mu: Array  # (M, N), amplification of each body
+    error: Array  # (M, N), estimated error of each amplification
+    status: NDArray[np.str_]  # (M,), text of `Outcome`
+    instant: Array  # (M,), s, time at which a run ended whose status is not ok; else NaN
+    displacement: Array  # (M,), m, largest displacement of the platform
 
     @staticmethod
     def without_any(points: int, bodies: int) -> _PointAnswers:
-        """Return NaN at all points, with the status of a load that is not finite."""
+        """Return results that are NaN at all points, with the status that the ground acceleration is not finite."""
         status = np.full(points, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
         nothing = np.full((points, bodies), np.nan)
         return _PointAnswers(nothing, nothing.copy(), status, np.zeros(points), np.full(points, np.nan))
@@ -180,7 +181,7 @@ def _solve_points(
     summed: bool,
     full: bool,
 ) -> float:
-    """Solve a slice of the phase pairs (M, 2), rad, and write the answers into `found`; return the time it took, s."""
+    """Compute the results at a slice of the phase pairs (M, 2), rad, into `found`; return the time it took, s."""
     begin = time.thread_time()
     ground = ground_peak(scene, pairs[part])
     shaken = ground >= LEAST_ACCELERATION
@@ -203,7 +204,7 @@ def _solve_points(
 
 
 def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) -> float:
-    """Solve `count` points in slices, on all threads unless `alone`; return the sum of the times, s."""
+    """Call `solve` for slices of `count` phase pairs, on all threads unless `alone`; return the sum of times, s."""
     threads = numba.get_num_threads()
     if alone or threads == 1 or count < 2:
         return solve(slice(0, count))
@@ -213,7 +214,7 @@ def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) 
 
 
 def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
-    """Return the peaks of a linear scene from one motion per harmonic; make a run only where it may end early (4.1)."""
+    """Return the peaks of a linear scene, one motion per harmonic superposed; run only what may end early (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
@@ -225,7 +226,7 @@ def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: Run
 
 
 def split_points(count: int, pieces: int) -> Iterator[slice]:
-    """Iterate over at most `pieces` slices of `count` neighboring points."""
+    """Iterate over slices that split `count` neighboring points into at most `pieces` parts."""
     size = max(1, -(-count // pieces))
     return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
@@ -239,7 +240,7 @@ def prepare_run(
     rest_condition: str,
     axes: int = 2,
 ) -> tuple[System, RunSettings]:
-    """Return the compiled scene and the settings of its runs from arguments of `amplification`. Raises ValueError."""
+    """Return the scene for compiled code and the run settings, from arguments of `amplification`. Raises ValueError."""
     check_choice("equations", equations, ("exact", "small"))
     check_choice("rest_condition", rest_condition, ("consistent", "printed"))
     tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
@@ -266,7 +267,7 @@ def prepare_run(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """Return the time in which forces change, s: the shortest period or decay time of loading, pendulum and chain."""
+    """Return the time, s, in which forces change: the shortest period or decay time of loading, isolator and bodies."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()
@@ -279,7 +280,7 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
 
 
 def loads_are_finite(system: System) -> bool:
-    """Return True if squares of accelerations, of which (5.1) is made, stay within double precision."""
+    """Return True if the squares of the ground accelerations, which (5.1) needs, are not too large for floats."""
     largest = max(np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.record))
     with np.errstate(over="ignore"):
         return bool(np.isfinite(np.square(largest) * 1e8))

@@ -11,28 +11,28 @@ from reference.records.samples import MAX_ACCELERATION, RecordError
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-MAX_LINE, MAX_CELL = 1000, 100  # largest numbers of letters of a line that is searched, and of a number
-MAX_HEADER_LINES = 100  # a header is searched for in at most so many first lines
+MAX_LINE, MAX_CELL = 1000, 100  # longest part of a line that is searched for words, longest number, both in letters
+MAX_HEADER_LINES = 100  # number of lines at the start of a record file in which its header is searched for
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
 UNITS |= {"cm/s²": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "ft/s^2": 0.3048}
 UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"
-SPELLED_UNIT = re.compile(  # unit of acceleration in another spelling, such as cm/sec/sec
+SPELLED_UNIT = re.compile(  # matches acceleration units in spellings that UNITS does not list, such as cm/sec/sec
     r"(m|cm|mm|in|inch|inches|ft|feet)[ .*]?(?:/ ?\(?s(?:ec)?(?:\^?2|²| ?/ ?s(?:ec)?)\)?| ?s\^?-2)"
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
-# A number in a run of fixed-width numbers without blanks between them
+# Matches one number in a run of numbers of fixed width, with no blanks between them (Fortran output)
 NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
 NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
-WORD = re.compile(r"[^\W\d_]{2,}")  # two letters in a row: a line with them is no line of numbers
-NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # a line of other letters is examined cell by cell
-WRITE_RECORD = "write record = "  # begins the proposal of every format for a scene
+WORD = re.compile(r"[^\W\d_]{2,}")  # two letters or more in a row: a line that has them is not a line of numbers
+NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # lines of only these are parsed at once, lines with others cell by cell
+WRITE_RECORD = "write record = "  # start of the part of an error message that says what to write in the scene file
 
 
 def decode_text(content: bytes) -> str:
     """
-    Return the text of a file in UTF-8 or UTF-16, or else of single bytes. Raises RecordError.
+    Decode a file's bytes as UTF-8 or UTF-16, or else as Latin 1, and return the text. Raises RecordError.
 
-    Only letters of ASCII carry a meaning, and the sign for a square, so that single bytes may be read as Latin 1.
+    Only ASCII letters and the superscript 2 carry a meaning, so bytes in another encoding may be read as Latin 1.
     """
     try:
         if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
@@ -50,13 +50,13 @@ def decode_text(content: bytes) -> str:
 
 
 def quote_name(name: str) -> str:
-    """Return the name of a file as a text of a scene file."""
+    """Return a file's name in quotes and escaped, as it must be written in a scene file (TOML)."""
     plain = name.isprintable() and not {'"', "\\"} & set(name)
     return f'"{name}"' if plain else json.dumps(name)
 
 
 def unit_factor(unit: str) -> float | None:
-    """Return the factor to m/s^2 of a unit in any common spelling; None for an unknown unit."""
+    """Return the number of m/s^2 in an acceleration unit of any common spelling; None for an unknown unit."""
     text = " ".join(unit.lower().replace("**", "^").split()).strip(" .")
     if text in UNITS:
         return UNITS[text]
@@ -68,7 +68,7 @@ def unit_factor(unit: str) -> float | None:
 
 
 def parse_number(line: int, cell: str) -> float:
-    """Return the number in a cell of a line of a file. Raises RecordError."""
+    """Return the number in a cell of a record file; `line`: its line number, for the error. Raises RecordError."""
     if NOT_FINITE_NUMBER.fullmatch(cell):
         raise RecordError(f"line {line}: {cell}: must be finite")
     if "**" in cell:
@@ -84,7 +84,7 @@ def parse_number(line: int, cell: str) -> float:
 
 def parse_fields(line: int, text: str) -> list[float]:
     """
-    Return the numbers of a line of Fortran fields, also where no blank separates them. Raises RecordError.
+    Return the numbers in a line that Fortran wrote, also where no blank separates them. Raises RecordError.
 
     Two numbers without a blank are told apart by the sign of the second, where both have a decimal point.
     """
@@ -100,7 +100,7 @@ def parse_fields(line: int, text: str) -> list[float]:
 
 
 def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
-    """Return the numbers of lines that have nothing else, as in most files; None if each line must be examined."""
+    """Return the numbers of lines that hold only numbers (the fast way); None if lines must be parsed one by one."""
     text = " ".join(lines)
     cells = text.split()
     if not set(text) <= NUMBER_LETTERS or max(map(len, cells), default=0) > MAX_CELL:
@@ -113,7 +113,7 @@ def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
 
 
 def holds_numbers(line: str) -> bool:
-    """Return True for a line of data: not blank and without words other than `nan` and `inf`."""
+    """Return True if a line of a record file holds numbers: not blank, and no words other than `nan` and `inf`."""
     return bool(line.strip()) and not any(
         not NOT_FINITE_NUMBER.fullmatch(word) for word in WORD.findall(line[:MAX_LINE])
     )
@@ -121,9 +121,10 @@ def holds_numbers(line: str) -> bool:
 
 def read_values(lines: Sequence[str], first: int, count: int, stated: str) -> tuple[list[float], tuple[str, ...]]:
     """
-    Return `count` numbers from lines that start at line number `first` of a file, and notes. Raises RecordError.
+    Return the `count` numbers in a record's data lines, and notes on what was ignored or split. Raises RecordError.
 
-    stated: what the header says of the count. Lines with words behind the last value are no data.
+    first: line number in the file of lines[0]. stated: the count in the header's words, for the error.
+    A line with words behind the last value ends the data.
     """
     values = parse_plain_lines(lines)
     if values is not None and len(values) == count:

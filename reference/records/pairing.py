@@ -9,20 +9,20 @@ from reference.records.directions import KNOWN_SPELLINGS, Direction, assign_axes
 from reference.records.motion_lists import COLUMNS, FILE_NAME, Motion
 from reference.support.arguments import name_some, quote
 
-MAX_NAMED = 20  # an error names at most so many files
+MAX_NAMED = 20  # largest number of files that an error message names
 
 
 class SuiteError(ValueError):
-    """Error for a wrong suite, or for a motion that it does not have: the key that names it, and the rule it breaks."""
+    """Error for an invalid suite of ground motions, or a motion it lacks: the scene's key, and the rule it breaks."""
 
     def __init__(self, key: str, rule: str) -> None:
-        """Set the key of the record that is wrong, and the rule that it breaks."""
+        """Set the key of the scene's `record` whose entry is wrong, and the rule that this entry breaks."""
         super().__init__(f"{key}: {rule}")
         self.key, self.rule = key, rule
 
 
 def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
-    """Return files, with their directions, by the rest of their names, which components of one motion share."""
+    """Group files by their names without the direction; each group maps a file to (this base name, its direction)."""
     groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
     for file in files:
         for base, direction in split_name(file.stem, file.suffix):
@@ -31,7 +31,7 @@ def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direc
 
 
 def pair_files(files: Sequence[Path]) -> list[Motion]:
-    """Return the components of each motion, paired by names of their files. Raises SuiteError for unpaired files."""
+    """Return motions, their component files paired by file name. Raises SuiteError if a file cannot be paired."""
     groups, left, motions = _group_files(files), set(files), []
     for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
         members = [file for file in groups[base] if file in left]
@@ -46,7 +46,7 @@ def pair_files(files: Sequence[Path]) -> list[Motion]:
 
 
 def find_motion(file: Path, files: Sequence[Path]) -> Motion:
-    """Return the motion of which a file is a component, with the other files of its name; or the file alone."""
+    """Return the motion that a file belongs to: its components are the files with one base name, or this file alone."""
     for members in _group_files(files).values():
         if file in members and (axes := assign_axes([one for _, one in members.values()])) is not None:
             return Motion(members[file][0], {axis: [*members][number] for axis, number in axes.items()})
@@ -54,7 +54,7 @@ def find_motion(file: Path, files: Sequence[Path]) -> Motion:
 
 
 def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
-    """Return an error message on all files that could not be paired into motions."""
+    """Return the error message that lists the files left without a pair, and why. groups: from `_group_files`."""
     shares: dict[str, list[Path]] = {}
     for file in files:
         bases = [base.upper() for base, _ in split_name(file.stem, file.suffix)]
@@ -86,11 +86,11 @@ def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Pat
 
 
 def _list_names(names: Sequence[str]) -> str:
-    """Return names in quotes as text, at most MAX_NAMED of them."""
+    """Return text that lists names in quotes, at most MAX_NAMED of them."""
     return name_some([quote(name) for name in names], MAX_NAMED)
 
 
 def find_vertical_components(files: Sequence[Path]) -> set[Path]:
-    """Return the files with the vertical component of a motion that has other components as well."""
+    """Return the files that hold the vertical component of a motion whose other components are among the files too."""
     groups = _group_files(files).values()
     return {file for members in groups if len(members) > 1 for file, (_, one) in members.items() if one.axis == "z"}

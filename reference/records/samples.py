@@ -1,5 +1,5 @@
 """
-What a file of a recorded motion holds, and the samples that one or several of them make: (K, 4), time from the first
+Data of one record file, and the samples that the files of a recorded motion make together: (K, 4), time from the first
 sample on, s, and acceleration along x, y, z, m/s^2, zero along a direction that was not recorded.
 
 `problem/excitation.py` defines the motion between samples.
@@ -22,23 +22,23 @@ from reference.support.scene_error import one_line
 Array = NDArray[np.float64]
 
 AXES = ("x", "y", "z")
-MAX_FILE_BYTES = 2**24  # largest size of a file: half an hour at 200 Hz along three directions
+MAX_FILE_BYTES = 2**24  # largest size of a record file: half an hour at 200 Hz along three directions
 MAX_ACCELERATION = 1e300  # m/s^2, largest sample that is accepted: it stays finite in any unit
-MIN_INTERVAL = 1e-9  # s, shortest time between samples
+MIN_INTERVAL = 1e-9  # s, shortest time between two samples of a record that is accepted
 ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
-STEP_MISMATCH = 1e-6  # largest relative difference of the sampling intervals of files that belong together
-TIME_MISMATCH = 0.01  # instants of two files may differ by this share of a step
+STEP_MISMATCH = 1e-6  # largest relative difference in sampling interval between the files of one motion
+TIME_MISMATCH = 0.01  # largest difference in sampling times between two files of one motion, as share of the interval
 
 
 class RecordError(ValueError):
     """
-    Error for a file that is no record: one line with the place in it, the text there, and the rule.
+    Error for a file that cannot be read as a record: one line with the place in the file, its text, and the rule.
 
-    proposal: end of the line that says what to write in a scene instead; `said`: the line before it.
+    said: the error in words. proposal: the end of the message, which says what to write in the scene file instead.
     """
 
     def __init__(self, said: str, proposal: str = "") -> None:
-        """Set the text of the error, and what it proposes to write in a scene instead."""
+        """Set the error in words, `said`, and the `proposal`, which says what to write in the scene file instead."""
         super().__init__(f"{said}{proposal}")
         self.said, self.proposal = said, proposal
 
@@ -46,7 +46,7 @@ class RecordError(ValueError):
 @dataclass(frozen=True)
 class RecordSamples:
     """
-    Samples read from one file.
+    Ground acceleration samples read from one record file.
 
     format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis, or
     under "" where the file does not say along which. names: what the file calls them. step: s, where the file states
@@ -64,7 +64,7 @@ class RecordSamples:
 def make_even_samples(
     format: str, step: float, values: Array, word: str = "", notes: tuple[str, ...] = ()
 ) -> RecordSamples:
-    """Return the samples of one direction at a constant step, s, in m/s^2; `word` names it. Raises RecordError."""
+    """Return samples (m/s^2) along one direction, named by `word`, at a constant time step, s. Raises RecordError."""
     if not step >= MIN_INTERVAL:
         raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
     axis, time = axis_of_word(word), step * np.arange(len(values), dtype=float)
@@ -72,20 +72,21 @@ def make_even_samples(
 
 
 def files_by_axis(record: Any) -> dict[str, Any]:
-    """Return the files that a record names by axis; anything but a table of axes is one file, under ""."""
+    """Return the files that a scene's `record` names, by axis x, y, z; a file without an axis is under ""."""
     return record if isinstance(record, dict) and "file" not in record else {"": record}
 
 
 def file_name(file: Any) -> Any:
-    """Return the name of a file of a record, given alone or in a table with options."""
+    """Return the name of a record file, which a scene gives alone or as `file` in a table with options."""
     return file.get("file") if isinstance(file, dict) else file
 
 
 def join_directions(readings: Mapping[str, RecordSamples]) -> Array:
     """
-    Return time and acceleration along x, y, z, (K, 4), of one file per axis, or of one file of all axes under "".
+    Return samples (K, 4), time and acceleration along x, y, z, joined from the files of all axes.
 
-    A direction that the only file does not name is x. A file that ends early is at rest from there on.
+    Keys of `readings`: axes; "" for one file of all axes, or of x if it names none. A file that ends early is at rest
+    from there on.
     """
     columns: dict[str, tuple[RecordSamples, Array]] = {}
     for axis, reading in readings.items():
@@ -105,7 +106,7 @@ def join_directions(readings: Mapping[str, RecordSamples]) -> Array:
 
 
 def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
-    """Raise RecordError unless all directions were sampled at the same instants."""
+    """Raise RecordError unless the files of all directions, by axis, were sampled at the same instants."""
     for (first, one), (second, other) in pairwise(readings.items()):
         if one.step is not None and other.step is not None:
             if abs(one.step - other.step) > STEP_MISMATCH * one.step:
@@ -121,7 +122,7 @@ def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
 
 
 def make_samples(time: Any, acceleration: Any) -> Array:
-    """Return samples (K, 4) of times (K,), s, and accelerations along one to three axes, m/s^2. Raises RecordError."""
+    """Return samples (K, 4) made of times (K,), s, and accelerations along 1 to 3 axes, m/s^2. Raises RecordError."""
     instants = _check_numbers("time", time, "(K,), s")
     values = _check_numbers("acceleration", acceleration, ACCELERATION_SHAPES)
     columns = values[:, None] if values.ndim == 1 else values
@@ -137,7 +138,7 @@ def make_samples(time: Any, acceleration: Any) -> Array:
 
 
 def check_samples(samples: Any) -> Array:
-    """Return read-only samples (K, 4) from an array or nested lists; time counts from the first. Raises RecordError."""
+    """Return samples (K, 4), from an array or nested lists, read-only and with the first at 0 s. Raises RecordError."""
     array = np.array(_check_numbers("samples", samples, "(K, 4)"))
     if array.ndim != 2 or array.shape[1] != 4:
         raise RecordError(f"samples: shape {array.shape}: must be (K, 4): s and m/s^2 along x, y, z")
@@ -145,7 +146,7 @@ def check_samples(samples: Any) -> Array:
 
 
 def _check_numbers(name: str, values: Any, shape: str) -> Array:
-    """Return instants or accelerations as an array of bounded finite numbers. Raises RecordError."""
+    """Return times or accelerations as an array, checked to be finite and not too large. Raises RecordError."""
     try:
         array = check_array(name, values, f"must be {shape}")
     except ValueError as error:
@@ -156,7 +157,7 @@ def _check_numbers(name: str, values: Any, shape: str) -> Array:
 
 
 def finish_samples(samples: Array) -> Array:
-    """Return read-only samples with the first at 0 s. Raises RecordError."""
+    """Shift samples to start at 0 s, check their intervals, make them read-only, return them. Raises RecordError."""
     if len(samples) < 2:
         raise RecordError(f"{len(samples)} samples: must have at least 2")
     samples[:, 0] -= samples[0, 0]
@@ -168,7 +169,7 @@ def finish_samples(samples: Array) -> Array:
 
 
 def word_origin(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
-    """Return the origin of samples: a line for each file, by axis, and a line for each note on it."""
+    """Return text lines on where samples come from: one for each file (by axis), one for each note on a file."""
     lines = []
     for axis, (name, reading) in files.items():
         told = ", ".join(
@@ -180,7 +181,7 @@ def word_origin(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
 
 
 def subtract_zero_line(samples: Array, how: str) -> None:
-    """Subtract from each recorded direction of samples (K, 4) its "mean", or its "linear" trend by least squares."""
+    """Subtract in place, from each direction of samples (K, 4), its "mean", or its "linear" trend by least squares."""
     time = samples[:, 0] - samples[:, 0].mean()
     for values in samples[:, 1:].T:
         if values.any():

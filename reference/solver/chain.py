@@ -30,18 +30,18 @@ from reference.solver.rows import Row, combine_columns, put, row
 from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Workspace
 
-# Columns of the matrix from stages to channels (eigenvectors, see above), real parts first, and of the one back
+# Columns of the matrix from stages to channels (eigenbasis of A), real parts first, and of the matrix back
 TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
 FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
-# A constant 1, and the time from the start of a step over its length, in channels
+# Transforms to channels of two functions of time in a step: a constant 1, and the elapsed share of the step
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# What a number 1 at stage m gives at all stages if only channel j is transformed back, by its real and imaginary part
+# Numbers at all stages that come from a 1 at stage m, sent to channels and back through channel j alone (complex)
 _CHANNEL_RESPONSES = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
-CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (  # both parts of _CHANNEL_RESPONSES, their columns as rows
+CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (  # parts of _CHANNEL_RESPONSES, transposed for compiled code
     np.array([columns_as_rows(part) for part in parts])
     for parts in zip(*((through.real, through.imag) for through in _CHANNEL_RESPONSES))
 )
-# Rounding error of an acceleration after the transform to channels and back, over the loads, at the worst stage (3e-13)
+# Largest rounding error of an acceleration from the transform to channels and back, relative to the loads (3e-13)
 CHANNEL_ROUNDING = float(
     np.finfo(float).eps * exact_product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max()
 )
@@ -49,28 +49,28 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coefficient that couples body i to the body below in a channel; root: step h times its eigenvalue."""
+    """Return body i's coupling to the body below in a channel (collocation eigenvector); root: h times eigenvalue."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coefficient that couples body i to the body above in a channel; root: step h times its eigenvalue."""
+    """Return body i's coupling to the body above in a channel (collocation eigenvector); root: h times eigenvalue."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 
 @compiled
 def reciprocal(number: complex) -> complex:
-    """Return 1 / number for a complex number whose squared size neither overflows nor vanishes."""
+    """Return 1 / number for a complex number whose squared modulus neither overflows nor underflows to 0."""
     square = number.real * number.real + number.imag * number.imag
     return complex(number.real / square, -number.imag / square)
 
 
 @compiled
 def eliminate_chain(system: System, work: Workspace, h: float) -> None:
-    """Eliminate the bodies above the platform from a step of length h: set inverse pivots and the platform's `gain`."""
-    # Each channel j couples body i to its neighbors only (see above), so elimination from the top down costs one pivot
-    # per body. d_i = e_i + L b_i, and e_i = 1 + L c_i e_{i+1} / d_{i+1} replaces the usual difference
+    """Eliminate the bodies above the platform from a step of length h, s: set work.inverse and work.gain (work.py)."""
+    # In channel j only neighboring bodies are coupled (see above), so elimination from the top down takes one pivot
+    # d_i = e_i + L b_i per body. Here e_i = 1 + L c_i e_{i+1} / d_{i+1} replaces the usual difference
     # 1 + L c_i - L^2 c_i b_{i+1} / d_{i+1}, in which a stiff link would cancel all digits of the inertia.
     # `upper` is e_i, `inverse` 1 / d_i.
     bodies = work.x.shape[0]
@@ -88,7 +88,7 @@ def eliminate_chain(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_feedback(system: System, work: Workspace, h: float) -> None:
-    """Set `feedback`: force of the bodies above per unit acceleration of the platform at each stage of a step."""
+    """Set work.feedback: force of the bodies above on the platform per unit of its acceleration at each stage."""
     feedback = work.feedback
     for axis in range(system.axes):
         for m in range(STAGES):
@@ -106,19 +106,19 @@ def set_feedback(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def transform_to_channels(values: Row) -> Row:
-    """Transform numbers at the stages of a step into the eigenbasis of the collocation matrix (channels)."""
+    """Transform the numbers at a step's stages into channels: the eigenbasis of the collocation matrix."""
     return combine_columns(TO_CHANNELS_COLUMNS, values)
 
 
 @compiled
 def transform_from_channels(values: Row) -> Row:
-    """Transform numbers in the eigenbasis of the collocation matrix (channels) back to the stages of a step."""
+    """Transform numbers in channels (the eigenbasis of the collocation matrix) back to the stages of a step."""
     return combine_columns(FROM_CHANNELS_COLUMNS, values)
 
 
 @compiled
 def set_chain_loads(system: System, work: Workspace, h: float) -> None:
-    """Set the loads on the bodies above the platform in a step, and `free`, the platform's drive at constant speed."""
+    """Set the loads on the bodies above the platform in a step, and the platform's drive if it kept its velocity."""
     # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
     # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
     # channels a constant is ONES_IN_CHANNELS and the elapsed time h NODES_IN_CHANNELS. `carried` is the part that
@@ -160,7 +160,7 @@ def set_chain_loads(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def recover_chain_motion(system: System, work: Workspace, h: float) -> None:
-    """Set accelerations of the bodies above from the platform's; set positions x1, velocities v1 at the step's end."""
+    """Set the accelerations of the bodies above from the platform's, and all positions and velocities at step end."""
     x, v, a, load, inverse, channels = work.x, work.v, work.a, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
@@ -185,7 +185,7 @@ def recover_chain_motion(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_chain_acceleration(system: System, work: Workspace, ground: Ground) -> None:
-    """Set the accelerations a0 of the bodies above the platform in the state x, v."""
+    """Set the accelerations work.a0 of the bodies above the platform from positions work.x and velocities work.v."""
     bodies = work.x.shape[0]
     for i in range(1, bodies):
         for axis in range(system.axes):

@@ -1,4 +1,4 @@
-"""Peaks with error estimates: every run is made twice, and once more while the two disagree by too much."""
+"""Peak accelerations with error estimates: runs at two tolerances, and at finer ones while two differ by too much."""
 
 from __future__ import annotations
 
@@ -24,46 +24,46 @@ from reference.solver.system import (
     allocate_record,
 )
 
-# The constants of the estimate and their measurements are in docs/decisions/0002-two-run-error.md.
-TOLERANCE_RATIO = 30.0  # ratio of the tolerance inside a step of the coarser run to that of the finer run
-# Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO would be expected. Where
+# How the constants of the error estimate were measured: docs/decisions/0002-two-run-error.md.
+TOLERANCE_RATIO = 30.0  # ratio of the coarser run's tolerance to the finer run's
+# Share of the two runs' difference in a peak that counts as error of the finer run (1 / 30 would be expected). Where
 # friction yields or depends on the velocity, the error falls by less between two runs, and all of it counts.
 DIFFERENCE_FRACTION, DIFFERENCE_FRACTION_VARYING_FRICTION = 0.4, 1.0
-# Lower bounds on the error, since closer agreement of two runs is accidental. The third bound replaces the second one
-# where friction yields or depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
-MIN_ERROR_PER_STEP_TOLERANCE = 5e-4  # over the tolerance inside a step
-MIN_ERROR_FRACTION = 0.007  # over the requested tolerance
-MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07  # in place of MIN_ERROR_FRACTION where friction yields or varies
-READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at the peak: the preceding step may add an equal error
-ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations each
-# Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps
-MAX_STEP_TOLERANCE = 1e-5  # upper bound
+# Smallest relative errors that are stated for a peak, since closer agreement of two runs is chance. The third replaces
+# the second where friction yields or depends on the velocity: stiff creep needs shorter steps (measured: up to 0.015).
+MIN_ERROR_PER_STEP_TOLERANCE = 5e-4  # part of the smallest stated error, as share of the tolerance inside a step
+MIN_ERROR_FRACTION = 0.007  # smallest stated error, as share of the tolerance that the user requests
+MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07  # the same share where friction yields or depends on the velocity
+READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at a peak, since the step before may add as much
+ROUNDING_ERROR = 1e-12  # relative rounding error of a peak at any tolerance: some hundred steps of some ten operations
+# Bounds on the tolerance inside a step: relative error of accelerations; looser ones would save few steps
+MAX_STEP_TOLERANCE = 1e-5  # upper bound on the tolerance inside a step
 MIN_STEP_TOLERANCE = 1e-11  # lower bound on the tolerance inside a step
-# Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
+# Ratio of tolerance inside a step to the requested one of a peak: step errors are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
-# Factor on the tolerance inside a step where friction yields: both runs may miss a slide shorter than a step
+# Factor on the tolerance inside a step where friction yields: otherwise both runs may miss a slide within a step
 YIELDING_TOLERANCE_FACTOR = 0.01
-# Time for which the coarser run goes on after the last peak, over RunSettings.period: its events come at other times
+# Share of RunSettings.period for which the coarser run goes on after the finer run's last peak: its own may be later
 EVENT_MARGIN = 0.01
 
-FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: steps, and steps per knot of the loading
+FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # room of a StepRecord at first: steps; steps per ground sample
 # With heating, runs repeat until peaks and mean k_T change by less than MAX_SETTLED_CHANGE of the tolerance. They also
 # end when a change below the tolerance is more than MIN_CONTRACTION_RATIO of the one before: it is then the error of
 # the steps. Early changes may grow, since runs agree up to an instant that comes later with each run.
 MAX_SETTLED_CHANGE, MIN_CONTRACTION_RATIO = 0.02, 0.5
-MAX_HEATED_RUNS = 30  # largest number of runs in the iteration for the temperature factor of friction, k_T
-SMALLEST_VALUE = 1e-300  # m/s^2: changes are divided by at least this peak
+MAX_HEATED_RUNS = 30  # largest number of runs that are repeated to find the temperature factor of friction, k_T
+SMALLEST_VALUE = 1e-300  # m/s^2, smallest divisor of relative changes of peaks, so that nothing is divided by zero
 
-NOT_MET = 100  # outcome of a run whose error stays above the tolerance; system.py has the other outcomes
+NOT_MET = 100  # code of the outcome "error stays above the tolerance"; system.py has the codes of all others
 
 
 class RunPeaks(NamedTuple):
-    """Largest absolute accelerations with estimated errors; outcome, time of an early end and cost of their runs."""
+    """Largest absolute accelerations of M runs with N bodies, their estimated errors, and how each run ended."""
 
-    value: Array  # (M, N) m/s^2, largest absolute accelerations
-    error: Array  # (M, N) m/s^2, their estimated errors
+    value: Array  # (M, N) m/s^2, largest absolute acceleration of each body
+    error: Array  # (M, N) m/s^2, estimated errors of these largest accelerations
     code: Array  # (M,) outcome of the runs (system.py), or NOT_MET
-    instant: Array  # (M,) s, end of the run
+    instant: Array  # (M,) s, time at which the run ended
     steps: Array  # (M,) number of steps of the last run
     reach: Array  # (M,) m, largest horizontal displacement of the platform
     last_peak: Array  # (M,) s, end of the last step with an acceleration near the largest
@@ -73,15 +73,15 @@ def peaks_at(
     system: System, phases: Array, settings: RunSettings, tolerance: float, until: Array | None = None
 ) -> RunPeaks:
     """
-    Return the peaks of one run from rest for every phase pair (M, 2), rad, with this tolerance inside the steps.
+    Return the peaks of one run from rest for every phase pair (M, 2), rad, with this tolerance inside the time steps.
 
-    Errors are those of reading a peak, with the drift of the steps before it. Runs that do not end early make no step
-    beyond `until` (M,), s, by default the end of the motion.
+    The errors are estimates from this run alone: interpolation at the peak, and drift of the steps before it. Runs that
+    do not end early make no step beyond `until` (M,), s, by default the end of the motion.
     """
     rest = np.zeros((len(system.below), 2))
     settings = settings._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        (pair,) = phases  # every phase pair has its own temperature factor of friction, k_T
+        (pair,) = phases  # with heating one phase pair is run at a time, as each has its own temperature factor k_T
         return record_run(rest, rest, system, pair, settings)[0]
     return peaks_from(rest, rest, system, phases, settings, allocate_record(0, len(rest)), until)
 
@@ -95,7 +95,7 @@ def peaks_from(
     record: StepRecord,
     until: Array | None = None,
 ) -> RunPeaks:
-    """Return the peaks of one run from x and v (N, 2) for every phase pair (M, 2), rad; keep the steps in `record`."""
+    """Return the peaks of one run from x and v (N, 2) per phase pair (M, 2), rad; store its steps in `record`."""
     count, bodies = len(phases), len(x)
     value, error = np.empty((count, bodies)), np.empty((count, bodies))
     ends = np.empty((len(RunPeaks._fields) - 2, count))
@@ -109,7 +109,7 @@ def record_run(
     x: Array, v: Array, system: System, phase: Array, settings: RunSettings
 ) -> tuple[RunPeaks, StepRecord, System]:
     """
-    Return the peaks of one run, all its steps, and the system with k_T, the temperature factor of friction.
+    Return the peaks of one run from x and v (N, 2), its steps, and the system with friction's temperature factor k_T.
 
     With heating, the run is repeated until its k_T no longer changes; the last change counts as error.
     """
@@ -141,7 +141,7 @@ def record_run(
 
 def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole: bool = False) -> RunPeaks:
     """
-    Return the peaks to the relative tolerance of `settings`, with estimated errors.
+    Return each phase pair's peak accelerations, to the relative tolerance of `settings`, with estimated errors.
 
     With `whole` all runs go to the end of the motion; otherwise they end where no peak, displacement or outcome can
     change any more (look_ahead.py).
@@ -188,14 +188,14 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
 
 
 def _where_unfinished(before: RunPeaks, after: RunPeaks) -> npt.NDArray[np.bool_]:
-    """Return True for phase pairs (M,) at which one of the two runs could not be finished."""
+    """Return, for M phase pairs, True where the run `before` or `after` could not be finished."""
     return np.isin(before.code, (UNSOLVED, STEP_LIMIT)) | np.isin(after.code, (UNSOLVED, STEP_LIMIT))
 
 
 def _compare_runs(
     before: RunPeaks, after: RunPeaks, tolerance: float, system: System, settings: RunSettings
 ) -> tuple[RunPeaks, Array]:
-    """Return the peaks `after` with errors, and True for pairs (M,) at which the runs disagree by too much."""
+    """Return the finer run's peaks with errors, and, for M phase pairs, True where the runs disagree by too much."""
     plain = system.rate == 0.0 and system.law != YIELDING
     share = DIFFERENCE_FRACTION if plain else DIFFERENCE_FRACTION_VARYING_FRICTION
     error = _estimate_error(before, after, share, tolerance, settings.unit)
@@ -209,11 +209,11 @@ def _compare_runs(
 
 def _estimate_error(before: RunPeaks, after: RunPeaks, share: float, tolerance: float, unit: float) -> Array:
     """
-    Return the estimated error of `after`, (M, N): that of reading the peak plus `share` of the runs' difference.
+    Return estimated errors (M, N) of the finer run's peaks: its own estimates plus `share` of the two runs' difference.
 
     Two runs that differ by less than rounding agree by chance: there the error is that of rounding.
     """
-    # Steps do not resolve peaks below MIN_SCALE_FRACTION of the loading: there the whole difference counts. Small
+    # Steps do not resolve peaks below MIN_SCALE_FRACTION of the loading: their whole difference counts. Small
     # accelerations are differences of large ones, so their rounding is relative to the loading.
     between = np.where(after.value < MIN_SCALE_FRACTION * unit, 1.0, share) * np.abs(after.value - before.value)
     rounding = ROUNDING_ERROR * np.maximum(after.value, unit)

@@ -1,4 +1,4 @@
-"""Events inside a step, located on the polynomials through its stages."""
+"""Location of events inside a step (onset of sliding, a passage of a level), on polynomials through its stages."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from reference.solver.rows import Row, broadcast_like, put, row, row_maximum, wh
 from reference.solver.system import Load, System
 from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, Workspace
 
-# Kinds of events: the polynomial in powers[0] passes zero, friction at rest reaches its limit, the sliding speed passes
-# a given one. Integers of NumPy: numba would compile a function again for every literal (system.py).
+# Integer codes of events: the polynomial in work.powers[0] passes zero, friction at rest reaches its limit, the sliding
+# speed passes a given one. Integers of NumPy: numba would compile a function again for every literal (system.py).
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
-NOT_IN_STEP = 2.0  # theta of an event that is not in the step, which ends at 1
-# Number of golden sections in the search for a short event: an event shorter than 1e-6 of a step is ignored
+NOT_IN_STEP = 2.0  # theta (share of the step) that stands for "no event in the step", in which theta goes from 0 to 1
+# Number of golden sections in the search for a short event: one that lasts less than 1e-6 of a step may be missed
 GOLDEN_SECTIONS = 30
 GOLDEN_SHARE = 0.382  # share of an interval that a golden section cuts off, (3 - sqrt(5)) / 2
-MAX_SECANTS = 200  # largest number of iterations of regula falsi
-SECANTS_PER_HALVING = 3  # after so many iterations that do not halve the interval, a bisection follows
-LOCATION_TOLERANCE = 1e-15  # error of the location of an event, as a share of the step
-# Largest rise between two stages, over the squared limit of friction, of the excess over the condition for rest: where
-# the excess stays lower by more than that, no slide begins within the step.
+MAX_SECANTS = 200  # largest number of iterations of regula falsi that locate one event
+SECANTS_PER_HALVING = 3  # a bisection follows this many iterations of regula falsi that have not halved the interval
+LOCATION_TOLERANCE = 1e-15  # largest error in an event's instant, as a share of the step
+# Largest possible rise of the squared tangential force between two stages, over the squared friction limit: if the
+# force is farther than this below the limit at all stages, no onset of sliding is looked for in the step.
 NEAR_LIMIT = 0.5
 
 
 @compiled
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
-    """Return the first share of the step at which the polynomial through `values` passes `target` from `start`."""
+    """Return the first theta in the step at which the polynomial of stage `values` passes `target` from `start`."""
     expand_level(work, values, target)
     return locate_first_event(system, work, LEVEL_EVENT, 1.0 if start < target else -1.0, 0.0, start - target)
 
@@ -45,7 +45,7 @@ def expand_level(work: Workspace, values: Row, target: float) -> None:
 
 @compiled
 def locate_onset(system: System, work: Workspace) -> float:
-    """Return the share of the step at which friction can no longer hold the platform; set the stages' reactions."""
+    """Return the first share theta of the step at which friction cannot hold the platform; set stage reactions."""
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
@@ -59,7 +59,7 @@ def locate_onset(system: System, work: Workspace) -> float:
 
 @compiled
 def expand_drive(work: Workspace) -> None:
-    """Set the coefficients of the drive and of the ground acceleration as polynomials of theta in a step at rest."""
+    """Set work.powers to coefficients, in theta, of drive and ground acceleration, for a platform at rest in a step."""
     for axis in range(2):
         set_coefficients(row(work.free, axis), work.powers[axis])
     for axis in range(3):
@@ -68,7 +68,7 @@ def expand_drive(work: Workspace) -> None:
 
 @compiled
 def excess_at(system: System, work: Workspace, theta: float) -> float:
-    """Return squared drive minus squared friction limit at the share theta of a step at rest, after `expand_drive`."""
+    """Return squared tangential force minus squared friction limit at theta of a step at rest, after `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -85,7 +85,7 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
 @compiled
 def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
-    Set the polynomials from which `speed_excess` computes the squared sliding speed minus `target`; h: step length, s.
+    Set polynomials for `speed_excess`: squared sliding speed minus `target`, m^2/s^2; h: length of the step, s.
 
     The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
     the stages would miss a small speed in a step whose speed becomes large.
@@ -103,7 +103,7 @@ def expand_speed(work: Workspace, h: float, target: float) -> None:
 
 @compiled
 def expand_velocity(work: Workspace, h: float, axis: int) -> None:
-    """Set the coefficients of the platform's velocity, the integral of its acceleration, as a polynomial of theta."""
+    """Set work.powers[axis] to the coefficients, in theta, of the platform's velocity in the step of length h, s."""
     powers = work.powers[axis]
     set_coefficients(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
@@ -113,7 +113,7 @@ def expand_velocity(work: Workspace, h: float, axis: int) -> None:
 
 @compiled
 def speed_excess(work: Workspace, theta: float) -> float:
-    """Return the squared sliding speed at theta less the target of `expand_speed`, m^2/s^2."""
+    """Return the squared sliding speed at theta minus the target given to `expand_speed`, m^2/s^2."""
     powers = work.powers
     vx = vy = 0.0
     for k in range(STAGES, -1, -1):
@@ -124,7 +124,7 @@ def speed_excess(work: Workspace, theta: float) -> float:
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """Return a value at theta that is positive after an event; way: 1 if a rise is the event, -1 if a fall is."""
+    """Return the quantity at theta whose change to positive is the event; way: 1 if a rise through 0, -1 if a fall."""
     if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
@@ -132,7 +132,7 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """Return the first theta after `begin` at which `event_value` is positive; start: what it tests, at `begin`."""
+    """Return the first theta behind `begin` at which `event_value` > 0; start: its value at `begin`, over `way`."""
     # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
     # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
     # no more than the largest change from point to point. Then a golden-section search looks for a positive value
@@ -166,7 +166,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
 
 @compiled
 def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
-    """Return the share theta of the step, between low and high, at which `event_value` becomes positive."""
+    """Return theta, between low and high, at which `event_value` becomes positive, by regula falsi."""
     # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
     # halved. Where the values at the ends differ by orders of magnitude the secants creep; a bisection follows after
     # SECANTS_PER_HALVING secants that have not halved the interval. The end with the positive value is returned, so
@@ -198,9 +198,9 @@ def locate_crossing(system: System, work: Workspace, event: int, way: float, low
 @compiled
 def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
-    Mark the parts of the step in which the value of `event`, which is `start` at theta = 0, is at least zero.
+    Set work.edges to start and end, in theta, of each part of the step in which the tested quantity is >= 0.
 
-    With `way` = -1, those in which it is not above zero. Return their number; their ends, in theta, are in work.edges.
+    With `way` = -1: in which it is <= 0. Return the number of parts. start: the quantity of `event` at theta = 0.
     """
     parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:

@@ -1,4 +1,4 @@
-"""Ground acceleration in compiled code, (5.3) or a record; both as in reference.problem.excitation."""
+"""Ground acceleration for compiled code: two harmonics (5.3) or a record, as in reference.problem.excitation."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from reference.solver.rows import broadcast_like, put, row
 from reference.solver.system import Array, Ground, System
 from reference.solver.work import SERIES_TERMS, Workspace
 
-MAX_SERIES_ANGLE = 2.0  # rad, largest turn and decay of a harmonic in a step at which its Taylor series is accurate
-SERIES_ROUNDING = 1e-17  # share of the harmonic: the Taylor series ends at a term of this size
+MAX_SERIES_ANGLE = 2.0  # largest phase change, rad, and decay of a harmonic in a step for which a Taylor series is used
+SERIES_ROUNDING = 1e-17  # share of a harmonic: its Taylor series ends at the first term that is not larger
 
 
 @compiled
 def next_knot(record: Array, t: float) -> int:
-    """Return the index of the first knot of a record later than t; the number of knots if none is later."""
+    """Return the index of the first row of a table whose time, in column 0, is later than t; row count if none is."""
     low, high = 0, record.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -29,7 +29,7 @@ def next_knot(record: Array, t: float) -> int:
 
 @compiled
 def friction_temperature_factor_at(system: System, t: float) -> float:
-    """Return the temperature factor of friction, k_T, at time t: the polynomial of its piece, at last a constant."""
+    """Return k_T, the temperature factor of friction, at time t: piecewise polynomial, constant after the last one."""
     table = system.k_t
     if table.shape[0] == 0:
         return 1.0
@@ -42,7 +42,7 @@ def friction_temperature_factor_at(system: System, t: float) -> float:
 
 @compiled
 def record_acceleration_at(system: System, t: float) -> Ground:
-    """Return the ground acceleration of a record, linear between knots and zero after them, and k_T at time t."""
+    """Return a record's ground acceleration (linear between samples, zero after the last) and friction's k_T at t."""
     record, k_t = system.record, friction_temperature_factor_at(system, t)
     k = next_knot(record, t)
     if k == 0:
@@ -71,7 +71,7 @@ def ground_at(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_harmonics(system: System, work: Workspace, t: float) -> None:
-    """Set the harmonics of the ground at t, from which `set_ground_at_stages` and `next_ground` start."""
+    """Set work.waves, the ground's two harmonics at t, complex; set_ground_at_stages and next_ground start there."""
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
@@ -80,7 +80,7 @@ def set_harmonics(system: System, work: Workspace, t: float) -> None:
 
 @compiled
 def set_harmonic_step_factors(system: System, work: Workspace, h: float) -> None:
-    """Set the factors by which the harmonics of the ground turn and decay in a step of length h for `next_ground`."""
+    """Set work.turns: the complex factors by which both harmonics of the ground change in a time step h, s."""
     for m in range(2):
         e = system.exponents[m]
         angle, growth = e.imag * h, exp(e.real * h)
@@ -89,7 +89,7 @@ def set_harmonic_step_factors(system: System, work: Workspace, h: float) -> None
 
 @compiled
 def next_ground(system: System, work: Workspace, t: float) -> Ground:
-    """Return ground acceleration and k_T at t, which is the time of `set_harmonics`, or one step after the last t."""
+    """Return ground acceleration and k_T at t: the time given to set_harmonics, then one step later at every call."""
     if system.record.shape[0] > 0:
         return record_acceleration_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
@@ -104,7 +104,7 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_ground_at_stages(system: System, work: Workspace) -> None:
-    """Set ground acceleration and k_T at the stages, after `set_harmonics`, by Taylor series where these are exact."""
+    """Set ground acceleration and k_T at the stages of a step; `set_harmonics` must have been called for its start."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
@@ -130,7 +130,7 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
 
 @compiled
 def expand_harmonics(work: Workspace, e0: complex, e1: complex) -> int:
-    """Set the Taylor series of harmonics that change by exp(e0), exp(e1) in a step; return the number of terms."""
+    """Set work.series, the Taylor series of both harmonics in a step (factors exp(e0), exp(e1)); return its length."""
     series, z0, z1 = work.series, work.waves[0], work.waves[1]
     enough = SERIES_ROUNDING * SERIES_ROUNDING * min(squared_modulus(z0), squared_modulus(z1))
     for n in range(SERIES_TERMS):

@@ -21,33 +21,33 @@ from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System, dry_friction_of
 from reference.support.build_cache import cache_on_disk
 
-# Newton iterations to the instant at which the slider begins or stops covering the center of the concave surface
+# Number of Newton iterations that find when the slider begins or stops covering the center of the concave surface
 NEWTON_STEPS = 8
-# Ends of pieces of time after a kink of friction power, as shares of a step: temperature changes like a root of time
+# Where pieces of time end behind a kink of friction power, as shares of a step: graded for changes like a root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
-MIN_PIECE = 1e-10  # share of the duration that the shortest piece has
-# Distances in time, in lengths of the piece: beyond the first the kernel is integrated by quadrature at the nodes,
-# beyond the second by the moments of the heat, also for whole blocks of pieces in lengths of the block.
-FAR_DISTANCE = 4.0  # piece lengths, for quadrature
-BLOCK_DISTANCE = 30.0  # piece or block lengths, for moments
-MAX_LAST_CHANGE = 1e-14  # change of the temperature factor k_T that ends the iteration within a piece of time
-MAX_ITERATIONS = 50  # largest number of iterations within a piece of time
-NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
+MIN_PIECE = 1e-10  # length of the shortest piece of time, as share of the duration of the motion
+# Time since a piece of heating, in its lengths, beyond which its effect on the temperature is integrated by quadrature,
+# and beyond which by moments (sum, mean time, variance) of its heat. The latter holds for blocks of pieces as well.
+FAR_DISTANCE = 4.0  # piece lengths, beyond which quadrature is used
+BLOCK_DISTANCE = 30.0  # piece or block lengths, beyond which moments are used
+MAX_LAST_CHANGE = 1e-14  # change of the temperature factor k_T below which its iteration in a piece of time ends
+MAX_ITERATIONS = 50  # largest number of iterations for k_T in a piece of time
+NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the collocation nodes in a piece of time of length 1
 
 
 def set_initial_friction_factor(system: System) -> System:
-    """Return the system with the temperature factor of friction, k_T, constant at its initial value."""
+    """Return the system with k_T, the temperature factor of friction, constant: that of the initial temperature."""
     k_t = np.zeros((1, 3 + STAGES))
     k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])
     return system._replace(k_t=k_t)
 
 
 def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
-    """Return the system with the temperature factor of friction, k_T(t), from the heat of a run up to `end`, s."""
+    """Return the system with k_T(t), the temperature factor of friction, computed from a run's heat up to `end`, s."""
     # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or covers the
     # center of the concave surface: there k_T changes like a root of time. So pieces are graded behind these instants,
-    # and those of the jump are located by Newton's method. By the error of the integration k_T jumps from piece to
-    # piece, and a jump inside a step of the next run would cost its order. So each piece gets a multiple of
+    # and those of the jump are located by Newton's method. Integration errors make k_T jump between pieces, and a jump
+    # inside a step of the next run would reduce its order of accuracy. So each piece gets a multiple of
     # DEFECT_POLYNOMIAL, which is 0 at the nodes and 1 at the start: the table is continuous.
     start = record.start[: record.counts[0]]
     bounds = np.append(start, end)
@@ -85,18 +85,18 @@ def mean_factor(system: System) -> float:
 
 
 def _nodes_of_pieces(bounds: Array) -> Array:
-    """Return the instants of the S collocation nodes of all K pieces of time between `bounds`, (K S,), s."""
+    """Return the times, s, of the S collocation nodes in each of the K pieces between `bounds` (K + 1,): (K S,)."""
     return (bounds[:-1, None] + np.diff(bounds)[:, None] * NODES).ravel()
 
 
 def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
-    """Return the squared displacement minus the largest square at which the slider covers the center, (T,), m^2."""
+    """Return squared displacement minus that up to which the slider covers the concave surface's center, (T,), m^2."""
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
 
 def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
-    """Return the power of friction over m1 without its temperature factor k_T, (T,), m^2/s^3."""
+    """Return the power of friction over m1, (T,), m^2/s^3, at k_T = 1 (without the effect of temperature)."""
     x, v = motion.x[:, 0], motion.v[:, 0]
     squared_speed = (v**2).sum(axis=1)
     if not system.small:
@@ -108,7 +108,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
 
 @njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
-    """Return the integral over a piece of its heat, a polynomial in u, over sqrt(theta - u): its effect at theta."""
+    """Return the integral of q(u) / sqrt(theta - u) over a piece u = 0 to 1: how its heat q acts at a time theta."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
     moment = 2.0 * (np.sqrt(theta) - beyond)
     total = moment * coefficients[0]
@@ -120,7 +120,7 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
 
 @njit(**NUMBA_OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
-    """Return the integral over a piece of its heat over sqrt(theta - u), by quadrature, for theta far behind it."""
+    """Return the integral of q(u) / sqrt(theta - u) over a piece by quadrature, for a time theta long after it."""
     total = 0.0
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
@@ -138,7 +138,7 @@ def past_temperature(
     coefficients: Array,
     moments: Array,
 ) -> float:
-    """Return the temperature, degrees C, at a time within a piece of time, from the heat of all pieces before it."""
+    """Return the temperature, degrees C, at `time` in a piece of time, as far as heat of earlier pieces causes it."""
     # The temperature is a sum over all pieces before. For pieces long past, only sum, mean time and variance of the
     # heat of a block of pieces count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
     # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
@@ -166,7 +166,7 @@ def past_temperature(
 
 @njit(**NUMBA_OPTIONS)
 def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficients: Array, k_t: Array) -> None:
-    """Solve for the heat of a piece of time, its polynomial, and k_T, which depend on each other, by iteration."""
+    """Find by iteration, for one piece of time, its heat and k_T, the temperature factor; each depends on the other."""
     for _ in range(MAX_ITERATIONS):
         change = 0.0
         for k in range(STAGES):
@@ -184,7 +184,7 @@ def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficie
 
 @cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
-    """Set k_T at the nodes of pieces (K, S). `power` is the power at k_T = 1, times the rise of the temperature."""
+    """Set k_T, friction's temperature factor, at the S nodes of K pieces; power: at k_T = 1, times temperature rise."""
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))
@@ -205,7 +205,7 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
 
 @njit(**NUMBA_OPTIONS)
 def describe_block(start: float, length: float, heat: Array, moments: Array) -> None:
-    """Set total heat, mean time and variance in time of the heat of one piece."""
+    """Set `moments` of one piece of time to its total heat, and the mean and the variance of the time of this heat."""
     total, center, variance = 0.0, 0.0, 0.0  # loops: whole arrays would take three times as long to compile
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * heat[k]
@@ -218,7 +218,7 @@ def describe_block(start: float, length: float, heat: Array, moments: Array) -> 
 
 @njit(**NUMBA_OPTIONS)
 def join_blocks(a: Array, b: Array, both: Array) -> None:
-    """Set total heat, mean time and variance in time of the heat of two blocks together."""
+    """Set `both` to the moments (total heat, its mean time, variance of its time) of the blocks a and b together."""
     heat = a[0] + b[0]
     if heat > 0.0:
         center = (a[0] * a[1] + b[0] * b[1]) / heat

@@ -15,33 +15,33 @@ from reference.solver.compiled import compiled
 from reference.solver.rows import put, row, row_maximum
 from reference.solver.system import Array
 
-MOST_BLOCKS = 2  # a system has at most so many blocks: the platform's accelerations along x and y
-MIN_PIVOT = 0.1  # share of the largest entry below a pivot: for a smaller pivot rows are exchanged
-_PLACES = np.arange(MOST_BLOCKS * STAGES)  # places of the rows and columns of a matrix
+MOST_BLOCKS = 2  # largest number of blocks of equations: one for the platform's acceleration along x, one along y
+MIN_PIVOT = 0.1  # rows are exchanged if a pivot is smaller than this share of the largest entry below it
+_PLACES = np.arange(MOST_BLOCKS * STAGES)  # row and column numbers of the largest matrix
 
 
 def _ones_where(chosen: NDArray[np.bool_]) -> Array:
-    """Return 1 in the chosen places of every column, 0 elsewhere: (n, blocks, ROW_LENGTH)."""
+    """Return a mask (n, blocks, ROW_LENGTH) of the columns of a matrix: 1 where `chosen` (n, n) is True, else 0."""
     ones = np.zeros((len(_PLACES), MOST_BLOCKS, ROW_LENGTH))
     ones[:, :, :STAGES] = chosen.reshape(-1, MOST_BLOCKS, STAGES)
     return ones
 
 
-# Masks of every column: its places above the diagonal, on it and below it
+# Masks for the columns of a matrix: 1 above the diagonal, on it or below it, and 0 elsewhere
 ABOVE_DIAGONAL = _ones_where(_PLACES[:, None] > _PLACES)
-IDENTITY = _ones_where(_PLACES[:, None] == _PLACES)  # places on the diagonal
-BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)  # places below the diagonal
+IDENTITY = _ones_where(_PLACES[:, None] == _PLACES)  # 1 on the diagonal
+BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)  # 1 below the diagonal
 
 
 @compiled
 def factorize(columns: Array, pivots: Array) -> bool:
-    """Overwrite a matrix (n, blocks, ROW_LENGTH) by its factors; return False if it is singular or not finite."""
+    """Overwrite a matrix (n, blocks, ROW_LENGTH) by its LU factors; return False if it is singular or not finite."""
     return factorize_blocks(columns, pivots, 1) if pivots.shape[0] == STAGES else factorize_blocks(columns, pivots, 2)
 
 
 @compiled
 def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
-    """Overwrite a matrix of this number of blocks by its factors; return False if it is singular or not finite."""
+    """Overwrite a matrix with 1 or 2 `blocks` by its LU factors; return False if it is singular or not finite."""
     # Right-looking LU by columns (Golub and Van Loan, Matrix Computations, 3.2): a column lies in one or two rows of
     # rows.py, so an elimination takes one multiplication and one subtraction for all its entries at once. Masks leave
     # the entries above and on the diagonal alone. The diagonal keeps the inverse pivots. Rows are exchanged only where
@@ -78,7 +78,7 @@ def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
 
 @compiled
 def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> float:
-    """Return the largest size of the entries of column i below the diagonal; `block`: the one with the diagonal."""
+    """Return the largest absolute entry of column i below the diagonal; block: the one with the diagonal entry."""
     sizes = abs(row(columns, (i, block))) * row(BELOW_DIAGONAL, (i, block))
     if block + 1 < blocks:
         sizes = max(sizes, abs(row(columns, (i, block + 1))))
@@ -88,7 +88,7 @@ def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> f
 
 @compiled
 def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
-    """Return where a column's largest entry is, from row `first` of a block on: ROW_LENGTH times block, plus row."""
+    """Return the place (ROW_LENGTH * block + row) of a column's largest entry, from row `first` of `block` on."""
     best, place = 0.0, block * ROW_LENGTH + first
     for b in range(block, blocks):
         for k in range(first if b == block else 0, STAGES):
@@ -99,14 +99,14 @@ def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
 
 @compiled
 def exchange(column: Array, block: int, k: int, place: int) -> None:
-    """Exchange two entries of a column (blocks, ROW_LENGTH): entry k of a block, and the one at `place`."""
+    """Exchange entry k of `block` in a column with that at place = ROW_LENGTH * (its block) + (its row)."""
     other, m = place // ROW_LENGTH, place % ROW_LENGTH
     column[block, k], column[other, m] = column[other, m], column[block, k]
 
 
 @compiled
 def solve(factors: Array, pivots: Array, rhs: Array) -> None:
-    """Overwrite the right side (blocks, ROW_LENGTH) by the solution, with the factors of `factorize`."""
+    """Solve linear equations by the LU factors of `factorize`: overwrite the right side, `rhs`, by the solution."""
     if pivots.shape[0] == STAGES:
         solve_blocks(factors, pivots, rhs, 1)
     else:
@@ -115,7 +115,7 @@ def solve(factors: Array, pivots: Array, rhs: Array) -> None:
 
 @compiled
 def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None:
-    """Overwrite the right side of a system with this number of blocks by the solution."""
+    """Solve linear equations with 1 or 2 `blocks` by LU factors: overwrite the right side, `rhs`, by the solution."""
     for block in range(blocks):
         for k in range(STAGES):
             place = int(pivots[block * STAGES + k])
@@ -139,14 +139,14 @@ def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None
 
 @compiled
 def subtract_column(factors: Array, part: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
-    """Subtract a known number times a part of column j from blocks of the right side."""
+    """Subtract `known` times the entries of column j that mask `part` selects from blocks of the right side, `rhs`."""
     for b in range(first, end):
         put(rhs, b, row(rhs, b) - known * (row(part, (j, b)) * row(factors, (j, b))))
 
 
 @compiled
 def factorize_all(matrix: Array, pivots: Array) -> bool:
-    """Overwrite a square matrix by its factors, with row pivoting; return False if it is singular or not finite."""
+    """Overwrite any square matrix by its LU factors, with row pivoting; return False if singular or not finite."""
     n = matrix.shape[0]
     for i in range(n):
         place = i
@@ -171,7 +171,7 @@ def factorize_all(matrix: Array, pivots: Array) -> bool:
 
 @compiled
 def solve_all(factors: Array, pivots: Array, right: Array) -> None:
-    """Overwrite the right side by the solution, with the factors of `factorize_all`."""
+    """Solve linear equations by the LU factors of `factorize_all`: overwrite the right side by the solution."""
     n = factors.shape[0]
     for i in range(n):
         place = int(pivots[i])

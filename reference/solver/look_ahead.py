@@ -1,5 +1,5 @@
 """
-Look ahead from a state: a rough run from there to the end, for a small part of the cost of an accurate one.
+Looking ahead: a cheap, rough run from the present state to the end shows whether a larger peak can still follow.
 
 Its constant steps are of second order: positions move by half a step, forces change the velocities, positions move by
 the other half (Strang's splitting). Friction acts at the end of the step, so a platform whose velocity it can remove
@@ -38,25 +38,25 @@ from reference.solver.system import (
 )
 from reference.solver.work import Workspace
 
-STEPS_PER_PERIOD = 25.0  # number of steps of a rough run per RunSettings.period
-# Largest number of steps of a rough run per accurate step so far, which costs about as much as 50 of them
+STEPS_PER_PERIOD = 25.0  # number of steps of a rough run per RunSettings.period, the time in which forces change
+# Largest number of rough steps that looking ahead may take, per accurate step so far: 50 cost about as much as one
 MAX_STEPS_PER_STEP = 50.0
-MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the chain's fastest vibration in one step
-# If a rough run stays below this share of the largest value so far, the accurate run has no larger value
+MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the upper bodies' fastest vibration in one rough step
+# If a rough run stays below this share of the largest acceleration so far, the accurate run is taken to stay below it
 LARGE_FRACTION = 0.85
-# Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox: below it a rough run proves
-# nothing, so that the accurate run goes on
+# Relative distance from the rim, the end of the travel, liftoff or Painleve's paradox below which a rough run is no
+# evidence, so that the accurate run goes on
 MIN_DISTANCE_TO_SINGULARITY = 0.1
-MAX_SLOW_STEPS = 2.0  # a slide is near its stop if friction would stop it in fewer steps
-DIRECTION_MARGIN = 0.35  # rad, uncertainty of the direction of a slide near its stop
-MIN_SURE_DRIVE = 0.5  # smallest drive, over the friction limit, whose direction at a stop is sure in a rough run
-MAX_HELD_DRIVE = 0.8  # largest squared drive, over the squared friction limit, at which a platform at rest surely stays
-LOOK_AHEAD_DELAY = 0.25  # time from the last large value until the run looks ahead, over RunSettings.period
+MAX_SLOW_STEPS = 2.0  # a slide counts as near its stop if friction would stop it within this number of rough steps
+DIRECTION_MARGIN = 0.35  # rad, uncertainty of a slide's direction near its stop in a rough run
+MIN_SURE_DRIVE = 0.5  # smallest ratio of drive to friction limit at which a rough run knows the drive's direction
+MAX_HELD_DRIVE = 0.8  # largest ratio of squared drive to squared friction limit at which friction surely holds
+LOOK_AHEAD_DELAY = 0.25  # share of RunSettings.period from the last large acceleration until a rough run is made
 
 
 @compiled
 def end_run_early(system: System, work: Workspace, settings: RunSettings) -> None:
-    """End the run if a rough run ahead shows that no larger peak can follow; set the time of the next such look."""
+    """End the run if a rough run to its end shows that no larger peak follows; else set when to try this again."""
     # The run looks ahead a quarter of a period after its last large value, and only if the rough run takes at most
     # fifty times as many steps as the accurate ones so far: then both cost about the same. If the rough run finds a
     # large value, the next look follows that one, so that all rough runs together cover the motion at most once. The
@@ -84,7 +84,7 @@ def rough_step_length(system: System, settings: RunSettings) -> float:
 
 @compiled
 def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
-    """Return when, s, rough steps of length h, s, from the present state meet a large value; infinity for never."""
+    """Return the time, s, at which a rough run with steps h, s, meets a large acceleration or displacement, or inf."""
     bodies = work.x.shape[0]
     for i in range(bodies):  # x1, v1 keep the state here, as the next accurate step sets them anew
         for axis in range(2):
@@ -112,7 +112,7 @@ def make_rough_step(system: System, work: Workspace, time: float, h: float) -> b
     ax, ay = (work.v[0, 0] - vx) / h, (work.v[0, 1] - vy) / h
     vertical = ground.z + vertical_acceleration(system, work.x[0, 0], work.x[0, 1], vx, vy, ax, ay)
     level = LARGE_FRACTION * LARGE_FRACTION
-    # NaN is not small, so a run that overflows counts as large.
+    # A comparison with NaN is False, so an overflow counts as a large acceleration.
     small = not far and largest * largest + vertical * vertical < level * work.best[0]
     for i in range(1, work.x.shape[0]):
         tx, ty = work.a0[i, 0] + ground.x, work.a0[i, 1] + ground.y
@@ -125,7 +125,7 @@ def make_rough_step(system: System, work: Workspace, time: float, h: float) -> b
 
 @compiled
 def move_at_velocity(work: Workspace, h: float) -> None:
-    """Move every body with its velocity for a time h."""
+    """Move every body by its velocity times h, s."""
     for i in range(work.x.shape[0]):
         for axis in range(2):
             work.x[i, axis] += h * work.v[i, axis]
@@ -134,7 +134,7 @@ def move_at_velocity(work: Workspace, h: float) -> None:
 @compiled
 def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
     """
-    Change the platform's velocity by one rough step of length h, s.
+    Update the platform's velocity, work.v[0], by the forces of one rough step of length h, s.
 
     Return a bound on its horizontal absolute acceleration, m/s^2, and True if it may come near its largest
     displacement, the rim, the end of the travel, liftoff or Painleve's paradox.
@@ -190,7 +190,7 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
 def bound_held_acceleration(
     system: System, load: Load, ground: Ground, excess: float, reaction: float
 ) -> tuple[bool, float]:
-    """Return True if the drive of a platform at rest is near the friction limit; and a bound on its acceleration."""
+    """Return, for a platform at rest, True if it may slip, and an upper bound on its absolute acceleration, m/s^2."""
     largest = sqrt(ground.x * ground.x + ground.y * ground.y)
     limit = static_limit(system, load.k_t, reaction)
     nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -202,7 +202,7 @@ def bound_held_acceleration(
 
 @compiled
 def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) -> tuple[float, float]:
-    """Return the slip vector (friction over normal force) at the velocity before a rough step; zero from rest."""
+    """Return the slip vector (friction over normal force) at the start of a rough step; zero at rest."""
     if squared_speed == 0.0:
         return 0.0, 0.0
     contact = SLIDING
@@ -217,7 +217,7 @@ def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) ->
 @compiled
 def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground, friction: float) -> float:
     """
-    Return the largest absolute acceleration on the way from the velocity v into a stop under the drive g, m/s^2.
+    Return a bound on the absolute acceleration, m/s^2, of a slide with velocity v under the drive g, until it stops.
 
     The direction of the slide turns from that of v to that of g (stop_arc.py), and friction, m/s^2, with it.
     """

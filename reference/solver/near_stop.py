@@ -44,18 +44,18 @@ from reference.solver.work import (
     Workspace,
 )
 
-MAX_ITERATIONS = 40  # iterations of Newton's method after which a step counts as unsolved
-SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which Newton's derivatives are computed again
-ROUNDING_ANGLE = 1e-13  # rad, change of the angles that rounding alone makes
-DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, which needs only a few digits
-SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by the logarithm of the speed
-MAX_GUESSED_TURN = 0.5  # rad, largest turn in the first guess: a slide turns towards the force, and never beyond it
-MAX_CHANGE = 1e3  # a larger change of the angle, rad, or of the logarithm of the speed ends the iteration
+MAX_ITERATIONS = 40  # number of Newton iterations after which a step near a stop counts as unsolved
+SLOW_CONVERGENCE = 0.01  # ratio of successive Newton corrections above which the derivatives are computed again
+ROUNDING_ANGLE = 1e-13  # rad, change of slip directions by rounding alone: a change this small ends the iteration
+DIRECTION_DIFFERENCE = 1e-6  # rad, change of slip direction in difference quotients, which need only a few digits
+SPEED_DIFFERENCE = 1e-6  # relative change of speed in difference quotients of accelerations with respect to ln S
+MAX_GUESSED_TURN = 0.5  # rad, largest guessed turn of slip direction: a slide turns towards the force, not beyond it
+MAX_CHANGE = 1e3  # a step is unsolved if slip directions, rad, or ln S change by more than this in one iteration
 
 
 @compiled
 def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
-    """Solve a step of length h in stretched time (see above) to `tolerance`, rad, of its angles; return its outcome."""
+    """Solve a step h in stretched time (dt = speed dtau), slip directions to `tolerance`, rad; return its outcome."""
     # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
     # (`set_motion_at_stages`). These give ground, springs and dampers (`set_drive_at_stages`): a fixed-point iteration
     # for the chain, which converges as the chain hardly moves in it. The forces give the platform's acceleration along
@@ -90,7 +90,7 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
 
 @compiled
 def guess_near_stop(system: System, work: Workspace, h: float) -> None:
-    """Set the first guess of directions, speeds and the chain's accelerations from those at the start of the step."""
+    """Set the first guess of slip directions, speeds and accelerations at the stages from those at the step's start."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
@@ -105,7 +105,7 @@ def guess_near_stop(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
-    """Set speed, time, velocities and positions at the stages of a step near a stop, by integration."""
+    """Set speed, time, velocities and positions at the stages near a stop from slip directions and log speeds there."""
     x, v, a, turning = work.x, work.v, work.a, work.turning
     for k in range(STAGES):
         turning[COSINE, k], turning[SINE, k] = slip_direction_cosines(turning[DIRECTION, k], system.axes)
@@ -126,7 +126,7 @@ def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
-    """Set ground, chain and drive at the stages; return the largest correction of the chain's velocity, m/s."""
+    """Set ground, upper bodies, drive at the stages; return the largest change of an upper body's velocity, m/s."""
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0
@@ -163,7 +163,7 @@ def is_inside_rim(system: System, work: Workspace) -> bool:
 
 @compiled
 def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
-    """Set the platform's acceleration at the stages along and across its direction; if `fresh`, also derivatives."""
+    """Set the platform's acceleration along and across its slip direction at stages; if `fresh`, also derivatives."""
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
     ax, ay, reaction, ratio = acceleration_along(system, load, speed, ex, ey)
@@ -188,7 +188,7 @@ def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
 
 @compiled
 def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> float:
-    """Correct directions and speeds by Newton's method; fresh: renew its matrix; return the largest change."""
+    """Correct slip directions and log speeds by a Newton iteration; return the largest change. fresh: renew matrix."""
     # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, linearized by the
     # derivative of the sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from
     # the corrected directions, since constant friction hardly depends on the speed. Where friction depends on the
@@ -219,7 +219,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
 
 @compiled
 def correct_log_speeds(work: Workspace, h: float) -> bool:
-    """Correct the logarithms of the sliding speed at the stages by one Newton step; return False if it is singular."""
+    """Correct the log speeds at the stages by one Newton iteration; return False if its matrix is singular."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     turn = row(residual, 0)

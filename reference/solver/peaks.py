@@ -1,4 +1,4 @@
-"""Running maxima over the steps: |absolute acceleration|^2 of every body (5.1), the platform's displacement."""
+"""Largest squared absolute acceleration of every body (5.1), and displacement of the platform, updated in each step."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from reference.solver.rows import broadcast_like, put, row, row_maximum, row_min
 from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, YIELDING, System
 from reference.solver.work import SQUARED_SPEED, Workspace
 
-# In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
-# exceeds the higher one by less than this share of the squared acceleration.
+# A peak of the squared acceleration between two stages exceeds the larger value at them by less than this share, since
+# steps that meet their tolerance resolve every vibration well.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_PATH_FACTOR = 1.5  # largest path in a step, over its duration times the larger of the speeds at its ends
-NEWTON_ITERATIONS = 6  # iterations of Newton's method from the best of SEARCH_POINTS to a maximum
-IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # components of a vector; integers of NumPy, see system.py
-# SEARCH_POINTS in rows of ROW_LENGTH; the last row repeats the first points
+MAX_PATH_FACTOR = 1.5  # a step's path is at most this factor times its duration times the larger end speed
+NEWTON_ITERATIONS = 6  # number of Newton iterations from the best of SEARCH_POINTS to a maximum
+IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components x, y or x, y, z; NumPy integers: see system.py
+# SEARCH_POINTS as an array of rows of ROW_LENGTH numbers; the first points fill up the last row
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
-MAX_RATE = 60.0  # largest rate times step length that counts: a faster response of friction adds nothing to the error
-SETTLED_FRACTION = 0.9  # an acceleration, or displacement, below this share of the largest so far is not near it
+MAX_RATE = 60.0  # largest response rate of friction, 1/s, times step length, s, that counts: faster ones add no error
+SETTLED_FRACTION = 0.9  # share of the largest acceleration or displacement so far from which one counts as near it
 
 
 @compiled
 def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[float, float, float]:
-    """Return the sum of squares of the first `components` polynomials in `powers` at theta, and two derivatives."""
+    """Return sum of squares of the first `components` polynomials in work.powers at theta, and its two derivatives."""
     value = slope = curvature = 0.0
     for n in range(components):
         p = dp = ddp = 0.0
@@ -51,7 +51,7 @@ def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[floa
 
 @compiled
 def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
-    """Return the largest sum of squares of the first `components` polynomials in `powers` on [low, high], and where."""
+    """Return the largest sum of squares of `components` polynomials in work.powers on [low, high], and its theta."""
     # SEARCH_POINTS are twice as many as the stages, so the best point is next to the largest maximum of a step that
     # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
     # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
@@ -86,7 +86,7 @@ def largest_square(work: Workspace, components: int, low: float, high: float) ->
 
 @compiled
 def velocity_defect(work: Workspace, body: int, axis: int) -> float:
-    """Return the misfit of the polynomial through a body's stage velocities at a step's start, over the step length."""
+    """Return the error, over the step length, of a body's velocity extrapolated from the stages to the step's start."""
     missed = 0.0
     for k in range(STAGES):
         missed += VELOCITY_AT_START[k] * work.a[body, axis, k]
@@ -95,7 +95,7 @@ def velocity_defect(work: Workspace, body: int, axis: int) -> float:
 
 @compiled
 def link_error_rate(system: System, work: Workspace, h: float, body: int) -> float:
-    """Return the rate, m/s^3, at which velocity errors at a step's start change a body's acceleration by its links."""
+    """Return the rate, m/s^3, at which velocity errors in a step change a body's acceleration through its springs."""
     squared, last = 0.0, work.x.shape[0] - 1
     for axis in range(2):
         own = velocity_defect(work, body, axis)
@@ -112,7 +112,7 @@ def link_error_rate(system: System, work: Workspace, h: float, body: int) -> flo
 
 @compiled
 def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
-    """Return the rate, 1/s, by which friction turns an error of the platform's velocity into one of acceleration."""
+    """Return how large an error of the acceleration friction makes per error of the platform's velocity, 1/s."""
     if contact == REST:
         return 0.0
     if contact != SLIDING:
@@ -122,7 +122,7 @@ def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
 
 @compiled
 def interpolation_error(system: System, work: Workspace, contact: int, h: float, body: int, theta: float) -> float:
-    """Return the error of a body's acceleration at theta of the step just solved, m/s^2."""
+    """Return the estimated error, m/s^2, of a body's interpolated acceleration at theta of the step just solved."""
     # The error has three parts (docs/decisions/0002-two-run-error.md). (1) The polynomial through the stages misses the
     # acceleration between them: DEFECT_POLYNOMIAL, which is 1 at the start of the step and 0 at the stages, times the
     # defect. At the stages this part vanishes, but positions and velocities there are integrals of a polynomial with
@@ -144,7 +144,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise the largest squared accelerations, work.best, by a part of the step; return True if any is near them."""
+    """Raise work.best, the largest squared accelerations, to those in part of the step; return True if any is near."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
@@ -163,7 +163,7 @@ def update_peaks(system: System, work: Workspace, contact: int, h: float, low: f
 
 @compiled
 def update_peak_by_limit(work: Workspace, body: int, squared: float) -> None:
-    """Raise a body's largest squared acceleration to a one-sided limit, which has no error of interpolation."""
+    """Raise a body's largest squared acceleration to a one-sided limit at a stop or onset: no interpolation error."""
     if squared >= SETTLED_FRACTION**2 * work.best[body]:
         work.last_peak = work.last_large = work.time
     if squared > work.best[body]:
@@ -174,7 +174,7 @@ def update_peak_by_limit(work: Workspace, body: int, squared: float) -> None:
 @compiled
 def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
     """
-    Raise work.squared_reach to the largest |x|^2 of the platform in the step just solved.
+    Raise work.squared_reach, m^2, to the largest squared displacement of the platform in the step just solved.
 
     It is read from the polynomial of the acceleration through the stages. In stretched time near a stop, where h is no
     length of time and the remaining distance is short, the stages are read. Return True if the displacement is near the
@@ -200,7 +200,7 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
 
 @compiled
 def expand_position(work: Workspace, h: float, axis: int) -> None:
-    """Set the coefficients of the platform's position, the second integral of its acceleration, over theta."""
+    """Set work.powers[axis] to the coefficients, in theta, of the platform's position in the step of length h, s."""
     powers = work.powers[axis]
     set_coefficients(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):

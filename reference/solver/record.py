@@ -1,4 +1,4 @@
-"""Recording of the steps of a motion, for samples of it (samples.py)."""
+"""Storing of a motion's time steps in a StepRecord, from which samples.py computes the motion at any instant."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reference.solver.work import CLOCK, REACTION, Workspace
 
 @compiled
 def record_step(work: Workspace, record: StepRecord, h: float, contact: int) -> None:
-    """Record the step just solved, before it is committed, if there is room; count it in any case."""
+    """Store the step just solved, before its end becomes the new state, if `record` has room; count it in any case."""
     n = record.counts[0]
     record.counts[0] += 1
     if n >= record.start.shape[0]:
@@ -34,7 +34,7 @@ def record_step(work: Workspace, record: StepRecord, h: float, contact: int) -> 
 
 @compiled
 def record_stick(record: StepRecord, start: float, end: float) -> None:
-    """Record one interval of rest, if the motion lasts until it begins; join intervals that touch."""
+    """Store an interval of rest, creep or elastic contact, s; ignore an empty one, and join intervals that touch."""
     if end <= start:
         return
     n = record.counts[1]

@@ -1,5 +1,5 @@
 """
-Eight numbers as one value of compiled code, a row: the processor computes with all of them at once.
+Rows: values of compiled code that hold eight numbers each, with which the processor computes at once.
 
 A row has one number for each stage of a step, and one without a meaning; or the real and the imaginary parts of a
 step's channels (collocation.py). The last axis of the arrays in `Workspace` has room for it.
@@ -30,69 +30,69 @@ from numpy.typing import NDArray
 from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
 
-Row: TypeAlias = Any  # a row, which exists in compiled code alone
+Row: TypeAlias = Any  # type hint of a row, a value that exists only in compiled code
 Number: TypeAlias = Any  # a float, or a row of floats
 
-_VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)  # LLVM's type of a row
-_ALIGNMENT = 8  # bytes, the alignment that numpy's arrays guarantee
-Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # a function that numba asks for the code of a call
+_VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)  # type of a row in the machine code: a vector of doubles
+_ALIGNMENT = 8  # bytes: the address of a row in an array is a multiple of it, and of nothing larger for certain
+Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # type hint of a function that generates a call's machine code
 
 
 class _RowType(types.Type):  # type: ignore[misc]
-    """Numba's type of a row."""
+    """Type of a row for the compiler numba."""
 
     def __init__(self) -> None:
-        """Give the type its name."""
+        """Set the name of the type."""
         super().__init__(name="Row")
 
 
 @register_model(_RowType)
 class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
-    """Type of a row in LLVM."""
+    """Model that tells numba how a row is stored: as a vector of machine code."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
-        """Set LLVM's type of a row."""
+        """Set the machine code's type of a row."""
         super().__init__(manager, kind, _VECTOR)
 
 
-_ROW = _RowType()  # numba's type of every row
+_ROW = _RowType()  # the one type, for the compiler numba, that all rows have
 
 
 def _index(k: int) -> Any:
-    """Return LLVM's constant for the place k in a row."""
+    """Return place k of a row as a constant of machine code."""
     return ir.IntType(32)(k)
 
 
 def _shuffle(builder: Any, values: Any, places: list[int]) -> Any:
-    """Write code for a row of the numbers at these places of another row."""
+    """Generate machine code for a new row with the numbers at `places` of another row."""
     return builder.shuffle_vector(values, values, ir.Constant(ir.VectorType(ir.IntType(32), ROW_LENGTH), places))
 
 
 def _broadcast(builder: Any, number: Any) -> Any:
-    """Write code for a row with the same number in all places."""
+    """Generate machine code for a row that has the same number in all places."""
     first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, _index(0))
     return _shuffle(builder, first, [0] * ROW_LENGTH)
 
 
 def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
-    """Write code that makes a row of every number that is not one yet."""
+    """Generate machine code that makes rows of those operands that are floats."""
     return [number if kind == _ROW else _broadcast(builder, number) for number, kind in zip(numbers, kinds)]
 
 
 def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) -> None:
-    """Define an operation of two rows, or of a row and a float, whose result is a row."""
+    """Teach numba an operation on two rows, or a row and a float; its result is a row. `instruction` makes its code."""
 
     def typer(context: Any) -> Callable[..., Any]:
-        """Return the function that tells numba the type of the result."""
+        """Return the function that tells numba the type of the operation's result."""
 
         def kind(left: Any, right: Any) -> Any:
-            """Return the type of the result for two operands; None if they are no row with a row or a float."""
+            """Return the type of a row if the operands are two rows, or a row and a float; else None."""
             return _ROW if _ROW in (left, right) and {left, right} <= {_ROW, types.float64} else None
 
         return kind
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
-        """Write machine code that applies an LLVM instruction to two operands, element by element of their rows."""
+        """Generate machine code that applies the instruction to two operands, number by number of their rows."""
         return instruction(builder, *_broadcast_to_rows(builder, numbers, signature.args))
 
     type_callable(operation)(typer)
@@ -101,16 +101,16 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
 
 
 def _define_single(operation: Any, lower_call: Lower) -> None:
-    """Define a function of one row whose result is a row."""
+    """Teach numba a function of one row whose result is a row; lower_call generates its machine code."""
     type_callable(operation)(lambda context: lambda number: _ROW if number == _ROW else None)
     lower_builtin(operation, _ROW)(lower_call)
 
 
 def _lower_by_instruction(name: str) -> Lower:
-    """Return code that calls one instruction of LLVM for a whole row."""
+    """Return a generator of machine code that calls the named instruction for a whole row."""
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
-        """Write the LLVM call of the instruction, and return its result."""
+        """Generate the call of the instruction, and return its result."""
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
 
@@ -118,12 +118,12 @@ def _lower_by_instruction(name: str) -> Lower:
 
 
 def _lower_one_by_one(operation: Any) -> Lower:
-    """Return code that applies a function to the number at every stage; the last place of the row becomes 0."""
+    """Return a generator of machine code that applies a function to each stage's number; the last place becomes 0."""
     # exp, expm1 and log are functions of the C library for one float: called for each number, they give the same bits
     # as at an instant.
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
-        """Write code that calls the function for every number of a row."""
+        """Generate machine code that calls the function for every number of a row."""
         function = context.get_function(operation, types.float64(types.float64))
         results = ir.Constant(_VECTOR, [0.0] * ROW_LENGTH)
         for place in map(_index, range(STAGES)):
@@ -135,10 +135,10 @@ def _lower_one_by_one(operation: Any) -> Lower:
 
 
 def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
-    """Return code that selects the smaller or larger numbers of two rows, by a relation of LLVM."""
+    """Return a generator of machine code that selects the smaller ("<") or larger (">") numbers of two rows."""
 
     def lower_call(builder: Any, left: Any, right: Any) -> Any:
-        """Write code that selects from each pair of numbers of two rows."""
+        """Generate machine code that selects one number from each pair of numbers of two rows."""
         return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
 
     return lower_call
@@ -169,12 +169,12 @@ def _type_getitem(context: Any) -> Callable[..., Any]:
 
 @lower_builtin(operator.getitem, _ROW, types.Integer)
 def _lower_getitem(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Write code that reads one number of a row."""
+    """Generate machine code for row[k], which reads one number of a row."""
     return builder.extract_element(*arguments)
 
 
 def _address(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
-    """Write code for the address of the row at a place of an array: an index, or a tuple of them."""
+    """Generate machine code for the address of the row at a place (an index, or a tuple of them) of an array."""
     array = context.make_array(kinds[0])(context, builder, arguments[0])
     several = isinstance(kinds[1], types.BaseTuple)
     place = cgutils.unpack_tuple(builder, arguments[1]) if several else [arguments[1]]
@@ -188,10 +188,10 @@ def _address(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
 
 @intrinsic
 def row(context: Any, array: Any, place: Any) -> Any:
-    """Return the row at a place of an array: an index, or a tuple of them, for all axes but the last."""
+    """Return the row that an array holds at `place`: an index, or a tuple of them, for all axes but the last."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        """Write code that reads a row from an array."""
+        """Generate machine code that reads a row from an array."""
         return builder.load(_address(context, builder, signature.args, arguments), align=_ALIGNMENT)
 
     return _ROW(array, place), lower_call
@@ -199,10 +199,10 @@ def row(context: Any, array: Any, place: Any) -> Any:
 
 @intrinsic
 def put(context: Any, array: Any, place: Any, values: Any) -> Any:
-    """Write a row, or a float in all places of it, to a place of an array."""
+    """Write a row, or a float eight times, into an array at `place`: an index, or a tuple of them."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        """Write code that stores a row in an array."""
+        """Generate machine code that stores a row in an array."""
         (written,) = _broadcast_to_rows(builder, arguments[2:], signature.args[2:])
         builder.store(written, _address(context, builder, signature.args, arguments), align=_ALIGNMENT)
         return context.get_dummy_value()
@@ -212,10 +212,10 @@ def put(context: Any, array: Any, place: Any, values: Any) -> Any:
 
 @intrinsic
 def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
-    """Return a float unchanged, or a row with it in all places if `pattern` is a row."""
+    """Return a row that has the float `number` in all places if `pattern` is a row; else the float itself."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        """Write code that makes a row of a float where a row is asked for."""
+        """Generate machine code that makes a row of a float if the result must be a row."""
         return _broadcast(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
 
     return pattern(types.float64, pattern), lower_call
@@ -223,10 +223,10 @@ def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
 
 @intrinsic
 def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> Any:
-    """Return one value where the number is above zero, the other elsewhere; all three rows, or all floats."""
+    """Return `positive` where `number` > 0, else `otherwise`; all three are rows (place by place), or all floats."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        """Write code that selects by the sign of each number."""
+        """Generate machine code that selects by the sign of each number."""
         zero = ir.Constant(arguments[0].type, [0.0] * ROW_LENGTH if signature.return_type == _ROW else 0.0)
         return builder.select(builder.fcmp_ordered(">", arguments[0], zero), *arguments[1:])
 
@@ -234,16 +234,16 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
 
 
 def _reduce_by(relation: str) -> Callable[..., Any]:
-    """Return a function that finds the largest or smallest number of a row's stages, and returns a float unchanged."""
+    """Return a function, for `intrinsic`, that finds a row's largest or smallest stage number; of a float: itself."""
     # Three comparisons of a row with a rearranged copy of itself leave the extreme number in the first place. The last
     # place of a row has no meaning: the last stage is compared in its stead. Where a number is NaN, any of the numbers
     # may be returned: an ordered comparison with NaN is false.
 
     def reduce(context: Any, values: Any) -> Any:
-        """Return the signature of the function, and the writer of its code, as numba asks for them."""
+        """Return the function's signature, and the generator of its machine code, as numba demands it."""
 
         def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            """Write code that halves a row three times, down to its largest or smallest number."""
+            """Generate machine code that compares halves of a row three times, down to its extreme number."""
             if signature.args[0] != _ROW:
                 return arguments[0]
             best, width = arguments[0], ROW_LENGTH
@@ -265,10 +265,10 @@ row_maximum = intrinsic(_reduce_by(">"))  # largest number at the stages of a ro
 
 @intrinsic
 def is_finite(context: Any, values: Any) -> Any:
-    """Return True if the numbers at the stages are finite."""
+    """Return True if the numbers of a row at all stages are finite."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        """Write code that tests all stages at once."""
+        """Generate machine code that tests all stages at once."""
         bits = ir.IntType(ROW_LENGTH)
         known = builder.fcmp_ordered("ord", *[builder.fsub(arguments[0], arguments[0])] * 2)
         never_looked_at = bits(1 << ROW_LENGTH - 1)
@@ -279,7 +279,7 @@ def is_finite(context: Any, values: Any) -> Any:
 
 @compiled
 def combine_columns(columns: NDArray[np.float64], values: Row) -> Row:
-    """Return the sum of the columns of a matrix, given as rows (M, ROW_LENGTH), each times its number in `values`."""
+    """Return matrix times vector `values`: the sum of its columns, each a row of `columns`, times their numbers."""
     total = row(columns, 0) * values[0]
     for m in range(1, columns.shape[0]):
         total += row(columns, m) * values[m]

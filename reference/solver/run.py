@@ -1,5 +1,5 @@
 """
-One run from the start to the end of the motion: the three-structure model around (4.6), every change located.
+One run from the start to the end of the motion: rest, sliding and stopping (4.6), each change of contact located.
 
     rest      -> sliding                     when friction can no longer hold the platform
     sliding   -> stopping                    when the slide would stop within a step
@@ -48,16 +48,16 @@ from reference.solver.work import (
 )
 
 # Lengths of time below are in units of RunSettings.period, the time in which forces change.
-FIRST_STEP = 0.02  # length of the first step of a run
-NEGLIGIBLE_REMAINDER = 1e-8  # time before the end of a run: if the run fails later than this, it counts as finished
-HOLDING_TIME = 1e-6  # time for which the contact keeps rest or creep in a state on the border of two phases
-RIM_SQUARED_FRACTION = 0.998  # squared displacement over rho^2 beyond which a run that fails has reached the rim
-# Phases in succession that last no time: after more of them the state is on the border of two phases, each of which
-# ends at once in favor of the other.
+FIRST_STEP = 0.02  # length of the first step of a run, in periods
+NEGLIGIBLE_REMAINDER = 1e-8  # periods before the end of a run within which a failure still counts as finished
+HOLDING_TIME = 1e-6  # periods for which rest or creep is kept, whatever the force, on the border of two phases
+RIM_SQUARED_FRACTION = 0.998  # share of rho^2: a run that fails at a larger squared displacement has reached the rim
+# Largest number of successive phases of zero length: after more of them the state counts as on the border of two
+# phases, each of which ends at once in favor of the other.
 MAX_IDLE_PHASES = 4
-# Inertia determinant, over that without friction, below which a run that fails has come to Painleve's paradox
+# Ratio of inertia determinant to that without friction below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # speed, over the loading's velocity, below which a slide that cannot go on counts as rest
+MAX_CRAWL_SPEED = 1e-8  # share of the loading's velocity: a slower slide that cannot go on counts as rest
 
 
 @compiled
@@ -76,7 +76,7 @@ def initial_contact(system: System, work: Workspace) -> int:
 
 @compiled
 def classify_failure(system: System, work: Workspace, contact: int, settings: RunSettings, code: int) -> int:
-    """Return the outcome of a run that cannot go on: nearly its end, the rim (4.1), a paradox, or `code` itself."""
+    """Return why a run cannot go on: SOLVED (nearly at its end), RIM (4.1), PAINLEVE (paradox), or `code` itself."""
     if code == TRAVEL:
         return code
     if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * settings.period:
@@ -90,7 +90,7 @@ def classify_failure(system: System, work: Workspace, contact: int, settings: Ru
 
 @compiled
 def is_paradox(system: System, work: Workspace, contact: int) -> bool:
-    """Return True if no slide can begin in the state, or if the reaction exceeds every bound (Painleve's paradox)."""
+    """Return True if the state is at Painleve's paradox: no slide can begin, or the reaction grows without bound."""
     load = load_in_state(system, work, ground_at(system, work, work.time))
     if contact == SLIDING and squared_speed_in_state(system, work) == 0.0:
         return not can_begin_slide(system, load, work.angle)
@@ -103,7 +103,7 @@ def is_paradox(system: System, work: Workspace, contact: int) -> bool:
 
 @compiled
 def is_crawling(system: System, work: Workspace, contact: int, settings: RunSettings) -> bool:
-    """Return True if a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
+    """Return True if a slide that cannot go on may count as rest: very slow, and drive barely above friction limit."""
     if system.law != SET_VALUED or contact == REST:
         return False
     slow2 = (MAX_CRAWL_SPEED * settings.unit * settings.period / (2.0 * pi)) ** 2
@@ -144,7 +144,7 @@ def integrate(system: System, work: Workspace, settings: RunSettings, record: St
 
 @compiled
 def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> None:
-    """Set the state x, v at the start of the motion of phase pair m."""
+    """Set phase pair m, and the positions x and velocities v at the start of its motion."""
     work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
     for i in range(x.shape[0]):
         for axis in range(2):
@@ -154,7 +154,7 @@ def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> Non
 
 @compiled
 def set_results(work: Workspace, code: int, peaks: Array, reading_errors: Array, ends: Array, m: int) -> None:
-    """Write outcome, peaks and errors of the run of phase pair m into the results."""
+    """Write outcome, peaks and their errors of phase pair m's run into the result arrays."""
     ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
     ends[4, m] = work.last_peak
     for i in range(peaks.shape[1]):

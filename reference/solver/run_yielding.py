@@ -1,5 +1,5 @@
 """
-One run under friction that yields: elastic until its force reaches the limit mu N, plastic until slip would reverse.
+One run under friction that yields: elastic until its force reaches its limit, plastic until slip would reverse.
 
 Every change is located; the steps are those of run.py, with their error, peaks and record.
 """
@@ -61,18 +61,18 @@ from reference.solver.work import (
     system_by_reference,
 )
 
-# Length of a phase's first step over that of an ordinary step: a short step misses no event before its first stage.
+# Ratio of a phase's first step to an ordinary one: it is short so that no event before its first stage is missed.
 FIRST_STEP_SHARE = 0.1
-# Largest errors of the instants of yield and of unloading, as shares of the step that ends there; largest
-# number of steps that aim at one of them.
-# An error of the instant of unloading has an effect of second order.
+# Largest errors of the times of yielding and of unloading, as shares of the step that ends there; largest number of
+# steps that are solved again to end at one of them.
+# The error of unloading may be larger, since its effect is of second order.
 YIELD_SHARE, UNLOADING_SHARE, MAX_AIMED_STEPS = 1e-11, 1e-6, 8
-MIN_EVENT_TIME = 1e-12  # events closer to the start count as events at the start; in units of RunSettings.period
+MIN_EVENT_TIME = 1e-12  # share of RunSettings.period: an event this soon after a step's start counts as at the start
 
 
 @compiled
 def try_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float, held: bool) -> int:
-    """Solve the equations of one step; return their outcome, UNSOLVED for a step that is too short."""
+    """Solve one step, elastic or plastic; return its outcome, UNSOLVED also for a step that is too short."""
     if is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
         return UNSOLVED
     set_step_loads(system, work, h)
@@ -85,7 +85,7 @@ def try_step(system: System, work: Workspace, contact: int, settings: RunSetting
 def aim_at_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, aims: int, begun: bool
 ) -> tuple[float, bool]:
-    """Return the share of the step up to the end of the phase, 1 for all of it, and True if the phase ends in it."""
+    """Return the phase's end as share of the step (1: keep the step), and True if the phase ends with this step."""
     if aims > 0:
         shift = shift_to_event(system, work, contact, h)
         near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMED_STEPS
@@ -99,7 +99,7 @@ def aim_at_event(
 def accept_step(
     system: System, work: Workspace, record: StepRecord, contact: int, h: float, angle: float, factor: float
 ) -> bool:
-    """Make the end of the step the new state; return True if the platform reaches its travel in the step."""
+    """Make the end of the step the new state; return True if the platform reaches the isolator's travel in it."""
     work.edges[0], work.edges[1] = 0.0, 1.0
     outcome = commit_within_travel(system, work, record, h, contact, 1, angle)
     commit_force(work)
@@ -111,7 +111,7 @@ def accept_step(
 
 @compiled
 def change_contact(system: System, work: Workspace, record: StepRecord, contact: int, since: float) -> int:
-    """Begin the phase after one that began at `since`, s; return its contact."""
+    """Change from elastic to plastic or back, prepare the new phase and return it; since: start of the old one, s."""
     if contact == ELASTIC:
         record_stick(record, since, work.time)
     following = PLASTIC if contact == ELASTIC else ELASTIC
@@ -121,7 +121,7 @@ def change_contact(system: System, work: Workspace, record: StepRecord, contact:
 
 @compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
-    """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s, as `integrate` does."""
+    """Follow the motion under friction that yields to the first step beyond `until`, s; see `integrate` (run.py)."""
     # The checks of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)

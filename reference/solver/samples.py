@@ -1,4 +1,4 @@
-"""Samples of a recorded motion at any instants, from the polynomials of its steps."""
+"""Displacement, velocity and acceleration of a computed motion at any instants, from polynomials of its time steps."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 from reference.solver.collocation import MONOMIALS, STAGES, A
 from reference.solver.system import STOPPING, Array, StepRecord
 
-BISECTIONS = 60  # number of bisections that locate an instant in a step near a stop to rounding
-INSTANTS_PER_BLOCK = 1024  # number of instants sampled at a time: their stage values fit into the processor's cache
-MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP = 4, 48  # bounds on the number of instants per step in `step_instants`
+BISECTIONS = 60  # number of bisections that find, up to rounding, where in a step near a stop an instant lies
+INSTANTS_PER_BLOCK = 1024  # number of instants computed together, so that their data fit into the processor's cache
+MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP = 4, 48  # bounds on the number of sampled instants in one time step
 
 
 class SampledMotion(NamedTuple):
-    """Motion of N bodies at T instants, as the equations give it."""
+    """Motion of N bodies at T instants: displacements, velocities, accelerations and the contact's reaction."""
 
     x: Array  # (T, N, 2) m, horizontal displacements relative to the plate
-    v: Array  # (T, N, 2) m/s, their rates
+    v: Array  # (T, N, 2) m/s, horizontal velocities relative to the plate
     total: Array  # (T, N, 3) m/s^2, absolute acceleration; its vertical part is the same for all bodies
-    reaction: Array  # (T,) N/kg, reaction over m1
+    reaction: Array  # (T,) N/kg, reaction of the contact over the platform's mass
 
 
 def sample_motion(record: StepRecord, times: Array) -> SampledMotion:
-    """Return the motion at rising times (T,), s, none of them after the last step."""
+    """Return the motion of all bodies at increasing times (T,), s, none of them after the last step of `record`."""
     steps = int(record.counts[0])
     row = np.clip(np.searchsorted(record.start[:steps], times, side="right") - 1, 0, steps - 1)
     theta = np.clip((times - record.start[row]) / record.length[row], 0.0, 1.0)
@@ -38,8 +38,8 @@ def sample_motion(record: StepRecord, times: Array) -> SampledMotion:
 
 
 def _sample_steps(record: StepRecord, row: NDArray[np.intp], theta: Array, near: NDArray[np.bool_]) -> SampledMotion:
-    """Return the motion in the steps `row` (T,), at the shares `theta` of them; `near` marks those near a stop."""
-    # Weights (T, S) of the values at the stages: of the polynomial through them, and of its integral
+    """Return the motion at T instants: theta (T,) in step number row (T,); near (T,): True for steps near a stop."""
+    # Weights (T, S) by which stage values give their polynomial at theta, and its integral up to theta
     value = theta[:, None] ** np.arange(STAGES) @ MONOMIALS
     raised = theta[:, None] ** np.arange(1, STAGES + 1) / np.arange(1, STAGES + 1) @ MONOMIALS
     stages = record.a[row]
@@ -56,14 +56,14 @@ def _sample_steps(record: StepRecord, row: NDArray[np.intp], theta: Array, near:
 
 
 def step_instants(record: StepRecord, count: int, most: int) -> Array:
-    """Return about `count` rising instants (T,), s, at most `most`: some in every step, one just before its end."""
+    """Return about `count` increasing instants (T,), s, at most `most`: some in every step, one just before its end."""
     steps = int(record.counts[0])
     start = record.start[:steps]
     places = int(np.clip(count // max(steps, 1), MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP))
     theta = np.arange(places) / places
     inside = start[:, None] + record.length[:steps, None] * theta
     near = record.contact[:steps] == STOPPING
-    weights = theta[:, None] ** np.arange(STAGES) @ MONOMIALS  # (P, S) weights of the values at the stages
+    weights = theta[:, None] ** np.arange(STAGES) @ MONOMIALS  # (P, S) by which stage values give a value at theta
     inside[near] = np.maximum(record.clock[:steps][near] @ weights.T, start[near, None])
     before = np.nextafter(start[1:], -np.inf)
     instants: Array = np.unique(np.concatenate([inside.ravel(), before]))
@@ -71,7 +71,7 @@ def step_instants(record: StepRecord, count: int, most: int) -> Array:
 
 
 def _locate_in_steps(clock: Array, times: Array) -> Array:
-    """Return the share of its step near a stop at which each time lies; `clock`: times at the stages of the steps."""
+    """Return theta (T,) in steps near a stop at which `times` (T,), s, lie; clock: (T, S) s, times of their stages."""
     coefficients = clock @ MONOMIALS.T
     low, high = np.zeros(len(times)), np.ones(len(times))
     for _ in range(BISECTIONS):

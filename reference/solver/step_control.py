@@ -1,4 +1,4 @@
-"""Control of the steps in every phase of a run: their start, their length, their end."""
+"""Control of the time steps in every contact phase: their first accelerations, length and acceptance."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from reference.solver.steps import vertical_acceleration
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Ground, RunSettings, StepRecord, System
 from reference.solver.work import CLOCK, Workspace
 
-# Bounds on the factor between two step lengths, and its safety factor, in `length_factor`
+# Bounds on the ratio of the next step length to the present one, and the safety factor in it (`length_factor`)
 MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
-MAX_SHORTENING = 0.7  # largest factor on the step length after a step that misses the tolerance
-FAILURE_SHORTENING = 0.3  # factor on the step length after a step whose equations have no solution
-ERROR_ORDER = 7.0  # order in the step length of the error estimate
-# Lower bound on the acceleration that the error of a body is relative to, as a share of the loading
+MAX_SHORTENING = 0.7  # a step that misses the tolerance is repeated with at most this share of its length
+FAILURE_SHORTENING = 0.3  # share of its length with which a step is repeated whose equations were not solved
+ERROR_ORDER = 7.0  # power of the step length with which the estimated error of a step falls
+# Smallest acceleration to which a body's error is related, as a share of the loading's acceleration
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
 # before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
-FATAL_STEP = 1e-9  # before an outcome such as the rim
-MIN_STEP = 1e-16  # without a solution
+FATAL_STEP = 1e-9  # shortest step before an outcome such as the rim
+MIN_STEP = 1e-16  # shortest step whose equations have no solution
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
 NEWTON_FRACTION = 0.01  # share of the tolerance: a smaller change of the accelerations ends Newton's method
-MAX_EXTRAPOLATION = 1.1  # largest ratio of two step lengths at which the last polynomial is a guess for the next step
+MAX_EXTRAPOLATION = 1.1  # largest ratio of a step to the last one at which the last polynomial gives its first guess
 
 
 @compiled
 def begin_from_state(system: System, work: Workspace, contact: int) -> None:
-    """Set the accelerations at the start of a phase; `begin_sliding` sets those of a slide from rest later."""
+    """Set all accelerations at the start of a contact phase; a slide from rest gets its own in `begin_sliding`."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     ax = ay = 0.0
@@ -51,7 +51,7 @@ def begin_from_state(system: System, work: Workspace, contact: int) -> None:
 def begin_with_acceleration(
     system: System, work: Workspace, ground: Ground, ax: float, ay: float, contact: int
 ) -> None:
-    """Set the platform's acceleration and all absolute accelerations at the start of a phase."""
+    """Set the platform's acceleration ax, ay and all bodies' absolute accelerations at the start of a contact phase."""
     work.a0[0, 0], work.a0[0, 1] = ax, ay
     vertical = ground.z
     if contact != REST:
@@ -65,7 +65,7 @@ def begin_with_acceleration(
 
 @compiled
 def count_step(work: Workspace, settings: RunSettings) -> bool:
-    """Count one more step and set the scale of its error; return False past the limit of steps."""
+    """Count one more step; set accelerations to which its errors are related; return False past the limit of steps."""
     for i in range(work.x.shape[0]):
         work.scale[i] = max(sqrt(work.best[i]), MIN_SCALE_FRACTION * settings.unit)
     work.steps += 1.0
@@ -74,20 +74,20 @@ def count_step(work: Workspace, settings: RunSettings) -> bool:
 
 @compiled
 def negligible_time(system: System, settings: RunSettings) -> float:
-    """Return the longest time, s, that is too short for any acceleration to change."""
+    """Return the longest time, s, in which accelerations count as unchanged."""
     return NEGLIGIBLE_TIME * min(settings.period, system.duration)
 
 
 @compiled
 def remaining_time(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the time to the end of the run, s; 0 if no acceleration changes within it."""
+    """Return the time to the end of the run, s; 0 if it is so short that no acceleration changes in it."""
     left = work.end - work.time
     return left if left > negligible_time(system, settings) else 0.0
 
 
 @compiled
 def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the next kink of loading or k_T, or the end of the run, s; a step across a kink would lose its order."""
+    """Return the time, s, of the next kink of loading or k_T (a step across it loses its order), or the run's end."""
     after, end = work.time + negligible_time(system, settings), work.end
     for kinks in (system.record, system.kinks):
         k = next_knot(kinks, after)
@@ -98,13 +98,13 @@ def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
 
 @compiled
 def propose_plain_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the length of the next step in time, s, which ends at the loading's next kink at the latest."""
+    """Return the next step's length, s: as proposed by the last step, but not beyond a kink of the loading or k_T."""
     return min(min(work.length, remaining_time(system, work, settings)), next_kink(system, work, settings) - work.time)
 
 
 @compiled
 def guess_from_last_step(work: Workspace, h: float) -> None:
-    """Set the first guess of the platform's stage accelerations: the last step's polynomial, or constant ones."""
+    """Set the first guess of the platform's stage accelerations: extrapolate the last step, or keep the present one."""
     old = work.last_length
     theta = row(NODES_ROW, ())
     near = 0.0 < h <= MAX_EXTRAPOLATION * old
@@ -120,7 +120,7 @@ def guess_from_last_step(work: Workspace, h: float) -> None:
 
 @compiled
 def length_factor(error: float, tolerance: float) -> float:
-    """Return the factor on the step length with which the next error just meets the tolerance."""
+    """Return the ratio of next to present step length with which the error would just meet the tolerance, bounded."""
     # The error falls like h^7, so the length that just meets the tolerance is the present one times
     # (tolerance / error)^(1/7) (Hairer and Wanner, IV.8). SAFETY_FACTOR makes the next step likely to pass, and the
     # bounds limit what a single estimate can change.
@@ -131,13 +131,13 @@ def length_factor(error: float, tolerance: float) -> float:
 
 @compiled
 def step_duration(work: Workspace, contact: int, h: float) -> float:
-    """Return the approximate duration of a step of length h, s; near a stop h is a length in stretched time."""
+    """Return the approximate duration, s, of a step of length h, which near a stop is a length in stretched time."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 
 @compiled
 def is_too_short(work: Workspace, contact: int, settings: RunSettings, h: float, code: int) -> bool:
-    """Return True if a step of length h need not be tried after one that failed with `code`."""
+    """Return True if a step of length h is too short to be tried after one that failed with the outcome `code`."""
     shortest = (MIN_STEP if code == UNSOLVED else FATAL_STEP) * settings.period
     if contact == STOPPING and code == UNSOLVED:
         shortest *= 1e-3 * exp(min(0.0, work.log_speed))
@@ -155,14 +155,14 @@ def set_length(work: Workspace, contact: int, h: float) -> None:
 
 @compiled
 def adapt_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the next step's length after one that met the tolerance; one cut short by an event does not reduce it."""
+    """Set the next step's length after one that met the tolerance; a step cut short by an event does not reduce it."""
     if h * factor > work.length or h == work.length:
         work.length = h * factor
 
 
 @compiled
 def commit_step(system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int) -> None:
-    """Make the end of the step the new state; read peaks in the `parts` intervals whose ends are in work.edges."""
+    """Make the end of the step the new state; update peaks in the `parts` intervals of it given in work.edges."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     peaking = False

@@ -1,5 +1,5 @@
 """
-One collocation step in time: at rest, or moving under a friction law.
+One collocation step in time: of a platform at rest, or one that moves under a friction law.
 
 A step reads the state x, v of `Workspace`. It leaves the stage accelerations in `a`, the platform at the stages in
 `stage`, the absolute accelerations in `total` and the end of the step in x1, v1. A moving step returns its outcome.
@@ -41,19 +41,20 @@ from reference.solver.work import (
     Workspace,
 )
 
-MAX_ITERATIONS = 14  # iterations of Newton's method after which a step counts as unsolved
-SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed again
-FORCE_ROUNDING = 1e-13  # rounding error in the defect at the start of a step, over the forces
-ROUNDING_CHANGE = 4e-15  # relative change of the accelerations from iteration to iteration that rounding alone makes
-# Largest growth of a slide's squared speed for which a derivative is kept: with this growth it is ten times too large
+MAX_ITERATIONS = 14  # number of Newton iterations after which a step counts as unsolved
+SLOW_CONVERGENCE = 0.1  # ratio of successive Newton corrections above which the derivatives are computed again
+FORCE_ROUNDING = 1e-13  # rounding error, relative to the forces, of an acceleration extrapolated to a step's start
+ROUNDING_CHANGE = 4e-15  # relative change of accelerations by rounding alone: a change this small ends the iteration
+# Growth of a slide's squared speed in Newton's method above which derivatives are computed again: they are ten times
+# too large by then
 MAX_SPEED2_GROWTH = 100.0
-# Squared displacement over rho^2 beyond which a step whose iteration leaves the concave surface has reached the rim
+# Share of rho^2: a step that began at a larger squared displacement and leaves the surface has reached the rim
 RIM_SQUARED_FRACTION = 0.99
 
 
 @compiled
 def set_step_loads(system: System, work: Workspace, h: float) -> None:
-    """Set the ground at the stages, and the driving force on the platform from the ground and the bodies above."""
+    """Set, at the stages, the ground's acceleration, and the drive on the platform by the ground and bodies above."""
     put(work.elapsed, (), h * row(NODES_ROW, ()))
     set_harmonics(system, work, work.time)
     set_ground_at_stages(system, work)
@@ -63,7 +64,7 @@ def set_step_loads(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def solve_rest_step(system: System, work: Workspace, h: float) -> None:
-    """Solve a step in which the platform stays and the chain above it vibrates (4.4)."""
+    """Solve a step in which the platform rests and the bodies above it vibrate (4.4)."""
     set_step_loads(system, work, h)
     for axis in range(system.axes):
         put(work.a, (0, axis), 0.0)
@@ -77,15 +78,15 @@ def solve_rest_step(system: System, work: Workspace, h: float) -> None:
 @compiled
 def solve_moving_step(system: System, work: Workspace, contact: int, h: float, tolerance: float) -> int:
     """
-    Solve for the stage accelerations of the platform by Newton's method, the chain eliminated exactly.
+    Solve a step of a moving platform: its stage accelerations by Newton's method, bodies above eliminated exactly.
 
     `set_step_loads` comes before; `a[0]` holds the first guess. The iteration ends when its change is below
     `tolerance`, m/s^2, or at the level of rounding.
     """
     # A derivative serves several iterations while these converge fast. The error that remains is then far smaller than
     # the last change, which is what `tolerance` bounds.
-    # In a slide the derivative of friction by the velocity is mu N / v across the direction of slip. If it is computed
-    # at a guess that is far too slow, the derivative is far too large: Newton's method then hardly corrects a wrong
+    # Across the direction of slip, friction's derivative by the velocity is (friction coefficient) N / v. If it is
+    # computed at a guess that is far too slow, it is far too large: Newton's method then hardly corrects a wrong
     # direction, and the small change looks like convergence. So a derivative serves no iteration at a much higher
     # speed (MAX_SPEED2_GROWTH).
     set_feedback(system, work, h)
@@ -122,7 +123,7 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
 
 @compiled
 def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, float]:
-    """Set the residual of the platform's equations at the stages; return the outcome and the largest acceleration."""
+    """Set the residual of the platform's equations at the stages; return outcome and largest acceleration, m/s^2."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
     if row_maximum(load.px * load.px + load.py * load.py) >= system.radius**2:
@@ -143,7 +144,7 @@ def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, fl
 
 @compiled
 def correct_accelerations(work: Workspace, axes: int) -> float:
-    """Add Newton's correction, in `residual`, to the stage accelerations; return its largest entry, or infinity."""
+    """Add Newton's correction, in work.residual, to the stage accelerations; return its largest size, m/s^2, or inf."""
     change = 0.0
     for axis in range(axes):
         correction = row(work.residual, axis)
@@ -154,7 +155,7 @@ def correct_accelerations(work: Workspace, axes: int) -> float:
 
 @compiled
 def set_platform_motion(work: Workspace, h: float, axes: int) -> None:
-    """Set position, velocity and drive of the platform at the stages from its stage accelerations."""
+    """Set the platform's position, velocity and drive at the stages from its accelerations there."""
     a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
         velocity = position = broadcast_like(0.0, row(NODES_ROW, ()))
@@ -171,7 +172,7 @@ def set_platform_motion(work: Workspace, h: float, axes: int) -> None:
 
 @compiled
 def set_matrix(work: Workspace, h: float, axes: int) -> None:
-    """Set the derivative of the stage equations a - acceleration(a) = 0 by the platform's stage accelerations."""
+    """Set Newton's matrix: derivatives of a - acceleration(a) = 0 by the platform's stage accelerations a."""
     matrix, feedback, slope = work.matrix, work.feedback, work.slopes
     for axis in range(axes):
         for column in range(axes):
@@ -187,7 +188,7 @@ def set_matrix(work: Workspace, h: float, axes: int) -> None:
 
 @compiled
 def classify_unsolved_step(system: System, work: Workspace) -> int:
-    """Return RIM (4.1) for an unsolved step that began close to the rim, UNSOLVED for any other."""
+    """Return why a step is unsolved: RIM (4.1) if it began close to the rim of the surface, else UNSOLVED."""
     return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2 else UNSOLVED
 
 
@@ -221,14 +222,14 @@ def set_absolute_accelerations(system: System, work: Workspace, contact: int) ->
 @compiled
 def step_error(system: System, work: Workspace, tolerance: float, weight: float) -> float:
     """
-    Return the largest error of the bodies' absolute accelerations inside the step, over `scale`.
+    Return the largest relative error (over work.scale) of the bodies' absolute accelerations inside the step.
 
-    `weight` multiplies the error; `tolerance` is the error that the step may have.
+    `weight` multiplies the error; `tolerance` is the relative error that the step may have.
     """
     # The acceleration at the start of the step is known. The polynomial through the stages, evaluated there, misses it
     # by the interpolation error of the step, which falls like h^7: Radau IIA has no stage at theta = 0. This defect is
     # the error of the step.
-    # Rounding limits the defect from below: FORCE_ROUNDING of the forces always, CHANNEL_ROUNDING where the chain is
+    # By rounding, the defect is at least FORCE_ROUNDING of the forces, plus CHANNEL_ROUNDING if there are bodies above,
     # solved in the eigenbasis. No shorter step would reduce an error of that size, so it counts as the tolerance at
     # most.
     # On a plane the platform's acceleration relative to the plate counts as well: without a restoring force no absolute
@@ -260,7 +261,7 @@ def step_error(system: System, work: Workspace, tolerance: float, weight: float)
 
 @compiled
 def relative_defect(work: Workspace) -> float:
-    """Return the interpolation error of the platform's acceleration relative to the plate, m/s^2."""
+    """Return the interpolation error, m/s^2, of the platform's acceleration relative to the ground plate."""
     squared = 0.0
     for axis in range(2):
         defect = -work.a0[0, axis]

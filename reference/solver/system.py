@@ -1,4 +1,4 @@
-"""The scene, the settings of a run and the record of its steps, as tuples of numbers and arrays for compiled code."""
+"""Data of compiled code, tuples of numbers and arrays: the scene, the settings of a run and the record of its steps."""
 
 from __future__ import annotations
 
@@ -14,107 +14,107 @@ from reference.solver.rows import Number
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Codes of friction laws (contact/friction.py)
+# Integer codes of the friction laws (contact/friction.py)
 SET_VALUED, REGULARIZED, LUBRICATED, YIELDING = 0, 1, 2, 3
-# Codes of conditions for rest: that of the friction cone, or (4.6) as printed in the paper
+# Integer codes of the condition for rest: that of the friction cone, or (4.6) as printed in the paper
 CONSISTENT, PRINTED = 0, 1
-# The integers below are NumPy's: numba would compile a function again for every literal that it is called with.
+# The integers below are NumPy's, since numba compiles a function anew for every literal integer it is called with.
 PLATFORM = np.int64(0)  # index of the platform among the bodies
-# Codes of states of the contact
+# Integer codes of the states of the contact
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING, ELASTIC, PLASTIC = cast(
     "tuple[int, ...]", tuple(map(np.int64, range(7)))
 )
-# Codes of outcomes of the equations of one step, or of a whole run
+# Integer codes of outcomes: how the equations of one step were solved, or how a whole run ended
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
 
 class System(NamedTuple):
-    """Scene in compiled form, in accelerations: stiffness and damping of links are over the mass that they act on."""
+    """Scene for compiled code; stiffness and damping of the links are divided by the mass that they act on."""
 
-    small: bool  # True for equations (4.3) instead of (3.9)
-    law: int  # SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
-    rest_condition: int  # CONSISTENT or PRINTED
-    # Friction coefficient at vanishing speed, or f_c in s/m of a lubricated contact: read by contact/friction.py alone
+    small: bool  # True for the small-vibration equations (4.3), False for the exact ones (3.9)
+    law: int  # friction law: SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
+    rest_condition: int  # condition for rest: CONSISTENT or PRINTED
+    # Friction coefficient at speed 0, or f_c in s/m of a lubricated contact; only contact/friction.py reads it
     friction: float
     rise: float  # increase of the friction coefficient from rest to high speed
     rate: float  # s/m, rate of that increase with the speed; 0 where the coefficient is constant
-    exponent: Any  # float, exponent n of N / W in mu (contact/load.py); None if mu depends on neither load nor heat
-    stiffness: float  # 1/s^2, k / m1 of friction that yields (contact/yielding.py); infinite for any other
-    v_reg: float  # m/s, speed below which friction is linear under the regularized law
+    exponent: Any  # exponent n of (N / W)^n in the friction coefficient; None if neither load nor heat changes it
+    stiffness: float  # 1/s^2, elastic stiffness of friction that yields, over m1; infinite for any other friction
+    v_reg: float  # m/s, speed below which friction is linear in the speed, under the regularized law
     mass_ratio: float  # total mass m_sum over that of the platform, m1
     radius: float  # m, pendulum radius rho
     travel: float  # m, largest displacement that the isolator permits; infinite without such a limit
-    gravity: float  # m/s^2
-    below: Array  # (N, 2), 1/s^2, stiffness of the link below over the mass, k_{i,i-1} / m_i; zero for the platform
-    above: Array  # (N, 2), 1/s^2, stiffness of the link above over the mass, k_{i+1,i} / m_i; zero for the last body
-    damping_below: Array  # (N, 2), 1/s, damping of the link below over the mass, c_{i,i-1} / m_i
-    damping_above: Array  # (N, 2), 1/s, damping of the link above over the mass, c_{i+1,i} / m_i
+    gravity: float  # m/s^2, acceleration of gravity
+    below: Array  # (N, 2), 1/s^2, stiffness along x, y of the link below body i over its mass; zero for the platform
+    above: Array  # (N, 2), 1/s^2, stiffness along x, y of the link above body i over its mass; zero for the last body
+    damping_below: Array  # (N, 2), 1/s, damping along x, y of the link below body i over the body's mass
+    damping_above: Array  # (N, 2), 1/s, damping along x, y of the link above body i over the body's mass
     amplitudes: Array  # (3, 2), m/s^2, amplitudes of the two harmonics along x, y, z
-    exponents: Complex  # (2,), 1/s, exponents s_i = -lambda_i + i nu_i of the harmonics
-    record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
+    exponents: Complex  # (2,), 1/s, complex exponents -decay + i frequency of the two harmonics
+    record: Array  # (K, 4), s and m/s^2, samples of a recorded motion, linear between them; (0, 4) without a record
     heat: Array  # (3,) fields of Heat: initial, degrees C; rise times m1, K s^2.5/m^2; cover, m; (0,) without heating
-    k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without heating
-    kinks: Array  # (J, 1) s, instants from which k_T, the temperature factor of friction, changes like a root of time
-    duration: float  # s
+    k_t: Array  # (K, 3 + S) pieces of friction's temperature factor k_T: start, length, s, coefficients; K = 0 unheated
+    kinks: Array  # (J, 1) s, times from which k_T, the temperature factor of friction, changes like a root of time
+    duration: float  # s, duration of the computed motion
     axes: int  # 1 for a motion in the plane of x and z, where y stays exactly zero; otherwise 2
-    fastest: float  # rad/s, upper bound on the chain's natural frequencies and rates of decay
-    damping_rate: float  # 1/s, upper bound on the rates of decay that the chain's dampers alone cause
+    fastest: float  # rad/s, upper bound on natural frequencies and decay rates of the chain of bodies
+    damping_rate: float  # 1/s, upper bound on the decay rates that the dampers between the bodies alone cause
 
 
 class Ground(NamedTuple):
     """Acceleration of the ground, m/s^2, and temperature factor of friction at one instant."""
 
-    x: float  # acceleration of the ground along x, xi'' of (5.3)
-    y: float  # eta'', along y
-    z: float  # zeta'', along the vertical
-    k_t: float  # temperature factor of friction
+    x: float  # m/s^2, acceleration of the ground along x, xi'' of (5.3)
+    y: float  # m/s^2, along y, eta''
+    z: float  # m/s^2, along the vertical, zeta''
+    k_t: float  # factor by which temperature changes the friction coefficient
 
 
 class Load(NamedTuple):
     """Position of the platform and all that acts on it, at one instant or at all stages of a step (equations.py)."""
 
-    px: Number  # m, position relative to the plate
+    px: Number  # m, position of the platform relative to the ground plate
     py: Number
-    fx: Number  # driving acceleration, m/s^2
+    fx: Number  # m/s^2, driving acceleration: force of body 2 over m1 minus ground acceleration
     fy: Number
-    ux: Number  # acceleration of the ground, m/s^2
+    ux: Number  # m/s^2, acceleration of the ground
     uy: Number
     uz: Number
     k_t: Number  # temperature factor of friction (contact/load.py)
 
 
 class StepRecord(NamedTuple):
-    """Steps of one motion for `trajectory` (samples.py); its capacity T is 0 when only the peaks are wanted."""
+    """Up to T time steps of one motion, for `trajectory` (samples.py); T is 0 if only the peaks are wanted."""
 
     start: Array  # (T,) s, time at the start of each step
-    length: Array  # (T,) s; near a stop the length in stretched time
-    contact: Array  # (T,) state of the contact
-    x: Array  # (T, N, 2) m, positions at the start of each step
-    v: Array  # (T, N, 2) m/s, velocities there
-    a: Array  # (T, N, 2, S) m/s^2, accelerations at the stages
-    position: Array  # (T, N, 2, S) m, positions at the stages near a stop
-    velocities: Array  # (T, N, 2, S) m/s, velocities at the stages near a stop
-    clock: Array  # (T, S) s, time at the stages near a stop
-    total: Array  # (T, N, 3, S) m/s^2, absolute accelerations at the stages
-    reaction: Array  # (T, S) N/kg, reaction over m1 at the stages
-    sticks: Array  # (T, 2) s, intervals of rest, or of creep below v_reg
-    counts: NDArray[np.int64]  # (2,) numbers of steps and of intervals, also of those beyond the capacity
+    length: Array  # (T,) s, length of each step; near a stop its length in stretched time
+    contact: Array  # (T,) state of the contact in each step
+    x: Array  # (T, N, 2) m, positions of the bodies at the start of each step
+    v: Array  # (T, N, 2) m/s, velocities of the bodies at the start of each step
+    a: Array  # (T, N, 2, S) m/s^2, accelerations of the bodies at the stages of each step
+    position: Array  # (T, N, 2, S) m, positions of the bodies at the stages of steps near a stop
+    velocities: Array  # (T, N, 2, S) m/s, velocities of the bodies at the stages of steps near a stop
+    clock: Array  # (T, S) s, time at the stages of steps near a stop
+    total: Array  # (T, N, 3, S) m/s^2, absolute accelerations of the bodies at the stages of each step
+    reaction: Array  # (T, S) N/kg, reaction of the contact over m1 at the stages of each step
+    sticks: Array  # (T, 2) s, start and end of every interval of rest, of creep below v_reg, or of elastic contact
+    counts: NDArray[np.int64]  # (2,) numbers of steps and of such intervals, those for which there is no room included
 
 
 class RunSettings(NamedTuple):
     """Settings of one run: accuracy, scales, what counts as a peak, and when it ends."""
 
-    tolerance: float  # relative error of the accelerations inside a step
+    tolerance: float  # largest relative error of the accelerations inside a step
     unit: float  # m/s^2, size of the loading: errors of smaller accelerations are measured against a share of it
     period: float  # s, time in which forces change (time_scale of reference/surface.py)
     cutoff: float  # m/s, slip speed v_c above which accelerations count for the peak; 0 for the supremum
     step_limit: int  # number of steps after which the run ends with STEP_LIMIT
-    early: bool  # True if the run ends where no peak can grow any more (look_ahead.py)
-    damped_weight: float = 30.0  # factor on the error of a step that damps a vibration (docs/decisions/0002)
+    early: bool  # True if the run ends as soon as no larger peak can follow (look_ahead.py)
+    damped_weight: float = 30.0  # factor on the error of a step too long to resolve a vibration (docs/decisions/0002)
 
 
 def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
-    """Return the scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
+    """Return the scene for compiled code. `v_reg`, m/s, selects the regularized friction law, None the set-valued."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
         _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)
@@ -140,15 +140,15 @@ def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: boo
         kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
-        # bounds of the eigenvalues by Gershgorin's circles
+        # upper bound on eigenvalues by Gershgorin's circles
         fastest=float(np.sqrt(2.0 * (below + above).max() + shear)) + damping_rate,
         damping_rate=damping_rate,
     )
 
 
 def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
-    """Return the fields of `System` that state the law of friction, by name."""
-    # A scene without friction gets the lubricated law with f_c = 0: the same motion, by a law without a corner.
+    """Return, by name, the fields of `System` that describe friction."""
+    # A scene without friction gets the lubricated law with f_c = 0: the same motion, by a smooth law.
     dry, mass = scene.dry_friction, scene.masses[0]
     smooth = dry.largest == 0.0
     heat = None if smooth else dry.heat
@@ -166,12 +166,12 @@ def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
 
 
 def dry_friction_of(system: System) -> DryFriction:
-    """Return the law of dry friction of a system at k_T = 1."""
+    """Return the dry friction law of a system at k_T = 1, that is without the effect of temperature."""
     return DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
 
 
 def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
-    """Return coefficients of the links, (N - 1, 2), over the mass of the body above and below them, (N, 2) each."""
+    """Return link coefficients (N - 1, 2) over the mass of the body above, and below, each link: two arrays (N, 2)."""
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
     below[1:] = links / masses[1:, None]
     above[:-1] = links / masses[:-1, None]
@@ -179,7 +179,7 @@ def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
 
 
 def allocate_record(capacity: int, bodies: int) -> StepRecord:
-    """Return an empty record with room for `capacity` steps."""
+    """Return an empty record of time steps, with room for `capacity` steps of a number of bodies."""
     t, n, s = capacity, bodies, STAGES
     return StepRecord(
         start=np.zeros(t),

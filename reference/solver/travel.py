@@ -1,4 +1,4 @@
-"""End of a motion at the largest displacement that the isolator permits."""
+"""Travel limit: a motion ends when the platform reaches the largest displacement that the isolator permits."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from reference.solver.rows import row
 from reference.solver.system import REST, STOPPING, System
 from reference.solver.work import CLOCK, Workspace
 
-BISECTIONS = 50  # number of bisections that locate a displacement in a step to rounding
+BISECTIONS = 50  # number of bisections that find, up to rounding, when a displacement is reached in a step
 
 
 @compiled
 def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return the instant when the displacement passes the travel in the step just solved, s; infinity if none."""
+    """Return the time, s, at which the displacement exceeds the isolator's travel in the step just solved, or inf."""
     if contact == REST or system.travel == inf:
         return inf
     for axis in range(2):
@@ -38,7 +38,7 @@ def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -
 
 @compiled
 def locate_displacement(work: Workspace, limit: float, place: float) -> float:
-    """Return the first theta up to `place` at which the squared displacement, by its `powers`, exceeds `limit`."""
+    """Return the first theta up to `place` at which the squared displacement exceeds `limit`, m^2, by work.powers."""
     low, high = 0.0, place
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] >= place:

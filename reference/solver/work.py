@@ -1,5 +1,5 @@
 """
-The workspace of one run: its state and its arrays.
+The workspace of one run: the state of the bodies, the arrays of the step being solved, and the results so far.
 
 Compiled code passes the workspace, the system and the record by reference. As a tuple, every call would copy and
 compile all fields again.
@@ -18,11 +18,12 @@ from reference.solver.compiled.by_reference import ByReference, empty_structure,
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
-# Rows of Workspace.stage: position, velocity and drive (x, then y); reaction / m1, squared speed, inertia determinant
+# Row numbers in Workspace.stage: position, velocity, drive (x row, then y row); reaction / m1, squared speed, inertia
+# determinant
 POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
-# First rows of Workspace.slopes with derivatives by position, velocity and drive; two rows for each of x and y
+# First row numbers in Workspace.slopes of derivatives of (ax, ay) by position, velocity and drive, each by x, then y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
-# Rows of Workspace.turning: direction, speed and time of a slide near its stop, and derivatives (near_stop.py)
+# Row numbers in Workspace.turning: slip direction, speed, time near a stop, and accelerations with their derivatives
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
@@ -31,20 +32,20 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 # Workspace.shear_slopes. One row each: the squared force minus the squared friction limit, the velocity along the
 # force, m/s, and the friction limit.
 ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, FRICTION_LIMIT = 0, 4, 6, 8, 10, 12, 13, 14
-MAX_PARTS = 3  # largest number of separate parts of one step that count for the peaks
-SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics in a step
+MAX_PARTS = 3  # largest number of separate parts of one step in which accelerations count for the peaks
+SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics over a step
 
 
 class _SystemType(ByReference):
-    """Numba's type of a System, passed by reference."""
+    """Type of a System, for the compiler numba, passed by reference."""
 
 
 class _StepRecordType(ByReference):
-    """Numba's type of a StepRecord, passed by reference."""
+    """Type of a StepRecord, for the compiler numba, passed by reference."""
 
 
 class _WorkspaceType(ByReference):
-    """Numba's type of a Workspace, passed by reference."""
+    """Type of a Workspace, for the compiler numba, passed by reference."""
 
 
 class Workspace:
@@ -54,80 +55,80 @@ class Workspace:
     L is ROW_LENGTH, S is STAGES (collocation.py).
     """
 
-    phase: Array  # (2,) rad, initial phases of the loading
+    phase: Array  # (2,) rad, initial phases of the ground's two harmonics
     # State at the start of the step
-    time: float  # s, instant of x, v and a0
-    x: Array  # (N, 2) m, positions
-    v: Array  # (N, 2) m/s, velocities
-    a0: Array  # (N, 2) m/s^2, accelerations
-    total0: Array  # (N, 3) m/s^2, absolute accelerations
+    time: float  # s, time at which the bodies have x, v and a0
+    x: Array  # (N, 2) m, positions of the bodies at the start of the step
+    v: Array  # (N, 2) m/s, velocities of the bodies at the start of the step
+    a0: Array  # (N, 2) m/s^2, accelerations of the bodies at the start of the step
+    total0: Array  # (N, 3) m/s^2, absolute accelerations of the bodies at the start of the step
     angle: float  # rad, direction of a slide that begins or stops
-    log_speed: float  # logarithm of the horizontal speed near a stop
-    log_ratio: float  # logarithm of full over horizontal speed near a stop
+    log_speed: float  # logarithm of the platform's horizontal speed near a stop
+    log_ratio: float  # logarithm of the ratio of full to horizontal speed of the platform near a stop
     squared_start_speed: float  # m^2/s^2, squared sliding speed at the start of the step
     # Proposal for the next step
     length: float  # s, length of the next step in time
-    stretched_length: float  # length near a stop, in stretched time
-    fitting_length: float  # length with which the last step near a stop would have met the tolerance, in stretched time
-    max_growth: float  # largest factor from one step length to the next
-    hold_time: float  # s, time for which the contact keeps rest or creep under any force; 0 if it need not
+    stretched_length: float  # length of the next step near a stop, in stretched time (near_stop.py)
+    fitting_length: float  # length, in stretched time, with which the last step would just have met the tolerance
+    max_growth: float  # largest ratio of the next step's length to the present one
+    hold_time: float  # s, time for which rest or creep is kept whatever the force; 0 if forces decide
     # State of the contact in the present phase
     first_log_speed: float  # logarithm of the speed at which stretched time (near_stop.py) began
-    early_rest: float  # s, time that the platform still slides after the phase of rest has begun
+    early_rest: float  # s, time by which the phase of rest begins before the platform has stopped
     # Step that is being solved
-    x1: Array  # (N, 2) m, positions at the end of the step
-    v1: Array  # (N, 2) m/s, velocities there
-    a: Array  # (N, 2, L) m/s^2, accelerations at the stages
-    ground: Array  # (4, L) ground acceleration, m/s^2, and k_T at the stages
-    total: Array  # (N, 3, L) m/s^2, absolute accelerations at the stages
+    x1: Array  # (N, 2) m, positions of the bodies at the end of the step
+    v1: Array  # (N, 2) m/s, velocities of the bodies at the end of the step
+    a: Array  # (N, 2, L) m/s^2, accelerations of the bodies at the stages
+    ground: Array  # (4, L) at the stages: ground acceleration, m/s^2, and k_T, the temperature factor of friction
+    total: Array  # (N, 3, L) m/s^2, absolute accelerations of the bodies at the stages
     free: Array  # (2, L) m/s^2, driving acceleration of the platform if it kept its velocity
-    feedback: Array  # (2, S, L) response of the drive at all stages to the platform's acceleration at one stage
-    inverse: Complex  # (N, 2, CHANNELS) inverse pivots of the eliminated chain
-    load: Complex  # (N, 2, CHANNELS) loads of the eliminated chain
-    channels: Array  # (L,) one number in every channel: real parts, imaginary parts
-    gain: Complex  # (2, CHANNELS) response of the platform's drive to its own acceleration through the chain
+    feedback: Array  # (2, S, L) change of the drive at all stages per platform acceleration at each stage (chain.py)
+    inverse: Complex  # (N, 2, CHANNELS) inverse pivots of the eliminated bodies above the platform (chain.py)
+    load: Complex  # (N, 2, CHANNELS) right sides of the equations of the bodies above the platform (chain.py)
+    channels: Array  # (L,) one number in every channel (chain.py): real parts, then imaginary parts
+    gain: Complex  # (2, CHANNELS) response of the platform's drive to its own acceleration, through the bodies above
     stage: Array  # (9, L) state of the platform at the stages, in the rows POSITION to DETERMINANT
-    slopes: Array  # (12, L) derivatives of the platform's acceleration, from the rows BY_POSITION to BY_DRIVE on
-    matrix: Array  # (2 S, 2, L) matrix of Newton's method, by columns (linear_solve.py)
+    slopes: Array  # (12, L) derivatives of the platform's acceleration at the stages, in row BY_POSITION and following
+    matrix: Array  # (2 S, 2, L) matrix of Newton's method for the platform, by columns (linear_solve.py)
     residual: Array  # (2, L) right side of Newton's equations, then their solution, the correction
-    turn_matrix: Array  # (S, 1, L) matrix of Newton's method for the directions near a stop
-    pivots: Array  # (2 S,) row exchanges of the factorized matrix
+    turn_matrix: Array  # (S, 1, L) matrix of Newton's method for the slip directions near a stop
+    pivots: Array  # (2 S,) row exchanges in the LU factors of these matrices
     positions: Array  # (N, 2, L) m, positions of the bodies at the stages of a step near a stop
-    velocities: Array  # (N, 2, L) m/s, their velocities there
-    turning: Array  # (12, L) direction, speed and time at the stages near a stop, in the rows DIRECTION and following
+    velocities: Array  # (N, 2, L) m/s, velocities of the bodies at the stages of a step near a stop
+    turning: Array  # (12, L) slip direction, speed, time at the stages near a stop, in rows DIRECTION and following
     levels: Array  # (L,) logarithm of the sliding speed at the stages near a stop
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
     powers: Array  # (5, POWERS) coefficients of polynomials in theta, the elapsed share of the step
-    dense: Array  # (2, L) sums of squares at collocation.SEARCH_POINTS, in the rows of peaks.SEARCH_ROWS
+    dense: Array  # (2, L) squared accelerations, or displacements, at the points peaks.SEARCH_ROWS of the step
     scale: Array  # (N,) m/s^2, accelerations to which the errors of the bodies are related
-    defect: Array  # (N,) m/s^2, interpolation error at the start of the step
-    force: Array  # (2,) m/s^2, friction that yields, over m1, at the start of the step
-    shear: Array  # (15, L) motion and friction that yields at the stages, in the rows ARGUMENTS to FRICTION_LIMIT
-    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and force rate by 8 arguments; at last both themselves
-    shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method for friction that yields
-    shear_right: Array  # (4 S,) right side of these equations, then their solution, the correction
-    shear_pivots: Array  # (4 S,) row exchanges of the factorized matrix
+    defect: Array  # (N,) m/s^2, error of each body's acceleration extrapolated from the stages to the step's start
+    force: Array  # (2,) m/s^2, friction force over m1 at the start of the step, if friction yields
+    shear: Array  # (15, L) motion and friction at the stages if friction yields, in rows ARGUMENTS to FRICTION_LIMIT
+    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and force rate by 8 arguments; last, both themselves
+    shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method if friction yields
+    shear_right: Array  # (4 S,) right side of Newton's equations if friction yields, then their solution
+    shear_pivots: Array  # (4 S,) row exchanges in the LU factors of shear_matrix
     # Last step
-    last_length: float  # s, length of the last step; 0 if its polynomial is no guess for the next step
-    guess: Array  # (2, POWERS) coefficients of the platform's acceleration in the last step
-    waves: Complex  # (2,) harmonics of the ground at the start of the step
-    turns: Complex  # (2,) factors by which `waves` change in a step of a rough run
+    last_length: float  # s, length of the last step; 0 if its polynomial does not serve as guess for the next step
+    guess: Array  # (2, POWERS) coefficients, in theta, of the platform's acceleration in the last step
+    waves: Complex  # (2,) the ground's two harmonics at the start of the step, as complex numbers
+    turns: Complex  # (2,) complex factors by which `waves` change in a step of a rough run (look_ahead.py)
     elapsed: Array  # (L,) s, time from the start of the step to its stages
-    series: Array  # (SERIES_TERMS, 2) Taylor series of the harmonics in the step
+    series: Array  # (SERIES_TERMS, 2) Taylor series of the ground's two harmonics over the step
     # State and results of the run as a whole
-    end: float  # s, end of the run, at most the duration
-    steps: float  # number of steps so far
-    best: Array  # (N,) m^2/s^4, largest squared absolute acceleration so far
-    reading_error: Array  # (N,) m/s^2, error of the largest acceleration inside its step, with the drift before
-    drift: Array  # (N,) m/s^2, error that the steps so far have left in the chain's fastest vibration
-    squared_reach: float  # m^2, largest squared displacement of the platform
-    last_peak: float  # s, end of the last step with an acceleration near the largest
-    last_large: float  # s, end of the last step with an acceleration or a displacement near the largest
-    look_time: float  # s, instant after which the run looks ahead, or ends if its end is given
+    end: float  # s, end of the run, at most the duration of the motion
+    steps: float  # number of steps made so far in the run
+    best: Array  # (N,) m^2/s^4, largest squared absolute acceleration of each body so far
+    reading_error: Array  # (N,) m/s^2, error of each largest acceleration: interpolation in its step, and drift before
+    drift: Array  # (N,) m/s^2, error that the steps so far have left in the bodies' fastest vibration
+    squared_reach: float  # m^2, largest squared displacement of the platform so far
+    last_peak: float  # s, end of the last step with an acceleration near the largest so far
+    last_large: float  # s, end of the last step with an acceleration or a displacement near the largest so far
+    look_time: float  # s, time after which the run looks ahead for larger peaks, or ends if its end is given
 
 
 def _allocate_fields(work: Workspace, bodies: int) -> None:
-    """Set every field to an array of zeros or to zero, for N = `bodies`."""
+    """Set every field of a workspace for N = `bodies` to zeros or zero, but the temperature factor k_T to 1."""
     n, s, c, length = bodies, STAGES, CHANNELS, ROW_LENGTH
     work.phase = np.zeros(2)
     work.x = np.zeros((n, 2))
@@ -181,11 +182,11 @@ def _allocate_fields(work: Workspace, bodies: int) -> None:
     work.squared_reach = work.last_peak = work.last_large = work.look_time = 0.0
 
 
-# Functions of compiled code that make a structure, passed by reference, from a named tuple
+# Functions, for compiled code, that copy a System or a StepRecord (named tuples) into a structure passed by reference
 system_by_reference, record_by_reference = structure_from_tuple(_SystemType), structure_from_tuple(_StepRecordType)
-_fields = SimpleNamespace()  # an example of all fields, which shows numba their types
+_fields = SimpleNamespace()  # an example of a workspace, from which numba learns the types of all fields
 _allocate_fields(_fields, 2)  # type: ignore[arg-type]
-_empty_workspace, _compiled_allocation = (  # functions that make a workspace, and that fill its fields with zeros
+_empty_workspace, _compiled_allocation = (  # functions that make a workspace, and that set its fields to zeros
     empty_structure(_WorkspaceType, vars(_fields)),
     njit(nogil=True)(_allocate_fields),
 )
@@ -193,7 +194,7 @@ _empty_workspace, _compiled_allocation = (  # functions that make a workspace, a
 
 @njit(nogil=True)
 def allocate_workspace(bodies: int) -> Workspace:
-    """Return the workspace for runs of N = `bodies`."""
+    """Return a new workspace for runs with N = `bodies`, all zeros but the temperature factor k_T, which is 1."""
     work = _empty_workspace()
     _compiled_allocation(work, bodies)
     return work
@@ -201,7 +202,7 @@ def allocate_workspace(bodies: int) -> Workspace:
 
 @compiled
 def reset_workspace(work: Workspace, length: float, end: float) -> None:
-    """Reset the state for a new run, whose first step has this length, s, and which ends at `end`, s."""
+    """Reset a workspace for a new run, except x and v; length: first step, s; end: end of the run, s."""
     work.time = work.angle = work.log_speed = work.log_ratio = work.squared_start_speed = 0.0
     work.length, work.stretched_length, work.max_growth, work.last_length = length, 0.0, 0.0, 0.0
     work.end, work.last_peak, work.last_large = end, 0.0, 0.0

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Parameters = ParamSpec("Parameters")  # parameters of a decorated function
-Result = TypeVar("Result")  # result of a decorated function
-MAX_QUOTED_LETTERS = 80  # an error quotes at most so many letters of a value
-MAX_LENGTH = 10**8  # an object that is no array has at most so many entries
+Parameters = ParamSpec("Parameters")  # types of the parameters of a decorated function
+Result = TypeVar("Result")  # type of the result of a decorated function
+MAX_QUOTED_LETTERS = 80  # largest number of letters of a value that an error message quotes
+MAX_LENGTH = 10**8  # largest number of entries accepted of an object that is not an array
 MISSING = object()  # stands for an argument that the caller has not given
 
 
@@ -38,12 +38,12 @@ class Range:
 
     @property
     def text(self) -> str:
-        """The range as a table shows it."""
+        """The range as text for a table, such as "1 to 5"."""
         return f"{self.lowest:g} to {self.highest:g}{', or inf' if self.or_infinite else ''}"
 
     @property
     def rule(self) -> str:
-        """The range as the end of an error message states it."""
+        """The range as a rule in an error message, such as "must be finite and positive, from 1 to 5 s"."""
         unit = f" {self.unit}" if self.unit else ""
         if self.or_infinite:
             return f"must be positive, from {self.lowest:g} to {self.highest:g}{unit}, or inf"
@@ -53,7 +53,7 @@ class Range:
         return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}{hint}"
 
     def __contains__(self, value: float) -> bool:
-        """Return True for a number within the range."""
+        """Return True if a number is within the range."""
         return bool(self.lowest <= value <= self.highest) or (self.or_infinite and value == math.inf)
 
 
@@ -68,7 +68,7 @@ def require_type(
 
         @wraps(function)
         def check_and_call(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
-            """Call the function if its first argument has the type."""
+            """Call the function if its first argument has the required type. Raises TypeError."""
             first = args[0] if args else kwargs.get(name, MISSING)
             if first is not MISSING and not isinstance(first, kind):
                 raise TypeError(f"{name} = {quote(first)}: {rule}")
@@ -80,7 +80,7 @@ def require_type(
 
 
 def as_float(value: Any) -> float:
-    """Return a number as a float: inf for one beyond double precision, NaN for anything that is no number."""
+    """Return a number as a float: inf if it is too large for a float, NaN for anything that is not a number."""
     try:
         return float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
     except OverflowError:
@@ -88,7 +88,7 @@ def as_float(value: Any) -> float:
 
 
 def check_number(name: str, value: Any, allowed: Range) -> float:
-    """Return `value` as a float. Raises ValueError, one line, if it is not a number within the range."""
+    """Return an argument's `value` as a float. Raises ValueError if it is not a number within the range `allowed`."""
     number = as_float(value)
     if number not in allowed:
         raise ValueError(f"{name} = {quote(value)}: {allowed.rule}")
@@ -96,7 +96,7 @@ def check_number(name: str, value: Any, allowed: Range) -> float:
 
 
 def check_whole_number(name: str, value: Any, allowed: Range) -> int:
-    """Return `value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
+    """Return an argument's `value` as an int. Raises ValueError if it is no whole number within the range `allowed`."""
     if not isinstance(value, Integral) or isinstance(value, bool) or as_float(value) not in allowed:
         rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
         raise ValueError(f"{name} = {quote(value)}: {rule}")
@@ -104,20 +104,20 @@ def check_whole_number(name: str, value: Any, allowed: Range) -> int:
 
 
 def check_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
-    """Return `value` if it is one of the texts `allowed`. Raises ValueError, one line."""
+    """Return an argument's `value` if it is one of the texts `allowed`. Raises ValueError if it is not."""
     if not (isinstance(value, str) and value in allowed):
         raise ValueError(f"{name} = {quote(value)}: must be one of {', '.join(allowed)}")
     return value
 
 
 def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
-    """Return `values` as a contiguous array of numbers. Raises ValueError, one line that ends with `rule`."""
+    """Return an argument's `values` as a contiguous float array. Raises ValueError, ending with `rule`, if invalid."""
     try:
         if _claims_too_many(values):
             raise MemoryError
         masked = _is_masked(values)
         array = np.empty(0) if masked else np.asarray(values)
-    except MemoryError:  # the values claim to be longer than the memory
+    except MemoryError:  # the object says that it has more entries than memory holds
         raise ValueError(f"{name}: takes more memory than there is: {rule}") from None
     except Exception:  # the rows have different lengths, a list contains itself, or an object is no array
         masked, array = False, np.empty(0, dtype=object)
@@ -132,26 +132,26 @@ def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Ar
 
 
 def _claims_too_many(values: Any) -> bool:
-    """Return True if an object that is no array claims more entries than memory holds."""
+    """Return True if an object that is not an array says that it has more than MAX_LENGTH entries."""
     counted = hasattr(values, "__len__") and not hasattr(values, "__array__")
     return counted and len(values) > MAX_LENGTH
 
 
 def _is_masked(values: Any) -> bool:
-    """Return True if an array, or an array within lists, has masked entries."""
+    """Return True if an array, or any array within nested lists, is masked (numpy.ma) and has masked entries."""
     if isinstance(values, list | tuple):
         return any(map(_is_masked, values))
     return bool(np.ma.is_masked(values))
 
 
 def name_some(names: Sequence[str], most: int) -> str:
-    """Return the first `most` names as text, with the number of further names."""
+    """Return text that lists the first `most` names, and tells how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(names[:most])}{more}"
 
 
 def quote(value: Any) -> str:
-    """Return the `repr` of a value in one line of at most MAX_QUOTED_LETTERS letters."""
+    """Return a value as Python writes it (`repr`), in one line of at most MAX_QUOTED_LETTERS letters."""
     try:
         text = repr(value[: 2 * MAX_QUOTED_LETTERS] if isinstance(value, str) else value)
     # An integer has more digits than Python prints, tables are nested thousands deep, or an object cannot be shown

@@ -1,5 +1,5 @@
 """
-Functions that numba compiles and caches on disk, in the user's cache, under a hash of their source files.
+Caching of functions compiled by numba: on disk, in the user's cache folder, under a hash of their source files.
 
 Numba looks at the file of a function alone when it decides whether a build is still good, not at what it calls in other
 files. A build that belongs to all of these sources together cannot go stale. Nothing is ever written into the installed
@@ -24,16 +24,16 @@ import numba
 import platformdirs
 from numba.core.compiler import Compiler
 
-CACHE_NAME = "phase-resonance"  # name of the folder in the user's cache
+CACHE_NAME = "phase-resonance"  # name of this project's folder in the user's cache folder
 njit: Any = numba.njit  # numba has no type hints
-config: Any = numba.config  # numba's settings
+config: Any = numba.config  # global settings of numba
 
 
 class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]
-    """Compiler of numba without garbage collection: nearly all objects that it makes stay in use until its end."""
+    """Numba's compiler, made faster: Python's garbage collection, nearly useless in it, is off while it runs."""
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a Python function."""
+        """Compile a Python function, with garbage collection off."""
         if not gc.isenabled():
             return super().compile_extra(func)
         gc.disable()
@@ -44,8 +44,8 @@ class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]
 
 
 def build_folder(sources: Path) -> Path | None:
-    """Return the folder for builds of `sources`, below NUMBA_CACHE_DIR or in the user's cache; None without both."""
-    # Numba's own setting is ignored: a file in the working directory may have set it, and cached builds are executed.
+    """Return the folder for compiled `sources`, in NUMBA_CACHE_DIR or in the user's cache; None if there is neither."""
+    # For safety numba's own setting is ignored: any file in the working directory may set it, and builds are executed.
     named = os.environ.get("NUMBA_CACHE_DIR")
     parent = Path(named) if named else user_cache()
     if parent is None:
@@ -57,10 +57,10 @@ def build_folder(sources: Path) -> Path | None:
 
 
 class _AnnouncingCompiler(_CompilerWithoutCollection):
-    """Compiler that announces a long compilation in the user's process; in workers the command line announces it."""
+    """Compiler that tells the user on standard error that a long compilation begins; silent in worker processes."""
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a Python function."""
+        """Tell the user that a compilation begins, then compile a Python function."""
         if multiprocessing.parent_process() is None and sys.stderr is not None:
             print("compiling the reference, once; about 20 s", file=sys.stderr, flush=True)
         return super().compile_extra(func)
@@ -70,13 +70,13 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
     """
     Return a decorator that compiles a function with numba and caches it on disk.
 
-    sources: all that it calls, usually `__file__`; slow: whether a line on standard error says that it is compiled.
+    sources: file or folder of all code that it calls; slow: True to tell the user on standard error that it compiles.
     """
     pipeline = _AnnouncingCompiler if slow else _CompilerWithoutCollection
     folder = build_folder(Path(sources))
 
     def decorate(function: Callable[..., Any]) -> Any:
-        """Return the function as numba compiles it, with its builds in the folder."""
+        """Return the function for compilation by numba, which stores the compiled code in the folder."""
         before = config.CACHE_DIR
         config.CACHE_DIR = str(folder or "")
         try:
@@ -90,12 +90,12 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
 
 @cache
 def user_cache() -> Path | None:
-    """Return the user's cache folder of this project, else a private temporary directory; None if there is neither."""
+    """Return this project's folder in the user's cache, else a private temporary one; None if neither is writable."""
     return _find_writable(platformdirs.user_cache_path(CACHE_NAME, appauthor=False)) or _private_temporary()
 
 
 def _find_writable(folder: Path) -> Path | None:
-    """Return the folder, made if absent, if files can be written there; else None."""
+    """Return the folder, which is made if absent; None if it cannot be written to."""
     try:
         if folder.is_absolute():  # the path is relative where the home directory is unknown
             folder.mkdir(parents=True, exist_ok=True)
@@ -106,7 +106,7 @@ def _find_writable(folder: Path) -> Path | None:
 
 
 def _private_temporary() -> Path | None:
-    """Return a temporary directory of this user alone, so that no file in it comes from another user."""
+    """Return a temporary directory that no other user can write to (compiled code in it is run); None if impossible."""
     user = os.getuid() if hasattr(os, "getuid") else None
     folder = Path(tempfile.gettempdir()) / (CACHE_NAME if user is None else f"{CACHE_NAME}-{user}")
     try:

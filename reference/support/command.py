@@ -1,5 +1,5 @@
 """
-Ending of every command: its exit code, one line for any error, and never a traceback on the terminal.
+How every command line program ends: its exit code, one line for any error, never a traceback on the terminal.
 
 Codes that are common to all commands: 2 for wrong input; 3 for an unexpected error, whose traceback goes to a file,
 and for a file or an output that cannot be written; 128 + number for a signal, 130 for Ctrl-C; 141 if whoever read the
@@ -24,36 +24,36 @@ from typing import Any, NoReturn, TextIO, cast
 from reference.support.scene_error import MAX_LETTERS, SceneError
 from reference.support.version import __version__
 
-# Exit codes: after an error that no rule foresees, and after the reader of standard output has closed it
+# Exit codes: for an error that the program does not expect, and when the reader of standard output has closed it
 UNEXPECTED_ERROR_CODE, CLOSED_OUTPUT_CODE = 3, 141
-# Signals that end the process
+# Signals of the operating system that end the process
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 class StoppedError(KeyboardInterrupt):
-    """Interrupt of the run by the signal `number`."""
+    """Exception by which a signal of the operating system, `number`, interrupts the command."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
-        """Set the number of the signal."""
+        """Set the number of the signal that interrupts."""
         super().__init__(number)
         self.number = number
 
 
 class OutputError(Exception):
-    """Error for standard output that takes no more text; not an OSError, which would stand for an unwritable file."""
+    """Error if standard output cannot be written; not an OSError, which is for files that cannot be written."""
 
     def __init__(self, error: OSError) -> None:
-        """Set the error of the operating system as its text."""
+        """Take over the text of an operating system's error, and whether the reader has closed the output."""
         super().__init__(error.strerror or str(error))
         self.closed = isinstance(error, BrokenPipeError)
 
 
 class UsageError(ValueError):
-    """A command line that cannot be parsed. `str(error)` is one line."""
+    """Error for a command line that cannot be parsed; its text is one line."""
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """Parser that raises UsageError instead of printing the usage, and permits no shortened options."""
+    """Command line parser that raises UsageError instead of printing the usage, and permits no shortened options."""
 
     def __init__(self, prog: str, description: str) -> None:
         """Make the parser of the command `prog`."""
@@ -61,7 +61,7 @@ class OneLineParser(argparse.ArgumentParser):
         self.add_argument("--version", action="version", version=f"phase-resonance {__version__}")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Return the parsed words; refuse "--" as value of an option, which argparse would take as empty."""
+        """Parse words as argparse does, but refuse "--" as value of an option, which argparse would take as empty."""
         words = list(sys.argv[1:] if args is None else args)
         options = words[: words.index("--")] if "--" in words else words
         for option, _, value in (word.partition("=") for word in options if word.startswith("--")):
@@ -70,7 +70,7 @@ class OneLineParser(argparse.ArgumentParser):
         return super().parse_known_args(words, namespace)
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError with the message in one line, from which the middle is cut if it is long."""
+        """Raise UsageError with the message in one line; if it is long, its middle is left out."""
         text = message if message.isprintable() else repr(message)
         if len(text) > 2 * MAX_LETTERS:
             text = f"{text[:MAX_LETTERS]}...{text[-MAX_LETTERS:]}"
@@ -96,7 +96,7 @@ def run_command(main: Callable[[], int]) -> NoReturn:
 
 @contextmanager
 def stop_on_signals() -> Iterator[None]:
-    """Raise StoppedError in the block at the first signal that would end the process and is not ignored."""
+    """Context manager: in its block, raise StoppedError at the first signal that ends a process and is not ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread can handle signals
         return
@@ -104,7 +104,7 @@ def stop_on_signals() -> Iterator[None]:
     heard = [number for number in SIGNALS if before[number] is not signal.SIG_IGN]
 
     def stop(number: int, frame: FrameType | None) -> NoReturn:
-        """Raise StoppedError for a signal, and ignore all later ones."""
+        """Raise StoppedError for a signal, and ignore all later signals."""
         for each in heard:
             signal.signal(each, signal.SIG_IGN)
         raise StoppedError(number)
@@ -122,7 +122,7 @@ class _CheckedStdout:
     """Standard output that raises OutputError where it cannot be written."""
 
     def __init__(self, stream: TextIO) -> None:
-        """Wrap the stream."""
+        """Wrap a text stream, to which all is written."""
         self._stream = stream
 
     def write(self, text: str) -> int:
@@ -133,19 +133,19 @@ class _CheckedStdout:
             raise OutputError(error) from None
 
     def flush(self) -> None:
-        """Write what is buffered. Raises OutputError."""
+        """Write the text that is buffered. Raises OutputError."""
         try:
             self._stream.flush()
         except OSError as error:
             raise OutputError(error) from None
 
     def __getattr__(self, name: str) -> Any:
-        """Return any other attribute of the stream."""
+        """Return any other attribute from the wrapped stream."""
         return getattr(self._stream, name)
 
 
 def _exit_code_of(main: Callable[[], int]) -> int:
-    """Return the exit code of `main`, also after any exception."""
+    """Run `main` and return its exit code; any exception is told in one line and gives an exit code as well."""
     try:
         for word in sys.argv[1:]:
             if any("\ud800" <= letter <= "\udfff" for letter in word):
@@ -173,7 +173,7 @@ def _exit_code_of(main: Callable[[], int]) -> int:
 
 
 def _write_traceback_file() -> str:
-    """Write the traceback of the present exception to a file; return the path of the file."""
+    """Write the traceback of the present exception to a file; return text that says where it is, or why not."""
     text = f"{sys.argv}\n{sys.version}\n{traceback.format_exc()}"
     try:
         handle, name = tempfile.mkstemp(prefix="phase-resonance-", suffix=".log")
@@ -191,7 +191,7 @@ def _print_line(line: str) -> None:
 
 
 def _flush_at_last(output: TextIO) -> None:
-    """Flush the output, or close it, so that the interpreter has no error to print at its end."""
+    """Flush the output; redirect it to nowhere if that fails, so that Python prints no error as it exits."""
     for stream in (output, sys.stderr):
         try:
             if stream is not None:

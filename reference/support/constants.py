@@ -2,4 +2,4 @@
 
 from __future__ import annotations
 
-GRAVITY = 9.81  # m/s^2, the paper's value (section 5)
+GRAVITY = 9.81  # m/s^2, acceleration of gravity, as in the paper (section 5)

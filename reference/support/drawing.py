@@ -1,4 +1,4 @@
-"""Drawings of arrays with matplotlib: a surface over the phases, and a motion over time."""
+"""Drawing of arrays with matplotlib: a quantity over both initial phases (a surface), and a motion over time."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-COLOR_MAP = "cividis"  # readable alike with and without color vision deficiency, and in print
-MAX_TIME_POINTS = 20_000  # a drawn line has at most so many points
+COLOR_MAP = "cividis"  # color map that also people with color vision deficiency can read, and that prints well
+MAX_TIME_POINTS = 20_000  # largest number of points in a drawn line over time
 
 
 def escape_for_matplotlib(text: str) -> str:
-    """Return a text of a scene for matplotlib, with dollar signs escaped that would begin a formula."""
+    """Escape the dollar signs in a text, which would begin a formula in matplotlib, and return it."""
     return text.replace("$", r"\$")
 
 
 def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: str, axes: Axes | None) -> Axes:
     """
-    Draw heights (A, B) over alpha_1 (A,) and alpha_2 (B,), rad, with a title and a color bar with the label.
+    Draw a quantity `height` (A, B) over the initial phases alpha_1 (A,) and alpha_2 (B,), rad, which are in `grid`.
 
-    A surface on axes with the projection "3d", a map on other ones.
+    It is drawn as a surface on axes with the projection "3d", else as a color map. label: text of the color bar.
     """
     axes = _new_axes("3d") if axes is None else axes
     if axes.name == "3d":
         first, second = np.meshgrid(*grid, indexing="ij")
-        ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # the colors of faces are means of their corners
+        ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # without them, colors span the means of faces
         image = axes.plot_surface(first, second, height, cmap=COLOR_MAP, rcount=200, ccount=200, linewidth=0.2, **ends)  # type: ignore[attr-defined]
         axes.set_zlabel(label)  # type: ignore[attr-defined]
         axes.figure.colorbar(image, ax=axes, label=label, shrink=0.6, pad=0.12)
@@ -50,7 +50,7 @@ def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: st
 
 
 def _mark_quarter_turns(axis: Axis, span: float) -> None:
-    """Set the ticks of an axis in rad to multiples of pi / 2, written as "π/2"; no ticks on a short axis."""
+    """Set the ticks of an axis in rad to multiples of pi / 2, written as "π/2", if it spans 0.9 pi to 8 pi."""
     from matplotlib.ticker import FuncFormatter, MultipleLocator  # matplotlib is loaded on first use
 
     if 0.9 * np.pi <= span <= 8.0 * np.pi:
@@ -60,7 +60,7 @@ def _mark_quarter_turns(axis: Axis, span: float) -> None:
 
 def write_half_turns(phase: float) -> str:
     """
-    Return a multiple of pi / 2, rad, as text such as "3π/2".
+    Return an angle in rad that is a multiple of pi / 2 as text such as "3π/2".
 
     >>> [write_half_turns(quarters * np.pi / 2.0) for quarters in (-1, 0, 1, 2, 3, 4)]
     ['-π/2', '0', 'π/2', 'π', '3π/2', '2π']
@@ -73,7 +73,7 @@ def write_half_turns(phase: float) -> str:
 def draw_motion(
     time: Array, values: Array, rests: Sequence[tuple[float, float]], label: str, title: str, axes: Axes | None
 ) -> Axes:
-    """Draw values (T, N, 3) of every body along x and y over `time` (T,), s, with the intervals of rest shaded."""
+    """Draw a motion, `values` (T, N, 3) of all bodies along x and y, over `time` (T,), s; shade intervals of rest."""
     axes = _new_axes(None) if axes is None else axes
     every = slice(None, None, -(-len(time) // MAX_TIME_POINTS) or 1)
     for body in range(values.shape[1]):
@@ -90,7 +90,7 @@ def draw_motion(
 
 
 def _new_axes(projection: str | None) -> Axes:
-    """Return new axes of matplotlib with this projection."""
+    """Return the axes of a new matplotlib figure; projection: "3d", or None for a plane."""
     import matplotlib.pyplot as plt  # matplotlib is loaded on first use
 
     axes: Axes = plt.figure(layout="constrained").add_subplot(projection=projection)

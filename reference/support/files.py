@@ -1,6 +1,6 @@
 """
-Files and directories that appear whole or not at all, and replace nothing that somebody else wrote; and reading of a
-file that somebody else may have written is read.
+Writing of files and directories whole or not at all, which replaces nothing that somebody else wrote; and reading of
+files that somebody else may have written.
 
 A file is written under a temporary name in the folder of its place and renamed. A directory is written in a staging
 directory in that folder. The staging directory carries a mark that names the place, and a lock that ends with the
@@ -26,11 +26,11 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-# Prefix of temporary files and staging directories; a user's file may have it as well, so that MARK_FILE decides
+# Prefix of names of temporary files and staging directories (a user's file may have it too: only MARK_FILE is proof)
 TEMPORARY_PREFIX = ".phase-resonance-"
 MARK_FILE = "staging.json"  # file in a staging directory that names the program and the path for which it was made
-CHUNK_BYTES = 2**20  # bytes read at once
-NEW_FILES_FOLDER = "new"  # directory in a staging directory for the files being written
+CHUNK_BYTES = 2**20  # number of bytes of a file that are read at once
+NEW_FILES_FOLDER = "new"  # name of the folder, in a staging directory, for the files being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
@@ -56,7 +56,7 @@ def read_file(file: str | Path, largest: int) -> bytes:
 
 
 def write_atomically(file: Path, content: bytes) -> None:
-    """Write a file of this program, whole or not at all, in place of the old one. Raises OSError."""
+    """Write a file of this program in place of an old one: if it fails, the old one remains. Raises OSError."""
     part = _write_part(file, content)
     try:
         os.replace(part, file)
@@ -66,7 +66,7 @@ def write_atomically(file: Path, content: bytes) -> None:
 
 
 def write_new(file: Path, content: bytes) -> Path:
-    """Write a file under this name, or the next free one such as `run-2.gif`; return its path. Raises OSError."""
+    """Write a new file under this name, or the next free one such as `run-2.gif`; return its path. Raises OSError."""
     part = _write_part(file, content)
     try:
         for place in iterate_names(file):
@@ -79,7 +79,7 @@ def write_new(file: Path, content: bytes) -> Path:
 
 
 def iterate_names(place: Path) -> Iterator[Path]:
-    """Iterate over `place` itself, then the same name with numbers from 2 before its suffix."""
+    """Iterate over paths to try: `place` itself, then its name with -2, -3, ... before the suffix."""
     yield place
     number = 2
     while True:
@@ -89,7 +89,7 @@ def iterate_names(place: Path) -> Iterator[Path]:
 
 @contextmanager
 def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
-    """Hold the lock of a directory for the block; yield whether it is held, which may fail without `wait` or locks."""
+    """Hold a directory's lock for a block; yield False if it is not held (taken and not `wait`, or no locks exist)."""
     handle = -1
     try:
         if fcntl is not None:
@@ -108,7 +108,7 @@ def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
 
 @contextmanager
 def staging_directory(place: Path) -> Iterator[Path]:
-    """Make a locked directory next to `place` for the block, with an empty NEW_FILES_FOLDER in it; yield its path."""
+    """Make a locked staging directory next to `place` for a block, with an empty NEW_FILES_FOLDER; yield its path."""
     folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY_PREFIX))
     with hold_lock(folder, wait=False):
         try:
@@ -120,7 +120,7 @@ def staging_directory(place: Path) -> Iterator[Path]:
 
 
 def find_abandoned_staging(place: Path) -> Iterator[Path]:
-    """Iterate over staging directories of `place` whose process has ended, each locked for the loop's body."""
+    """Iterate over staging directories of `place` that ended processes have left; each is locked in the loop's body."""
     with suppress(OSError):
         for folder in sorted(place.parent.iterdir()):
             if folder.name.startswith(TEMPORARY_PREFIX) and not folder.is_symlink() and _is_marked(folder, place):
@@ -130,7 +130,7 @@ def find_abandoned_staging(place: Path) -> Iterator[Path]:
 
 
 def clear_staging(folder: Path) -> None:
-    """Remove a staging directory of this program, without anything that somebody else has put into it."""
+    """Remove a staging directory of this program, but no file that somebody else has put into it."""
     shutil.rmtree(folder / NEW_FILES_FOLDER, ignore_errors=True)
     _remove_file(folder / MARK_FILE)
     with suppress(OSError):
@@ -138,12 +138,12 @@ def clear_staging(folder: Path) -> None:
 
 
 def _content_of_mark(folder: Path, place: Path) -> bytes:
-    """Return the content of the file MARK_FILE for a staging directory `folder` of `place`."""
+    """Return the content of MARK_FILE, which marks `folder` as this program's staging directory for `place`."""
     return json.dumps({"what": "staging directory of phase-resonance", "name": folder.name, "for": place.name}).encode()
 
 
 def _is_marked(folder: Path, place: Path) -> bool:
-    """Return True if the MARK_FILE in a directory shows that it is a staging directory of `place`."""
+    """Return True if the MARK_FILE in a directory shows that it is this program's staging directory for `place`."""
     try:
         return read_file(folder / MARK_FILE, CHUNK_BYTES) == _content_of_mark(folder, place)
     except OSError:
@@ -151,7 +151,7 @@ def _is_marked(folder: Path, place: Path) -> bool:
 
 
 def _write_part(file: Path, content: bytes) -> Path:
-    """Write a temporary file with the content next to `file`; return its path. Raises OSError."""
+    """Write `content` to a temporary file in the folder of `file`; return its path. Raises OSError."""
     part = file.with_name(f"{TEMPORARY_PREFIX}{os.getpid()}-{secrets.token_hex(6)}")
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
@@ -164,7 +164,7 @@ def _write_part(file: Path, content: bytes) -> Path:
 
 
 def _move_to_free(part: Path, place: Path) -> None:
-    """Give a temporary file its name. Raises FileExistsError if another file has just taken the name."""
+    """Rename a temporary file to `place`. Raises FileExistsError if another file has just taken this name."""
     try:
         os.link(part, place)
     except FileExistsError:

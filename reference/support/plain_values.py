@@ -10,7 +10,7 @@ import numpy as np
 
 def as_plain_values(value: Any) -> Any:
     """
-    Return lists and numbers of Python in place of arrays, tuples and numbers of NumPy, at any depth of lists.
+    Replace NumPy arrays and numbers, and tuples, by Python's lists and numbers, at any depth of nested lists.
 
     >>> as_plain_values((np.float64(0.5), np.arange(2)))
     [0.5, [0, 1]]
@@ -22,7 +22,7 @@ def as_plain_values(value: Any) -> Any:
 
 def as_hashable(value: Any) -> Hashable:
     """
-    Return tuples and frozen sets in place of lists and tables, at any depth; equal values give equal ones.
+    Replace lists by tuples and tables (dicts) by frozen sets, at any depth, for hashing; equal values stay equal.
 
     >>> hash(as_hashable({"a": [1.0]})) == hash(as_hashable({"a": [1]}))
     True

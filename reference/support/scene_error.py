@@ -1,4 +1,4 @@
-"""Errors of a wrong scene: one line with file, key, value and rule."""
+"""Errors for an invalid scene: one line with file, key, value and the rule that the value breaks."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 from reference.support.arguments import quote
 
-MAX_LETTERS = 300  # an error shows at most so many letters of a path or key
-MAX_ERRORS = 50  # a message lists at most so many errors of one file, and counts the others
-# Spellings of one word share at least this ratio of their letters; words of other meanings share less
+MAX_LETTERS = 300  # largest number of letters of a path or key that an error message shows
+MAX_ERRORS = 50  # largest number of errors of one file that a message lists; it only counts the others
+# Smallest similarity (difflib) of an unknown key to a valid one for "did you mean ...?": other words share less
 MIN_SPELLING_SIMILARITY = 0.7
-# Beginnings of rules about a missing key, a missing table and an unknown key
+# First words of the rules in error messages about a missing key, a missing table and an unknown key
 IS_REQUIRED, IS_MISSING, IS_UNKNOWN = "this key is required", "the table [", "unknown key; "
 YIELDING_HINT = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
@@ -28,7 +28,7 @@ NO_DAMPER_HINT = (
 )
 EFFECTIVE_RADIUS_HINT = "write radius, the effective radius rho = R - r of the one sliding surface, m"
 DERIVED_KEY_HINT = "follows from radius, friction and the weight: remove this key"
-HINTS = {  # what to write for keys of other programs, by their letters and digits, in one table or in any
+HINTS = {  # what to write for keys that users know from other programs, by key or "table.key", in letters and digits
     **dict.fromkeys(("bearings", "isolators"), "did you mean supports?"),
     **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), YIELDING_HINT),
     **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), YIELDING_HINT),
@@ -78,7 +78,7 @@ class SceneError(ValueError):
     """
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
-        """Set file, key, value and rule of the error, and the other errors of the file."""
+        """Set file, key, value and rule of the error, and the other errors in the same file."""
         self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
         shown = (self, *self.others[: MAX_ERRORS - 1])
         said = "; also ".join(
@@ -89,45 +89,45 @@ class SceneError(ValueError):
 
     @property
     def _sentence(self) -> str:
-        """Return key, value and rule as one sentence."""
+        """Return key, value and rule of the error as one sentence, without the file."""
         absent = self.value is None and self.rule.startswith((IS_REQUIRED, IS_MISSING))
         value = "" if absent else f" = {quote(self.value)}"
         return f"{one_line(self.key)}{value}: {printable(self.rule)}"
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
-        """Return class and arguments, from which pickle makes the error again."""
-        # Worker processes send the error to the main process
+        """Return the class and its arguments, from which pickle makes the error again in another process."""
+        # Worker processes send their errors to the main process by pickle
         return SceneError, (self.file, self.key, self.value, self.rule, self.others)
 
 
 class MisfitError(ValueError):
-    """Error for values that are wrong together though each is valid alone; `first_scene_error` words it."""
+    """Error for scene values that are each valid but contradict each other; `first_scene_error` makes a SceneError."""
 
     def __init__(self, key: str, value: Any, rule: str) -> None:
-        """Set the key to name, its value, and the rule that the values break together."""
+        """Set the key that the message names, its value, and the rule that the values break together."""
         self.key, self.value, self.rule = key, value, rule
         super().__init__(f"{key}: {rule}")
 
 
 def one_line(text: str) -> str:
-    """Return a text, cut to MAX_LETTERS letters, or as a Python literal if it would break the line."""
+    """Return a text that fits in one line: cut to MAX_LETTERS letters, and escaped if it has control characters."""
     if len(text) > MAX_LETTERS:
         text = f"{text[: MAX_LETTERS - 3]}..."
     return text if text.isprintable() else repr(text)
 
 
 def printable(text: str) -> str:
-    """Return a name with all control characters replaced, which a terminal would obey."""
+    """Return a text with all control characters replaced, so that a terminal cannot take them as commands."""
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
 
 
 def keys_of_table(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
-    """Return the keys of a table, listed under its name or under "*" if its name is free; none for any other."""
+    """Return the valid keys of a scene's table from `keys`, where "parent.*" stands for tables with any name."""
     return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())
 
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
-    """Return the error for an unknown dotted `key`, with what to write instead, or the nearest of the `valid` keys."""
+    """Return the error for an unknown key ("table.key") that proposes what to write, or the most similar valid keys."""
     *table, last = [part for part in key.split(".") if not part.isdecimal()] or [""]
     letters = "".join(filter(str.isalnum, last[:MAX_LETTERS].lower()))
     if hint := HINTS.get(f"{'.'.join(table)}.{letters}", HINTS.get(letters)):

@@ -1,7 +1,7 @@
 """
 Compilation of the solver: by numba, cached on disk under a hash of the solver's whole source.
 
-Sums are not reordered and products are not fused with sums (no `fastmath`), so that mu is the same to the last bit in
+Sums are not reordered and products not fused with sums (no `fastmath`), so that results are the same to the last bit in
 every process and on every processor: docs/decisions/0003-floating-point-flags.md.
 """
 
@@ -14,15 +14,15 @@ from typing import Any
 from reference.solver.compiled.parts import compiled_part
 from reference.support.build_cache import cache_on_disk
 
-# Divisions by zero give inf or NaN as in NumPy; other threads can run meanwhile.
+# Options of numba: divisions by zero give inf or NaN as in NumPy; other Python threads can run at the same time.
 NUMBA_OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
-    """Decorate a part of the solver that only compiled code calls."""
+    """Decorate a solver function that only compiled code calls, so that numba compiles it (parts.py)."""
     return compiled_part(**NUMBA_OPTIONS)(function)
 
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:
-    """Compile `function` with everything it calls on first use, and keep the build on disk."""
+    """Decorate a function that Python calls: its first call compiles it with all it calls, and stores that on disk."""
     return cache_on_disk(Path(__file__).parents[1], slow=True, **NUMBA_OPTIONS)(function)

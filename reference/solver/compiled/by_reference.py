@@ -1,5 +1,5 @@
 """
-Numba's types of structures that compiled code passes by reference.
+Types, for the compiler numba, of structures that compiled code passes by reference.
 
 Numba can do this itself (`structref.register`). It spells out all fields of a structure in the name of every function
 with such an argument, and again wherever a field is read: thousands of characters each time, to write and to read. Its
@@ -24,15 +24,15 @@ from numba.extending import intrinsic
 
 
 class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
-    """Numba's type of a structure passed by reference; each subclass has one set of fields."""
+    """Type, for the compiler numba, of a structure passed by reference; each subclass is one kind of structure."""
 
     def __init_subclass__(cls) -> None:
-        """Register numba's model of the data of a structure for the subclass."""
+        """Tell numba how the data of a structure of the subclass lie in memory."""
         default_manager.register(cls, StructRefModel)
 
     @property
     def mangling_args(self) -> tuple[str, tuple[()]]:
-        """Name of the type in names of compiled functions: it includes the fields that are None (variants.py)."""
+        """Name of this type within names of compiled functions: it tells which fields are None (variants.py)."""
         return "_".join([self._typename, *(name for name, kind in self._fields if kind == types.none)]), ()
 
     @cached_property
@@ -42,11 +42,11 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
     @cached_property
     def places(self) -> dict[str, tuple[int, Any]]:
-        """Offset of every field, in bytes, and the type of a pointer to it; filled by `pointer`."""
+        """By field name: offset, in bytes, in the structure, and type of a pointer; filled as `pointer` needs it."""
         return {}
 
     def pointer(self, context: Any, builder: Any, reference: Any, name: str) -> Any:
-        """Write code that computes the pointer to a field, and return this pointer."""
+        """Generate machine code that computes the pointer to a structure's field, and return this pointer."""
         if name not in self.places:
             model = context.data_model_manager[self.get_data_type()]
             whole, position = model.get_value_type(), model.get_field_position(name)
@@ -60,25 +60,25 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
 @infer_getattr
 class _Fields(AttributeTemplate):  # type: ignore[misc]
-    """Lookup by which numba learns the type of a field of a structure."""
+    """Lookup by which the compiler numba finds the type of a structure's field."""
 
     key = ByReference
 
     def generic_resolve(self, kind: ByReference, name: str) -> Any:
-        """Return the type of a field, None for an unknown name."""
+        """Return the type of the structure's field with this name; None if there is no such field."""
         return kind.field_dict.get(name)
 
 
 @lower_getattr_generic(ByReference)
 def _read(context: Any, builder: Any, kind: ByReference, reference: Any, name: str) -> Any:
-    """Write code that reads a field, without counting a new reference to it."""
+    """Generate machine code that reads a structure's field, without counting a new reference to it."""
     value = builder.load(kind.pointer(context, builder, reference, name))
     return impl_ret_borrowed(context, builder, kind.field_dict[name], value)
 
 
 @lower_setattr_generic(ByReference)
 def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str) -> None:
-    """Write code that sets a field, and counts the references to an array in it."""
+    """Generate machine code that sets a structure's field, and counts the references to an array in it."""
     kind, given = signature.args
     reference, value = arguments
     field = kind.field_dict[name]
@@ -90,21 +90,21 @@ def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str
 
 
 def _allocate(context: Any, builder: Any, kind: ByReference) -> Any:
-    """Write code that allocates a structure without values."""
+    """Generate machine code that allocates a structure, its fields not yet set."""
     _, lower = structref.new._defn(context.typing_context, types.TypeRef(kind))
     return lower(context, builder, None, None)
 
 
 def structure_from_tuple(kind: type[ByReference]) -> Any:
-    """Return a function of compiled code that makes a structure of this type from a named tuple."""
+    """Return a function, for compiled code, that copies a named tuple into a new structure of this type."""
 
     @intrinsic
     def construct(context: Any, values: Any) -> Any:
-        """Return the signature of the function, and the writer of its code, as numba asks for them."""
+        """Return the signature of the function, and the generator of its machine code, as numba demands it."""
         structure = kind(list(zip(values.fields, values.types)))
 
         def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            """Write code that allocates the structure and copies the fields of the tuple into it."""
+            """Generate machine code that allocates the structure and copies the fields of the tuple into it."""
             reference = _allocate(context, builder, structure)
             for k, (name, field) in enumerate(structure._fields):
                 value = builder.extract_value(arguments[0], k)
@@ -118,15 +118,15 @@ def structure_from_tuple(kind: type[ByReference]) -> Any:
 
 
 def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
-    """Return a function of compiled code that makes a structure of this type with these fields, all bits zero."""
+    """Return a function, for compiled code, that makes a structure of this type with these fields, all bits zero."""
     structure = kind([(name, typeof(value)) for name, value in fields.items()])
 
     @intrinsic
     def construct(context: Any) -> Any:
-        """Return the signature of the function, and the writer of its code, as numba asks for them."""
+        """Return the signature of the function, and the generator of its machine code, as numba demands it."""
 
         def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            """Write code that allocates the structure."""
+            """Generate machine code that allocates the structure."""
             return _allocate(context, builder, structure)
 
         return structure(), lower_call

@@ -1,5 +1,5 @@
 """
-Compilation of parts (parts.py) by numba's own passes, with another library for the code that they write.
+Compilation by numba of parts (functions that only compiled code calls, parts.py) without machine code of their own.
 
 All of this uses numba's internals, which may change with any version.
 """
@@ -20,27 +20,27 @@ from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalizati
 from numba.core.typing import Context
 from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
-# Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
-# functions that numba inlines before their types are known, and no variable whose end must be marked.
+# Compiler passes of numba that change nothing in a part: it has no whole-array expressions, inner functions, branches
+# on None or functions that numba inlines before their types are known, and no variable whose end must be marked.
 UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
-PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # functions such as operator.add
+PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # Python's operators as functions
 
 
 class _NoEnvironment:
-    """Substitute for numba's code generator, which hands a function the Python objects that its wrapper needs."""
+    """Stand-in for numba's code generator, which would store the Python objects that a function's wrapper needs."""
 
     def set_env(self, name: str, environment: object) -> None:
         """Do nothing: no Python code calls a part, so that it needs no Python objects."""
 
 
 class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """Code of one part (a function only called by compiled code), which entry points link, optimize and translate."""
+    """Code of one part (a function that only compiled code calls), which becomes machine code only with its caller."""
 
     codegen = _NoEnvironment()
     _whole: Any = None
 
     def finalize(self) -> None:
-        """Finish the part without linking what it calls, without optimizing and without translating it."""
+        """Finish the part's code, but do not link, optimize or translate it to machine code: its callers do this."""
         self._raise_if_finalized()
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == Linkage.external:
@@ -48,7 +48,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        """Return the code of this part and of all parts that it calls, each once, for the linking of an entry point."""
+        """Return the code of this part and of all parts that it calls, each once, to be linked into its caller."""
         if self._whole is None:
             whole = self._final_module.clone()
             libraries = [self]
@@ -64,39 +64,39 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         return self._whole
 
     def get_pointer_to_function(self, name: str) -> int:
-        """Return 0: there is no machine code."""
+        """Return 0, as a part has no machine code of its own."""
         return 0
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _LowerAsPart(LoweringPass):  # type: ignore[misc]
-    """Compiler pass that directs machine code into a `_PartLibrary` and switches off reference counting."""
+    """Compiler pass that makes numba generate code into a `_PartLibrary`, without counting references to arrays."""
 
     _name = "as_part"
 
     def __init__(self) -> None:
-        """Make the pass."""
+        """Initialize the compiler pass; numba demands a constructor without arguments."""
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        """Give the function a `_PartLibrary` and switch off reference counting; return False: its code is unchanged."""
-        context = state.targetctx  # numba makes a context for every function
+        """Direct the function's code into a `_PartLibrary`, reference counting off; return False: nothing rewritten."""
+        context = state.targetctx  # numba makes one for every function, so that it may be changed here
         state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
-        context.nrt = NRTContext(context, True)  # fields of structures are still read through this context
+        context.nrt = NRTContext(context, True)  # code that reads fields of structures still needs this object
         context.enable_nrt = False
         return False
 
 
 class _RememberedFunctions(Context):  # type: ignore[misc]
-    """Numba's lookup of the types of functions, which remembers the answer for every function and its arguments."""
+    """Numba's lookup of function signatures, with a memory of the result for each function and argument types."""
 
     def __init__(self, context: Context) -> None:
-        """Share the contents of one of numba's contexts, and start without remembered answers."""
+        """Share the contents of one of numba's lookups, without a copy, and start with an empty memory."""
         self.__dict__ = context.__dict__
         self._known: dict[Any, Any] = {}
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """Return the signature of a function for these types of arguments, from memory where it is known."""
+        """Return the signature of a function for arguments of these types, from memory if it was found before."""
         if kws or not (isinstance(func, types.Function) or func in PYTHON_OPERATORS):
             return super().resolve_function_type(func, args, kws)
         if (func, args) not in self._known:
@@ -104,14 +104,14 @@ class _RememberedFunctions(Context):  # type: ignore[misc]
         return self._known[func, args]
 
 
-remembered_functions = cache(_RememberedFunctions)  # returns one lookup for each of numba's contexts
+remembered_functions = cache(_RememberedFunctions)  # returns the same lookup again for the same context of numba
 
 
 class PartCompiler(CompilerBase):  # type: ignore[misc]
-    """Compiler with numba's own passes except those that a part does not need, and with `_LowerAsPart`."""
+    """Compiler for parts: the passes of numba without those that a part does not need, and `_LowerAsPart`."""
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a Python function as a part, with remembered lookups of types."""
+        """Compile a Python function as a part; look up the signatures of called functions only once."""
         self.state.typingctx = remembered_functions(self.state.typingctx)
         return super().compile_extra(func)
 

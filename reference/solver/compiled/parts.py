@@ -1,5 +1,5 @@
 """
-Functions that exist only as parts of the compiled functions that call them.
+Functions (parts) that only compiled functions call, and that are compiled as a piece of these callers.
 
 Numba optimizes a function together with all that it calls, and translates it to machine code, before it looks at the
 next caller. A part of a large function goes through that once per level of callers, and only the last build ever runs.
@@ -21,11 +21,11 @@ from typing import Any
 import numba
 
 njit: Any = numba.njit  # numba has no type hints
-NEWEST_KNOWN = 0, 68  # newest version of numba on which its internals were tested (oldest: 0.61)
+NEWEST_KNOWN = 0, 68  # newest numba tested with its internals (oldest: 0.61); newer ones compile the slower, public way
 
 
 def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Decorate a function that only compiled functions call, and that makes, keeps and returns no arrays."""
+    """Return a decorator for a function that only compiled code calls, and that makes, keeps and returns no arrays."""
     if numba.version_info.short <= NEWEST_KNOWN:
         from reference.solver.compiled.numba_parts import PartCompiler
 

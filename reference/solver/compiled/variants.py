@@ -1,4 +1,4 @@
-"""Functions of compiled code with two variants, of which only the one that a system needs is compiled."""
+"""Functions of compiled code with two variants, of which only the one that the scene's system needs is compiled."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]
     """Return a function whose first argument is a System: `without` where its `field` is None, else `present`."""
 
     def call(system: Any, *numbers: Any) -> Any:
-        """Call the variant for a system from Python; compiled code gets it by `_type` and `_lower`."""
+        """Call the variant that fits the system; Python runs this, compiled code uses `_type` and `_lower` instead."""
         return (without if getattr(system, field) is None else present)(system, *numbers)
 
     def choose(system: Any) -> Any:
-        """Return the variant for numba's type of a system."""
+        """Return the variant that fits a system, given numba's type of this system."""
         return types.Dispatcher(without if system.field_dict[field] == types.none else present)
 
     @type_callable(call)
     def _type(context: Any) -> Callable[..., Any]:
-        """Return the function that tells numba the types of a call."""
+        """Return the function that tells numba the signature of a call of the variant."""
 
         def resolve(*kinds: Any) -> Any:
             """Return the signature of a call with arguments of these types."""
@@ -34,7 +34,7 @@ def choose_variant(field: str, without: Any, present: Any) -> Callable[..., Any]
 
     @lower_builtin(call, types.VarArg(types.Any))
     def _lower(context: Any, builder: Any, call: Any, arguments: Any) -> Any:
-        """Write code that calls the variant."""
+        """Generate machine code that calls the variant that fits the system."""
         function = context.get_function(choose(call.args[0]), call)
         context.add_linking_libs(getattr(function, "libs", ()))
         return function(builder, arguments)

@@ -1,8 +1,8 @@
 """
-Friction at the contact: slip vectors and the conditions for rest.
+Friction laws at the contact: slip vectors (friction over normal force) and the conditions for rest.
 
-Laws: dry and set-valued (2.5), dry and linear below the speed v_reg, lubricated with mu = f_c v (3.14). Each gives
-a slip vector s = factor * v_h with v_h the horizontal velocity:
+Laws: dry and set-valued (2.5), dry and linear below the speed v_reg, lubricated with mu = f_c v (3.14); mu is the
+friction coefficient. Each gives a slip vector s = factor * v_h with v_h the horizontal velocity:
   sliding     factor = mu / v       (v the full sliding speed (3.8))
   creeping    factor = mu / v_reg   (v < v_reg)
   lubricated  factor = f_c
@@ -39,13 +39,13 @@ def kinetic_coefficient(system: System) -> float:
 
 @compiled
 def viscous_factor(system: System) -> float:
-    """Return the viscous friction coefficient f_c of a lubricated contact, s/m."""
+    """Return f_c, s/m, of a lubricated contact, whose friction coefficient is f_c times the sliding speed (3.14)."""
     return system.friction
 
 
 @compiled
 def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the largest static friction force for a normal force `reaction`, both over the platform's mass, m/s^2."""
+    """Return the static friction limit under the normal force `reaction`, both over the platform's mass, m/s^2."""
     return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
@@ -59,19 +59,19 @@ def coefficient(system: System, speed: Number) -> Number:
 
 @compiled
 def coefficient_slope(system: System, speed: Number) -> Number:
-    """Return the derivative of the friction coefficient mu by the sliding speed, s/m."""
+    """Return the derivative of the friction coefficient with respect to the sliding speed, s/m."""
     return system.rise * system.rate * exp(-system.rate * speed)
 
 
 @compiled
 def rising_rate(system: System, speed: float) -> float:
-    """Return the rate, 1/s, at which the growth of friction with speed damps the speed; 0 if friction does not grow."""
+    """Return the rate, 1/s, at which a change of speed decays because friction grows with speed; 0 if it does not."""
     return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
 @compiled
 def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
-    """Return the squared sliding speed, m^2/s^2: that of (3.8), or the horizontal one in the small equations (4.3)."""
+    """Return the squared sliding speed, m^2/s^2: along the sphere (3.8); horizontal in the small equations (4.3)."""
     planar = vx * vx + vy * vy
     if system.small:
         return planar
@@ -82,10 +82,10 @@ def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy
 @compiled
 def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return by how much the squared tangential force exceeds the squared static friction limit, and the reaction.
+    Return (squared tangential force minus squared static friction limit, reaction) at rest, by the exact equations.
 
     The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
-    at most mu times its normal part N > 0, that is while the excess |T|^2 - (mu N)^2 is not positive.
+    at most the friction coefficient mu times its normal part N > 0: while |T|^2 - (mu N)^2 is not positive.
     """
     nx = -load.px / system.radius
     ny = -load.py / system.radius
@@ -102,10 +102,10 @@ def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Numbe
 @compiled
 def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return squared tangential force minus squared friction limit at rest, and the reaction, in the small equations.
+    Return (squared tangential force minus squared static friction limit, reaction) at rest, by the small equations.
 
-    Mf = mu (R I - u p^T / rho) with R = M (g + zeta''); F_3 = f - R p / rho. The excess is |adj F_3|^2 - det^2 with
-    Mf^-1 = adj / det, so that nothing is divided by a small number.
+    With the friction coefficient mu, Mf = mu (R I - u p^T / rho), R = M (g + zeta''), F_3 = f - R p / rho and
+    Mf^-1 = adj / det, the first is |adj F_3|^2 - det^2, so that nothing is divided by a small number.
     """
     px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
@@ -119,14 +119,14 @@ def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Numbe
     hx = d * gx - b * gy
     hy = a * gy - c * gx
     det = a * d - b * c
-    scale = friction * friction * reaction * reaction  # divisor that gives the excess the unit m^2/s^4
+    scale = friction * friction * reaction * reaction  # divisor that gives the difference of squares the unit m^2/s^4
     return where_positive(scale, (hx * hx + hy * hy - det * det) / scale, gx * gx + gy * gy), reaction
 
 
 @compiled
 def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     """
-    Return by how much the squared tangential force exceeds the squared friction limit (4.6) as printed, m^2/s^4.
+    Return squared tangential force minus squared friction limit at rest, m^2/s^4, by (4.6) as printed in the paper.
 
     The components of F_F are mu N each, so the limit is sqrt(2) mu N at the origin. F_3 has gravity and spring with the
     printed signs. It serves to measure the effect of this misprint.
@@ -144,7 +144,7 @@ def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
 @compiled
 def slip_direction_cosines(angle: float, axes: int) -> tuple[float, float]:
     """Return cosine and sine of the angle of a slip direction; exactly 1 or -1, and 0, in motions along x alone."""
-    cosine, sine = cos(angle), sin(angle)  # side by side, so that LLVM makes one call of both
+    cosine, sine = cos(angle), sin(angle)  # next to each other, so that the compiler computes both in one call
     if axes == 1:
         return (1.0 if cosine > 0.0 else -1.0), 0.0
     return cosine, sine
@@ -155,7 +155,7 @@ def slip_vector(
     system: System, px: Number, py: Number, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number]:
     """
-    Return the slip vector (friction over normal force) of sliding along (ex, ey), and full over horizontal speed.
+    Return slip vector (friction over normal force) of a slide along (ex, ey), and ratio of full to horizontal speed.
 
     `speed` is the horizontal one, m/s.
     """
@@ -166,14 +166,14 @@ def slip_vector(
 
 @compiled
 def largest_coefficient(system: System) -> float:
-    """Return the largest friction coefficient over all speeds when the contact carries just the weight."""
+    """Return the largest friction coefficient at any speed when the contact carries just the weight."""
     largest: float = system.friction + max(0.0, system.rise)
     return largest
 
 
 @compiled
 def decay_rate(system: System, contact: int) -> float:
-    """Return the rate, 1/s, at which friction that is linear in the velocity makes it decay, without other forces."""
+    """Return the rate, 1/s, at which friction that is proportional to velocity (creep, lubricated) makes it decay."""
     largest = largest_coefficient(system)
     factor = largest / system.v_reg if contact == CREEPING else largest
     rate: float = factor * system.mass_ratio * system.gravity
@@ -182,6 +182,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Return the rate, 1/s, at which friction makes the velocity component across the direction of sliding decay."""
+    """Return the rate, 1/s, at which friction makes a velocity component across the sliding direction decay."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
     return rate

@@ -21,12 +21,12 @@ from reference.solver.rows import Number, broadcast_like, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
 from reference.solver.work import DRIVE, POSITION, Workspace
 
-ROUNDING_EXCESS = 1e-12  # excess of squared drive over squared friction limit, over the latter, by rounding alone
+ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which rounding alone lets the squared force exceed it
 
 
 @compiled
 def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
-    """Return the platform's position, driving force over m1 and ground acceleration at the start of a step."""
+    """Return the platform's position and drive (equations.py) and the ground's acceleration at a step's start."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
@@ -38,7 +38,7 @@ def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
 
 @compiled
 def load_at_stages(work: Workspace) -> Load:
-    """Return the platform's position, driving force over m1 and ground acceleration at the stages of a step."""
+    """Return the platform's position and drive (equations.py) and the ground's acceleration at a step's stages."""
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
@@ -61,7 +61,7 @@ def slip_factor(system: System, contact: int, squared_speed: Number) -> Number:
 def solve_platform_acceleration(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant) by the exact or the small equations (equations.py)."""
+    """Return the platform's (ax, ay, reaction / m1, inertia determinant) for a slip vector sx, sy (equations.py)."""
     if system.small:
         pressure = system.gravity + load.uz
         reaction = system.mass_ratio * pressure
@@ -77,7 +77,7 @@ def solve_platform_acceleration(
 def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant, squared speed) for a velocity that is not zero."""
+    """Return (ax, ay, reaction / m1, inertia determinant, squared speed) of the platform at a nonzero velocity."""
     squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, squared_speed)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, squared_speed, factor * vx, factor * vy)
@@ -88,7 +88,7 @@ def moving_acceleration(
 def acceleration_along(
     system: System, load: Load, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, full over horizontal speed) of a slide along (ex, ey) at any speed >= 0."""
+    """Return (ax, ay, reaction / m1, ratio of full to horizontal speed) of a slide along (ex, ey), speed 0 included."""
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
     ax, ay, reaction, _ = solve_platform_acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
@@ -96,7 +96,7 @@ def acceleration_along(
 
 @compiled
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
-    """Return (excess over the condition for rest, reaction / m1): rest is possible while the excess is not positive."""
+    """Return (squared tangential force minus squared friction limit, reaction / m1); rest needs the first <= 0."""
     if system.small:
         excess, reaction = squared_rest_excess_small(system, load)
     else:

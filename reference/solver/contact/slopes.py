@@ -27,7 +27,7 @@ from reference.solver.work import (
 @compiled
 def set_slopes(system: System, contact: int, work: Workspace) -> None:
     """
-    Set the derivatives of the platform's acceleration (ax, ay) by position, velocity and drive at the stages.
+    Set the derivatives of the platform's acceleration with respect to position, velocity and drive, at the stages.
 
     `stage` holds the reaction, determinant and speed there. Rows of work.slopes: from BY_POSITION, BY_VELOCITY and
     BY_DRIVE on (ax, ay) by x, then by y.
@@ -45,7 +45,7 @@ def set_slopes(system: System, contact: int, work: Workspace) -> None:
 
 @compiled
 def factor_slope(system: System, contact: int, factor: Row, squared_speed: Row) -> Row:
-    """Return the derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
+    """Return the derivative of `slip_factor` (platform.py) with respect to the squared sliding speed, s^3/m^3."""
     bend = -0.5 * factor / squared_speed if contact == SLIDING else broadcast_like(0.0, squared_speed)
     if system.rate > 0.0 and contact != LUBRICATED_SLIDING:
         speed = sqrt(squared_speed)
@@ -56,7 +56,7 @@ def factor_slope(system: System, contact: int, factor: Row, squared_speed: Row) 
 
 @compiled
 def write_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
-    """Write the derivatives of the accelerations ax and ay into their two rows."""
+    """Write two derivatives, of the accelerations ax and ay, into the rows `place` and `place` + 1 of `slopes`."""
     put(slopes, place, x)
     put(slopes, place + 1, y)
 
@@ -84,9 +84,9 @@ def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
 @compiled
 def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
     """Set the derivatives of the platform's acceleration by the exact equations (3.9)-(3.13)."""
-    # With a = f + R (n - s), R = M (v^2 / rho - n . f + n_z q) / D and D = 1 + (M - 1) (n^2 - n . s) (equations.py)
-    # every derivative is  f' + R' (n - t) + R (n' - s'),  where t is s times the relative change of the friction force
-    # over that of the reaction (load.py), and
+    # The acceleration is a = f + R (n - s), f: drive, R = M (v^2 / rho - n . f + n_z q) / D: reaction / m1, n: normal,
+    # s: slip vector, q: pressure, M: mass ratio, D = 1 + (M - 1) (n^2 - n . s) (equations.py). Every derivative is
+    # f' + R' (n - t) + R (n' - s'),  t: s times (relative change of friction force / relative change of R), with
     #     R' = (M / D) (v^2 / rho - n . f + n_z q)' - R (M - 1) / D (n^2 - n . s)',  `share` and `turn` below.
     # The slip vector changes as s' = factor v' + bend (v^2)' v.
     stage, out, radius, ratio = work.stage, work.slopes, system.radius, system.mass_ratio

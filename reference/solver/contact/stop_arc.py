@@ -15,15 +15,15 @@ from reference.solver.contact.friction import kinetic_coefficient, slip_vector
 from reference.solver.contact.platform import acceleration_along, solve_platform_acceleration
 from reference.solver.system import Load, System
 
-SAMPLES_PER_TURN = 48  # number of directions per full turn at which an arc is sampled
-# First stride, rad, of the search for the direction in which a slide does not turn, which may be close to the present
+SAMPLES_PER_TURN = 48  # number of slip directions, per full circle, at which the acceleration is sampled
+# First stride, rad, of the search, from the present direction, for the one in which a slide turns no further
 FIRST_STRIDE = 1e-3
-GOLDEN_SECTIONS = 20  # golden sections around the best sample, which leave 1e-5 of the distance of two samples
-# A peak between two samples exceeds the largest squared sample by at most this share
+GOLDEN_SECTIONS = 20  # number of golden sections, which narrow a peak's direction to 1e-4 of the distance of samples
+# A squared acceleration between two sampled directions exceeds the largest sampled one by at most this share
 MAX_RISE_BETWEEN_SAMPLES = 0.1
-# Largest sideways acceleration of a slide, over its driving acceleration, that counts as rounding
+# Largest ratio of sideways to driving acceleration that counts as rounding, so that the slide does not turn
 MAX_ROUNDING_TURN = 1e-9
-# Largest deceleration of a slide as it begins, over friction, that counts as rounding of the instant
+# Largest ratio of deceleration to friction, as a slide begins, that is put down to rounding of the instant of onset
 MAX_ROUNDING_BRAKING = 1e-6
 
 
@@ -37,7 +37,7 @@ def turning_acceleration(system: System, load: Load, angle: float) -> float:
 
 @compiled
 def squared_absolute_acceleration(system: System, load: Load, angle: float, horizontal: float) -> float:
-    """Return the squared absolute acceleration at vanishing speed, m^2/s^4; for horizontal = 0 its vertical part."""
+    """Return the platform's squared absolute acceleration at speed 0, m^2/s^4; its vertical part if horizontal is 0."""
     ax, ay, _, _ = acceleration_along(system, load, 0.0, cos(angle), sin(angle))
     az = load.uz
     if not system.small:
@@ -47,7 +47,7 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return the direction to which a slide turns from `angle` at its stop; no_turn: sideways share to neglect."""
+    """Return the direction, rad, to which a slide turns from `angle` at a stop; no_turn: sideways share to neglect."""
     # The direction turns one way until its turning vanishes: at the first zero of the sideways acceleration that way.
     # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
     # up to the distance of two samples, and ends at the first change of sign, or after a full turn.
@@ -68,7 +68,7 @@ def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) 
 
 @compiled
 def can_begin_slide(system: System, load: Load, angle: float) -> bool:
-    """Return True if a slide from rest in this direction is possible (no Painleve paradox) and is not braked."""
+    """Return True if a slide can begin from rest in this direction: not braked, and no Painleve paradox."""
     ex, ey = cos(angle), sin(angle)
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, 0.0, sx, sy)
@@ -80,7 +80,7 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """Return the direction between two in which a slide does not turn, by regula falsi (Dowell and Jarratt 1971)."""
+    """Return the angle, rad, between two at which a slide does not turn, by regula falsi (Dowell and Jarratt 1971)."""
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)
@@ -109,8 +109,8 @@ def arc_peak(system: System, load: Load, angle: float, end: float, floor: float,
 
     If the maximum is sure to lie below `floor`, the largest sample is returned.
     """
-    # The square of an absolute acceleration on the arc is smooth in the angle: sampling finds the highest local
-    # maximum, and golden-section search between the neighbors of the best sample refines it. If this maximum cannot
+    # The squared absolute acceleration is smooth in the angle: sampling finds the highest local maximum, and
+    # golden-section search between the neighbors of the best sample refines it. If this maximum cannot
     # exceed `floor`, no peak depends on it and the refinement is skipped.
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples

@@ -27,7 +27,7 @@ from reference.solver.system import ELASTIC, Load, System
 def elastic_acceleration(
     system: System, load: Load, squared_speed: Number, qx: Number, qy: Number
 ) -> tuple[Number, Number, Number]:
-    """Return (ax, ay, reaction / m1) under a given friction force q over m1: (T3) of docs/theory.md, solved for N."""
+    """Return (ax, ay, reaction / m1) for a friction force over m1, (qx, qy), m/s^2, by (T3) of docs/theory.md."""
     px, py = load.px, load.py
     pressure = system.gravity + load.uz
     if system.small:
@@ -50,7 +50,7 @@ def yielding_motion(
     """
     Return the motion of the platform and of its friction force q, elastic or plastic.
 
-    Those are ax, ay, reaction / m1, inertia determinant, the rates of q along x and y, the limit of |q|, |q| itself
+    In order: ax, ay, reaction / m1, inertia determinant, the rates of q along x and y, the limit of |q|, |q| itself
     (both m/s^2, of full vectors in the tangent plane), and the velocity along q, m/s.
     """
     nx = ny = qz = vz = broadcast_like(0.0, qx)
@@ -73,7 +73,7 @@ def yielding_motion(
             system, load, squared_speed, friction * qx / size, friction * qy / size
         )
         limit = scale_by_load(system, load.k_t, reaction, friction * reaction)
-        # n x q, the direction in which the friction force q turns
+        # c = n x q: direction, normal to q in the tangent plane, in which the friction force q rotates
         cx, cy, cz = ny * qz - nz * qy, nz * qx - nx * qz, nx * qy - ny * qx
         turn = system.stiffness * (vx * cx + vy * cy + vz * cz) / (size * limit)
         turned_x, turned_y = turn * cx, turn * cy

@@ -1,4 +1,4 @@
-"""Steps of one phase of the contact: each is proposed, solved, checked, limited to an event and committed."""
+"""Steps of one contact phase (rest, sliding, ...): each is proposed, solved, checked, cut at an event, committed."""
 
 from __future__ import annotations
 
@@ -65,15 +65,15 @@ from reference.solver.system import (
 from reference.solver.travel import instant_of_travel
 from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 
-# Rounding error of an acceleration, which is a difference of forces, as a share of the friction limit
+# Rounding error of the platform's acceleration, a difference of forces over m1, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
-MAX_VIBRATION_ANGLE = 5.0  # rad, largest phase angle of the chain's fastest vibration in a step that resolves it
-# Error that a step leaves in a free vibration, over the step's defect times the seventh power of the vibration's phase
-# angle, rad. The vibration itself is the defect over twice DRIFT_SHARE times this power (docs/decisions/0002).
+MAX_VIBRATION_ANGLE = 5.0  # rad, phase angle of the upper bodies' fastest vibration per step; larger steps damp it
+# An error of DRIFT_SHARE * angle^7 * (interpolation error at the step's start) stays in a free vibration that turns by
+# `angle`, rad, in a step. The vibration's size is that interpolation error / (2 DRIFT_SHARE angle^7) (decisions/0002).
 DRIFT_SHARE = 6e-8
-# Smallest phase angle, rad, of steps that count for the drift: hundred others add less than 1e-3 of their tolerance
+# Smallest phase angle, rad, of steps whose drift is counted: a hundred steps below it add less than 1e-3 of a tolerance
 MIN_DRIFT_ANGLE = 2.0
-# Factor on the tolerance of Newton's method where friction depends on the speed
+# Factor on the tolerance of Newton's method for a slide whose friction depends on the speed
 VARYING_NEWTON_FRACTION = 1e-3
 
 
@@ -81,7 +81,7 @@ VARYING_NEWTON_FRACTION = 1e-3
 def follow_phase(
     system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
 ) -> tuple[int, int]:
-    """Follow the motion until the contact changes or the run ends; return outcome and next contact, see run.py."""
+    """Follow the motion until the contact's state changes or the run ends; return outcome and next contact state."""
     # A step goes through five checks. (1) The phase proposes its length; a slide about to stop proposes none and hands
     # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
     # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
@@ -133,7 +133,7 @@ def follow_phase(
 def shorten_failed_step(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, code: int
 ) -> tuple[int, int]:
-    """Shorten the step after one that was not solved; return SOLVED, or the reason to give up, and the next contact."""
+    """Shorten the next step after one that failed; return SOLVED or the reason to give up, and next contact state."""
     following = contact
     if code != UNSOLVED and is_too_short(work, contact, settings, h, code):
         return code, contact
@@ -150,7 +150,7 @@ def shorten_failed_step(
 def commit_within_travel(
     system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
 ) -> int:
-    """Make the end of the step the new state; return TRAVEL if the travel ends in it, at the instant work.time."""
+    """Make the step's end the new state; return TRAVEL, with work.time there, if the travel ends in it, else SOLVED."""
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
         add_drift(system, work, h, angle)
@@ -163,13 +163,13 @@ def commit_within_travel(
 
 @compiled
 def vibration_angle(system: System, contact: int, h: float) -> float:
-    """Return the phase angle of the chain's fastest vibration in a step, rad; 0 near a stop, where steps are short."""
+    """Return the phase angle, rad, of the upper bodies' fastest vibration in a step; 0 near a stop: steps are short."""
     return 0.0 if contact == STOPPING else system.fastest * h
 
 
 @compiled
 def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
-    """Add to work.drift the error that a step leaves in the fastest vibration: at most the whole vibration."""
+    """Add to work.drift, m/s^2, a step's error in the fastest vibration; bound it by the vibration's own size."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
         defect = sqrt(work.defect[i] ** 2 + (link_error_rate(system, work, h, i) / system.fastest) ** 2)
@@ -179,7 +179,7 @@ def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
 
 @compiled
 def begin_contact_phase(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Prepare the first step of a phase; return the instant at which the phase begins, s."""
+    """Prepare the first step of a contact phase; return the time, s, from which it counts."""
     since: float = work.time
     if contact == REST:
         since = begin_rest(system, work)
@@ -205,7 +205,7 @@ def propose_length(system: System, work: Workspace, contact: int, settings: RunS
 
 @compiled
 def solve_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> int:
-    """Solve the equations of one step of the phase; return their outcome."""
+    """Solve the equations of one step in the contact state `contact`; return the outcome (system.py)."""
     if contact == STOPPING:
         code: int = solve_near_stop_step(system, work, h, NEAR_STOP_NEWTON_FRACTION * settings.tolerance)
         return code
@@ -238,7 +238,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 def limit_step_to_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float
 ) -> tuple[float, int]:
-    """Return the step length up to its first event, 0 for one at its start, and the contact's state at that length."""
+    """Return the step's length up to its first event (0: at its start), and the contact state from there on."""
     if contact == REST:
         return shorten_step_to_onset(system, work, h)
     if contact == SLIDING:
@@ -253,7 +253,7 @@ def mark_counted_parts(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, since: float
 ) -> int:
     """
-    Mark the parts of the step that count for the peaks, with their ends in work.edges; return their number.
+    Set work.edges to start and end (theta) of each part of the step that counts for the peaks; return their number.
 
     Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
@@ -282,7 +282,7 @@ def mark_counted_parts(
 def prepare_next_step(
     system: System, work: Workspace, contact: int, following: int, settings: RunSettings, h: float, factor: float
 ) -> int:
-    """Set the length of the next step after a committed step; return the next state of the contact."""
+    """Set the length of the next step after one that was accepted; return the next state of the contact."""
     if contact == STOPPING:
         after = commit_stopping_step(system, work, settings, h, factor)
         return following if following == CREEPING else after

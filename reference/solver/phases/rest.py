@@ -1,4 +1,4 @@
-"""Rest: the platform stays where it is while friction can hold it, and the chain above it vibrates."""
+"""Contact phase of rest: the platform stays where it is while friction can hold it; the bodies above vibrate."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from reference.solver.steps import solve_rest_step
 from reference.solver.system import REST, SLIDING, System
 from reference.solver.work import REACTION, Workspace
 
-# Excess over the condition for rest at an onset, as shares of the squared friction limit: a slide that begins with less
-# has no direction beyond rounding
+# Largest share by which the squared tangential force exceeds the squared friction limit at the onset that is located;
+# with no excess at all, rounding would decide the direction of the slide
 ONSET_EXCESS = 1e-12
-MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # smallest excess at an onset that is located well enough
-ONSET_DIFFERENCE = 1e-4  # step of the difference quotient of the excess, over the time to the onset
-ONSET_ITERATIONS = 8  # iterations of Newton's method for the onset
+MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # smallest such share at a located onset
+ONSET_DIFFERENCE = 1e-4  # time before an onset, as share of the time up to it, for a difference quotient of the force
+ONSET_ITERATIONS = 8  # largest number of Newton iterations that locate the onset of sliding
 
 
 @compiled
 def begin_rest(system: System, work: Workspace) -> float:
-    """Prepare a phase of rest; return the instant from which the platform is at rest, s."""
+    """Prepare the first step of a phase of rest; return the time, s, from which the platform is at rest."""
     work.v[0, 0] = work.v[0, 1] = 0.0
     begin_from_state(system, work, REST)
     since = work.time + work.early_rest
@@ -33,7 +33,7 @@ def begin_rest(system: System, work: Workspace) -> float:
 
 @compiled
 def shorten_step_to_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Solve a step of rest again up to just past the onset of sliding in it; return its length and the next contact."""
+    """Solve a step of rest again up to just past an onset of sliding in it; return its length and the next contact."""
     # The slide that follows begins in the direction that its own acceleration does not turn; this direction depends on
     # the excess over the friction limit. At the limit itself that direction is undefined, so the onset is located
     # between MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their
@@ -62,6 +62,6 @@ def shorten_step_to_onset(system: System, work: Workspace, h: float) -> tuple[fl
 
 @compiled
 def set_reaction(system: System, work: Workspace) -> None:
-    """Set the reaction of the contact at the stages of a step at rest."""
+    """Set the reaction of the contact, over m1, at the stages of a step at rest, in work.stage."""
     _, reaction = rest_excess(system, load_at_stages(work))
     put(work.stage, REACTION, reaction)

@@ -1,4 +1,4 @@
-"""Sliding, from its onset at rest or from any speed, until it is about to stop."""
+"""Contact phase of sliding, from its onset at rest or from any speed, until it is about to stop."""
 
 from __future__ import annotations
 
@@ -45,45 +45,45 @@ from reference.solver.system import (
 from reference.solver.work import SQUARED_SPEED, VELOCITY, Workspace
 
 # "Period" below is RunSettings.period, the time in which forces change.
-# Longest first step of a slide from rest, in periods, over the seventh root of the tolerance (ERROR_ORDER)
+# The first step of a slide from rest is at most this number of periods times the 7th root of the tolerance
 MAX_FIRST_STEP = 0.57
 CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if the present one had to be shortened
-# Stretched time (near_stop.py) begins where a slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME
-# periods, and the chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
-STOP_WITHIN_STEPS = 1.5  # steps to the stop of a slide
-STOP_WITHIN_TIME = 0.05  # periods to the stop of a slide
-MAX_CHAIN_ANGLE = 0.5  # rad, phase angle of the chain's fastest vibration until the stop
-# Longest step as a share of the time to the stop: a longer one ends too close to where the direction turns fast
+# A slide goes on in stretched time (near_stop.py) if it would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME
+# periods, and until then the fastest vibration of the bodies above turns by no more than MAX_CHAIN_ANGLE.
+STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them goes on in stretched time
+STOP_WITHIN_TIME = 0.05  # periods: a slide that would stop within them goes on in stretched time
+MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the upper bodies' fastest vibration up to the stop
+# Longest step as share of the time to the stop: a longer one would end where the slip direction turns fast
 MAX_WAY_TO_STOP = 0.55
-# Smallest cosine of the turn of the velocity between two stages: a step with a larger turn is not smooth
+# Smallest cosine of the angle between velocities at two successive stages: below it the step is not smooth, and fails
 MIN_TURN_COSINE = 0.3
 LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which a slide has reached v_reg
-NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: a slower slide may pass v_reg between two stages
-# Speed over friction limit times step length below which the direction of a slide follows the force within a step
+NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: below this squared speed at a stage, a passage of v_reg is looked for
+# A slide slower than this share of (friction deceleration * step length) aligns with the force within the step
 STIFF_SPEED_FRACTION = 0.03
-# Smallest acceleration that a slide's first guess has, over the drive: with a smaller one it would have no direction
+# Smallest acceleration, as share of the drive, in the first guess of a slide, which needs a direction
 MIN_ACCELERATION_FRACTION = 1e-12
-# Excess of the squared drive over the squared friction limit, over the latter, with which no slide need begin yet
+# Largest share by which the squared drive may exceed the squared friction limit while a slide need not begin yet
 BARELY_SLIPPING_EXCESS = 1e-4
 # A slide that cannot begin with a step of NEGLIGIBLE_STEP periods, or of NEGLIGIBLE_RESPONSE times the time in which
 # friction responds to the speed, moves nothing: rest replaces it for NEGLIGIBLE_HOLD periods. A slide that passes v_reg
 # within the share NEGLIGIBLE_STEP of a step begins at v_reg.
-NEGLIGIBLE_STEP = 1e-6  # periods; share of a step for a crossing
-NEGLIGIBLE_RESPONSE = 1e-3  # share of the time in which friction responds
-NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest
-MAX_LENGTH_RATIO = 3.0  # a step shorter than the last one by a larger factor takes no first guess from it
+NEGLIGIBLE_STEP = 1e-6  # periods: a slide that fails in a shorter step moves nothing; also the share of a step, above
+NEGLIGIBLE_RESPONSE = 1e-3  # share of friction's response time: a slide that fails in a shorter step moves nothing
+NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest that replace such a slide
+MAX_LENGTH_RATIO = 3.0  # a step shorter than 1 / MAX_LENGTH_RATIO of the last one takes no first guess from that
 
 
 @compiled
 def squared_speed_in_state(system: System, work: Workspace) -> float:
-    """Return the squared sliding speed in the state x, v, m^2/s^2."""
+    """Return the platform's squared sliding speed at the present position work.x and velocity work.v, m^2/s^2."""
     square: float = squared_sliding_speed(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1])
     return square
 
 
 @compiled
 def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> None:
-    """Prepare a phase of sliding; from rest, find its direction and the acceleration just after the onset."""
+    """Prepare a phase of sliding; from rest, find the direction and the acceleration just after the onset."""
     begin_from_state(system, work, SLIDING)
     work.max_growth = MAX_LENGTH_FACTOR
     work.squared_start_speed = squared_speed_in_state(system, work)
@@ -126,7 +126,7 @@ def propose_sliding_length(system: System, work: Workspace, settings: RunSetting
 
 @compiled
 def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
-    """Return the time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the last step."""
+    """Return the time to a slide's stop, s, if its deceleration `braking`, m/s^2, keeps its present rate of change."""
     # With the deceleration b and its rate b', v - b t - b' t^2 / 2 = 0 at the stop. Its first root is
     # 2 v / (b + sqrt(b^2 + 2 v b')), in the form without cancellation; `change` is v b' = -v . a'.
     change = 0.0
@@ -141,14 +141,14 @@ def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
 
 @compiled
 def is_slow(system: System, work: Workspace, h: float) -> bool:
-    """Return True if a slide is so slow that its direction follows the force within the step."""
+    """Return True if a slide is so slow that its direction aligns with the force within the step."""
     speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
     return speed < STIFF_SPEED_FRACTION * h * kinetic_coefficient(system) * system.mass_ratio * system.gravity
 
 
 @compiled
 def guess_slide(system: System, work: Workspace, h: float) -> None:
-    """Set the first guess of the stage accelerations; a slow slide accelerates along its direction at the start."""
+    """Set the first guess of stage accelerations in a slide: along its direction if slow, else from the last step."""
     if not is_slow(system, work, h):
         guess_from_last_step(work, h)
         return
@@ -160,7 +160,7 @@ def guess_slide(system: System, work: Workspace, h: float) -> None:
 @compiled
 def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
     """
-    Set the first guess of a slow slide's accelerations along the directions in which no stage's drive turns it.
+    Set the first guess of a slow slide's stage accelerations, in the directions that the drive there does not turn.
 
     A light platform under a tower turns by hundreds of rad/s where it begins to slide.
     """
@@ -176,7 +176,7 @@ def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> None:
-    """Set the stage accelerations of a slow slide in the directions (ex, ey) to those of the drive less friction."""
+    """Set the stage accelerations of a slow slide along given directions (ex, ey): those of drive minus friction."""
     # Where friction rises steeply with the speed, an iteration that begins at a lower speed than the step's does not
     # leave the steep part. Linearized about the start, friction damps the speed at the rate `damping`. An implicit
     # Euler step of length nodes * h then has the acceleration at the start over 1 + nodes * h * damping.
@@ -195,7 +195,7 @@ def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> 
 
 @compiled
 def turns_too_far(work: Workspace) -> bool:
-    """Return True if the velocity turns too far between two stages for a smooth slide."""
+    """Return True if the velocity turns so far between two stages that the step does not resolve the slide."""
     bx, by = work.v[0, 0], work.v[0, 1]
     for k in range(STAGES):
         vx, vy = work.stage[VELOCITY, k], work.stage[VELOCITY + 1, k]
@@ -215,7 +215,7 @@ def barely_slips(system: System, work: Workspace) -> bool:
 
 @compiled
 def recover_failed_slide(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[int, int]:
-    """Return (SOLVED to go on, or UNSOLVED; next state of the contact) after a step that failed."""
+    """Return (SOLVED to go on or UNSOLVED to give up, next contact state) after a sliding step h, s, that failed."""
     shortest = NEGLIGIBLE_STEP * settings.period
     if system.rate > 0.0:
         shortest = min(
@@ -233,7 +233,7 @@ def recover_failed_slide(system: System, work: Workspace, settings: RunSettings,
 
 @compiled
 def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Return the length of the step up to where the slide slows down to v_reg, 0 at its start, and the next contact."""
+    """Return the step's length up to where the slide has slowed to v_reg (0: at its start), and next contact state."""
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
@@ -249,7 +249,7 @@ def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[floa
 
 @compiled
 def adapt_sliding_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the length of the next sliding step; factor: with it the last step's error would just meet the tolerance."""
+    """Set the next sliding step's length from the last, h, s; h * factor would just have met the tolerance."""
     if h * factor > work.length or h == work.length:
         work.length = h * min(factor, work.max_growth)
     work.max_growth = MAX_LENGTH_FACTOR

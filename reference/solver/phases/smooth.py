@@ -1,4 +1,4 @@
-"""Motion under a friction law without a corner: lubricated, or creep below v_reg under the regularized law."""
+"""Contact phases with smooth friction: lubricated sliding, and creep below v_reg under the regularized law."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from reference.solver.work import SQUARED_SPEED, Workspace
 
 LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which creep has reached v_reg
 EARLY_CROSSING = 1e-6  # share of a step: if v_reg is crossed earlier, the phase counts as begun at v_reg
-NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: a faster creep may pass v_reg between two stages
-MAX_FIRST_DECAY = 2.0  # longest first step of creep, in decay times of the velocity
+NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: above this squared speed at a stage, a passage of v_reg is looked for
+MAX_FIRST_DECAY = 2.0  # longest first step of creep, in times in which friction makes the velocity decay
 
 
 @compiled
@@ -28,7 +28,7 @@ def begin_smooth(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def limit_step_to_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
-    """Return the length of the step up to where creep reaches v_reg, 0 if it begins there, and the next contact."""
+    """Return the step's length up to where creep reaches v_reg (0: at its start), and the next contact state."""
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact

@@ -1,4 +1,4 @@
-"""The approach to a stop in stretched time (near_stop.py): into rest or creep, or past the stop and on."""
+"""Contact phase of stopping, in stretched time (near_stop.py): it ends in rest or creep, or sliding goes on."""
 
 from __future__ import annotations
 
@@ -21,50 +21,52 @@ from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA,
 
 # "Period" below is RunSettings.period, the time in which forces change; "the loading's velocity" is the size of the
 # loading's acceleration times the period over 2 pi.
-FIRST_STEP = 1.0  # estimated change of the direction, rad, and of ln v in the first step
-# Smallest acceleration in the estimate of the first step's length, as a share of the loading
+FIRST_STEP = 1.0  # change of slip direction, rad, or of ln v, for which the length of the first step is estimated
+# Smallest acceleration, as share of the loading's, by which the length of the first step is estimated
 MIN_FIRST_ACCELERATION = 1e-3
-MAX_GROWTH = 2.0  # largest growth of a step beyond the length with which the last one would have met the tolerance
-MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the chain's fastest vibration in one step
-# A slide that gathers speed returns from stretched to plain time where speed over acceleration exceeds both of these.
+MAX_GROWTH = 2.0  # largest ratio of a step to the length with which the last one would just have met the tolerance
+MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the upper bodies' fastest vibration in one step
+# A slide that speeds up again returns from stretched to plain time once speed / acceleration exceeds both these times.
 LEAVING_TIME_FRACTION = 0.3  # share of the length of a plain step
 MIN_LEAVING_TIME = 0.05  # share of RunSettings.period
-# Speed below which a platform that friction can hold may count as stopped, over the loading's velocity and the root of
-# the tolerance
+# Speed below which a platform that friction can hold may count as stopped: this number times the loading's velocity
+# times the square root of the tolerance
 MAX_STOPPED_SPEED = 0.03
-# Largest change of an acceleration by the dampers as the speed jumps to zero at a stop, as a share of the tolerance
+# Largest jump of an acceleration, as share of the tolerance, that dampers may cause when a stop sets the speed to zero
 MAX_DAMPED_JUMP = 0.01
-# Accelerations while the direction of a slide turns before its stop (the arc, contact/stop_arc.py) may govern a peak:
-# then the slide is integrated down to MIN_FOLLOWED_SPEED, a share of the loading's velocity. They govern nothing below
-# DECISIVE_ARC_FRACTION of the platform's peak so far, nor below DECISIVE_RISE_FRACTION of the squared peak of a body
-# above, which the arc reaches by its vertical acceleration alone.
-MIN_FOLLOWED_SPEED = 1e-10
-DECISIVE_ARC_FRACTION = 0.97  # share of the platform's peak
-DECISIVE_RISE_FRACTION = 0.999  # share of the squared peak of a body above
-# Smallest rise of the squared acceleration along the arc that counts, over the squared peak
+# While a slide's direction turns before its stop (on the arc, contact/stop_arc.py), an acceleration may become a peak.
+# Then the slide is followed down to MIN_FOLLOWED_SPEED. No peak is possible below DECISIVE_ARC_FRACTION of the
+# platform's peak so far, or below DECISIVE_RISE_FRACTION of the squared peak of a body above, on which the arc acts by
+# its vertical acceleration alone.
+MIN_FOLLOWED_SPEED = 1e-10  # share of the loading's velocity: slower slides are not followed
+DECISIVE_ARC_FRACTION = 0.97  # share of the platform's peak that an acceleration on the arc must exceed
+DECISIVE_RISE_FRACTION = 0.999  # share of the squared peak of a body above that must be exceeded
+# Smallest rise of a squared acceleration along the arc, as share of the squared peak, that may make a new peak
 NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
 EARLY_CROSSING = 1e-9  # share of a step: if v_reg is crossed earlier, the phase counts as begun at v_reg
-# Time left to the stop in which forces count as constant, over the period and the root of the tolerance
+# Forces count as constant until the stop if it is nearer than this number times the period times the square root of
+# the tolerance
 MAX_FROZEN_TIME = 0.01
-# Largest change of friction until rest that counts as none, over its rise from rest to high speed
+# Largest change of friction until rest, as share of its rise from rest to high speed, that counts as none
 NEGLIGIBLE_FRICTION_RISE = 1e-12
-# Time to the stop from which a slide counts as one at constant speed, over the time in which it counts as stopping
+# A slide leaves the phase of stopping, as its speed hardly changes, if its stop is this many times later than the time
+# within which the phase begins
 MIN_STEADY_TIMES = 2.0
-MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction: with a smaller one a slide turns back on its own line
-# Speed, over the loading's velocity, below which a straight slide that friction cannot hold reverses
+MAX_STRAIGHT_TURN = 1e-6  # ratio of sideways acceleration to friction below which a slide counts as straight
+# Speed, as share of the loading's velocity, below which a straight slide that friction cannot hold reverses
 MAX_TURNING_POINT_SPEED = 1e-12
-NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of the angle ends Newton's method
-# Bounds on the change of ln v in one step. Time and position are integrals of v and v^2 over tau: where forces stay
-# constant, the accelerations do not show the error of these integrals. With the bounds this error stays below 1e-8 of
-# the time and the distance to the stop at the start of the step.
+NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of slip directions ends Newton's method
+# Bounds on the change of ln v in one step, as time and position are integrals of v and v^2 over stretched time, whose
+# error the accelerations do not show where forces stay constant. With these bounds it stays below 1e-8 of the time and
+# the distance to the stop at the start of the step.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
-LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of the bound in later steps, per unit by which ln v has fallen since the first
+LOG_SPEED_CHANGE_GROWTH = 0.7  # increase of this bound in later steps per decrease of ln v since the phase began
 
 
 @compiled
 def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> None:
-    """Prepare a phase in stretched time (near_stop.py): set accelerations and the length of the first step."""
+    """Prepare a phase of stopping, in stretched time (near_stop.py): set accelerations and the first step's length."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -77,7 +79,7 @@ def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> No
 
 @compiled
 def propose_stretched_length(system: System, work: Workspace) -> float:
-    """Return the longest next step in stretched time (near_stop.py) that resolves time, position and vibration."""
+    """Return the next step's length in stretched time (near_stop.py), which resolves time, position and vibration."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
@@ -89,7 +91,7 @@ def propose_stretched_length(system: System, work: Workspace) -> float:
 
 @compiled
 def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
-    """Return the length of the step up to the next kink or to v_reg, 0 at its start, and the next contact."""
+    """Return the step's length to the next kink of loading or k_T, or to v_reg (0: at its start), and next contact."""
     limit = next_kink(system, work, settings)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * settings.period:
         portion = locate_level_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
@@ -110,7 +112,7 @@ def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSe
 
 @compiled
 def commit_stopping_step(system: System, work: Workspace, settings: RunSettings, h: float, factor: float) -> int:
-    """Commit time, direction and speed of a step near a stop; return the next state of the contact."""
+    """Make time, slip direction and speed at a step's end the new ones near a stop; return the next contact state."""
     # In stretched time a slide never reaches its stop: ln v falls without end. Three things end the phase. The platform
     # counts as stopped (`contact_after_stop`). Or it gathers speed again behind its slowest point: then plain time
     # resolves the slide once v / v' is a good part of a plain step. Or friction that rises with the speed balances the
@@ -141,9 +143,9 @@ def commit_stopping_step(system: System, work: Workspace, settings: RunSettings,
 @compiled
 def update_peaks_by_arc(system: System, work: Workspace, load: Load, can_integrate_closer: bool) -> bool:
     """
-    Raise the peaks to those reached while the sliding direction still turns before the stop.
+    Raise the peaks to the largest accelerations that occur while the slip direction still turns before the stop.
 
-    Return False if these govern and the stop can still be integrated more closely (`can_integrate_closer`).
+    Return False if these may be new peaks and the slide can still be integrated closer to its stop.
     """
     # The direction still turns while the speed goes to zero, so every direction between the present one and the one in
     # which it settles belongs to the motion (contact/stop_arc.py; docs/theory.md, supremum). The arc is computed with
@@ -170,7 +172,7 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, can_integra
 
 @compiled
 def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -> int:
-    """Return REST or SLIDING at a stop, STOPPING before it; set work.early_rest to the time left of the slide."""
+    """Return REST or SLIDING if the platform has stopped, else STOPPING; set work.early_rest: time left to slide, s."""
     # A platform that friction can hold (excess <= 0) has stopped when the remaining slide changes nothing: its speed
     # and the time left are small (both bounds go with the root of the tolerance, since the distance to the stop is
     # quadratic in speed and time), the dampers feel no jump, friction is that of rest, and the peaks on the arc are

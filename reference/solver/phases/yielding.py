@@ -1,5 +1,5 @@
 """
-Motion under friction that yields: one collocation step, elastic or plastic, and the events that end such a phase.
+Motion under friction that yields elastically before it slides: one step, elastic or plastic, and events in it.
 
 The unknowns of a step are the accelerations of the platform and its friction force at the stages.
 """
@@ -45,17 +45,17 @@ from reference.solver.work import (
     Workspace,
 )
 
-# Step of the difference quotients for Newton's method, as a share of radius, speed, gravity or friction force; and the
-# step by the velocity of a platform at rest, m/s
+# Changes of arguments in difference quotients for Newton's method: as share of radius, speed, gravity or friction
+# limit; and the change of the velocity of a platform at rest, m/s
 DIFFERENCE_STEP, MIN_SPEED = 1e-7, 1e-10
-FIRST_NODE = float(NODES[0])  # first stage, as a share of the step
-LATE_EVENT_SHARE = 1e-10  # share of a step: a later event counts as one at its end
-MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of the step
+FIRST_NODE = float(NODES[0])  # time of the first stage, as a share of the step
+LATE_EVENT_SHARE = 1e-10  # share of a step before its end: an event within it counts as one at the end
+MAX_SHIFT = 0.5  # largest relative change of a step's length that moves its end to an event
 
 
 @compiled
 def begin_yielding(system: System, work: Workspace, contact: int, slid: bool) -> None:
-    """Set the accelerations at the start of a phase; after plastic slip first scale the friction force to its limit."""
+    """Set the accelerations at a phase's start; after plastic slip (`slid`), scale the friction force to its limit."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -106,7 +106,7 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def set_motion(system: System, work: Workspace, contact: int) -> None:
-    """Compute the platform's motion at the stages from its arguments in work.shear; store it there, too."""
+    """Set accelerations and friction force rates at the stages from motion, drive and force there, in work.shear."""
     shear, ground = work.shear, work.ground
     load = Load(
         row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, DRIVE_ARGUMENT), row(shear, DRIVE_ARGUMENT + 1),
@@ -129,7 +129,7 @@ def set_motion(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def set_yielding_residual(system: System, work: Workspace, contact: int, h: float) -> tuple[int, float]:
-    """Set the residual of accelerations and friction force at the stages; return the outcome and their size, m/s^2."""
+    """Set residuals of the stage equations for acceleration, force; return outcome and size of accelerations, m/s^2."""
     stage, shear, right = work.stage, work.shear, work.shear_right
     set_platform_motion(work, h, 2)
     for axis in range(2):
@@ -155,7 +155,7 @@ def set_yielding_residual(system: System, work: Workspace, contact: int, h: floa
 
 @compiled
 def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
-    """Set the derivatives of acceleration and force rate by every argument at the stages, by difference quotients."""
+    """Set derivatives of acceleration and force rate with respect to motion, drive and force, by differences."""
     shear, slopes = work.shear, work.shear_slopes
     for k in range(4):
         put(slopes, (8, k), row(shear, MOTION + k))
@@ -177,7 +177,7 @@ def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def set_yielding_matrix(work: Workspace, h: float) -> None:
-    """Set the derivative of the stage equations by the stage accelerations and the friction force at the stages."""
+    """Set the matrix of Newton's method: derivatives of the stage equations by stage accelerations and forces."""
     # The unknowns z are of four kinds: acceleration along x and y, then friction force along x and y. Kind k at stage m
     # is z[k * STAGES + m]. A change of one acts at stage i on position, velocity and drive there, and so on
     # accelerations and on rates of the force, which the matrix A of the collocation integrates.
@@ -206,7 +206,7 @@ def set_yielding_matrix(work: Workspace, h: float) -> None:
 
 @compiled
 def correct_unknowns(work: Workspace) -> float:
-    """Add Newton's correction to the unknowns; return its largest entry for the accelerations, m/s^2, or infinity."""
+    """Add Newton's correction to stage accelerations and forces; return the largest of accelerations, m/s^2, or inf."""
     change = 0.0
     for axis in range(2):
         for m in range(STAGES):
@@ -219,7 +219,7 @@ def correct_unknowns(work: Workspace) -> float:
 
 @compiled
 def expand_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Set powers[0] to a polynomial that is positive after the event that ends the phase; return its first value."""
+    """Set work.powers[0] to a polynomial that turns positive where the phase ends; return its value at stage 1."""
     # Elastic friction yields where its force reaches the friction limit. Plastic friction unloads where the rate of
     # slip, the velocity along the force less the rate of the limit over k, passes zero.
     shear = work.shear
@@ -238,7 +238,7 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
 
 @compiled
 def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
-    """Return the share of the step up to the first event in it, 0 for one at its start, NOT_IN_STEP for none."""
+    """Return the theta at which the phase ends in the step: 0 at its start, NOT_IN_STEP if it does not end."""
     # At the start of a phase the tested value is zero up to rounding, and its polynomial misses this zero: in the first
     # step the value at stage 1 decides. In any other step the polynomial may be positive at its start by error.
     first = expand_event(system, work, contact, h)
@@ -252,7 +252,7 @@ def locate_event(system: System, work: Workspace, contact: int, h: float, begun:
 
 @compiled
 def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return the relative change of the step's length that puts its end at the event; NOT_IN_STEP without one."""
+    """Return the relative change of the step's length that moves its end to the phase's end; NOT_IN_STEP if none."""
     expand_event(system, work, contact, h)
     slope = 0.0
     for k in range(1, STAGES):
@@ -265,7 +265,7 @@ def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> f
 
 @compiled
 def step_share_to_slowest_point(system: System, work: Workspace) -> float:
-    """Return the share of the step up to the smallest speed, at which the friction coefficient may have a kink."""
+    """Return the theta of the smallest speed in the step, 1 if at its end: friction may have a kink over time there."""
     shear = work.shear
     gain = row(shear, ARGUMENTS + 2) * row(shear, MOTION) + row(shear, ARGUMENTS + 3) * row(shear, MOTION + 1)
     if system.rate == 0.0 or gain[0] >= 0.0:
@@ -277,6 +277,6 @@ def step_share_to_slowest_point(system: System, work: Workspace) -> float:
 
 @compiled
 def commit_force(work: Workspace) -> None:
-    """Set the friction force of the new state to that at the end of the step."""
+    """Make the friction force at the end of the step that at the start of the next one."""
     for axis in range(2):
         work.force[axis] = work.shear[FORCE + axis, STAGES - 1]
