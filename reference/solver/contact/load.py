@@ -1,8 +1,8 @@
 """
-Friction mu k_T (N / W)^n under a normal force N, with W the weight and mu the cold coefficient under it.
+Dry friction that depends on load and heat: coefficient mu k_T (N / W)^n under a normal force N.
 
-The temperature factor k_T is a function of time (heating.py), 1 without heating. The slip vector s of equations.py is
-that under the weight; here it is multiplied by phi(R) = k_T (R / (M g))^n, R = N / m1. In the exact equations R depends
+W is the weight, mu the cold coefficient under it, k_T(t) the temperature factor (heating.py), 1 without heating. The
+slip vector s of equations.py is multiplied by phi(R) = k_T (R / (M g))^n, R = N / m1. In the exact equations R depends
 on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, q the drive along the normal. Without such friction
 nothing of this is compiled (variants.py).
 """
@@ -18,9 +18,9 @@ from reference.solver.equations import exact_acceleration
 from reference.solver.rows import Number, broadcast_like, row_maximum, where_positive
 from reference.solver.system import Load, System
 
-MAX_ITERATIONS = 40  # largest number of Newton iterations for the reaction
-LAST_CHANGE = 1e-8  # relative change of the reaction that ends its iteration: the next one would be below rounding
-# Largest residual of the equation for the reaction, over the normal drive: above it the iteration has found no solution
+MAX_ITERATIONS = 40  # largest number of Newton iterations for the reaction of the contact
+LAST_CHANGE = 1e-8  # relative change of the reaction below which its iteration ends: the next is below rounding
+# Largest residual of the equation for the reaction, over the normal drive: with a larger one no solution was found
 MAX_MISFIT = 1e-7
 
 
@@ -32,7 +32,7 @@ def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient
 
 @compiled
 def _coefficient_at_load_and_temperature(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
-    """Return the cold `coefficient` under the weight, corrected for the temperature factor k_T and the reaction."""
+    """Return the friction coefficient: `coefficient`, cold and under the weight, corrected for k_T and the reaction."""
     return coefficient * load_factor(system, k_t, reaction)
 
 
@@ -44,20 +44,20 @@ def _keep_slip(system: System, reaction: Number, slip: Number) -> Number:
 
 @compiled
 def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number:
-    """Return a component of the slip vector times the relative change of friction per relative change of reaction."""
+    """Return a slip vector component times (relative change of friction force / relative change of reaction)."""
     return slip * (1.0 + elasticity(system, reaction))
 
 
 scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
-"""Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
+"""Return a number proportional to the cold friction coefficient under the weight, corrected for k_T and reaction."""
 
-scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)  # for derivatives
-"""Return a slip vector times the relative change of the friction force over that of the reaction."""
+scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)  # for derivatives of the acceleration
+"""Return a slip vector component times (relative change of friction force / relative change of reaction)."""
 
 
 @compiled
 def load_factor(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the friction coefficient at temperature factor k_T and a reaction, over the cold one under the weight."""
+    """Return the ratio of the friction coefficient at k_T and a reaction to the cold one under the weight."""
     return k_t * exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
 
 
@@ -83,7 +83,7 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant) if friction depends on the reaction, by Newton's method."""
+    """Return (ax, ay, reaction / m1, inertia determinant), by Newton's method, if friction depends on the reaction."""
     # A friction coefficient that falls with the load (n < 0) makes the equation for R nonlinear. The derivative of this
     # equation takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's
     # paradox). If the iteration ends far from a solution, no acceleration exists either: the determinant is set to -1,
