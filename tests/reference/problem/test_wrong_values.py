@@ -147,6 +147,8 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     # c / (2 m w), w = 2 pi / 1.2 s and 4 kg above the link: 110 along y
     ({"bodies.1.mass": 4.0, "bodies.1.damping": [1.0, 4608.0]}, "bodies.1: damping ratio along y = 110.00", "0 to 100"),
     (bars(load_effect="shortening"), "bodies.1.bars", "load_effect 'shortening' needs axial_stiffness"),
+    (bars(axial_stiffness=1e9, spread=0.5, count=2), "bodies.1.bars", "axial_stiffness needs 3 bars or more around"),
+    (bars(axial_stiffness=1e9, count=1), "bodies.1.bars", "state more, or spread = 0"),
     (bars(load_effect="buckling"), "bodies.1.bars.load_effect", "must be 'softening' or 'shortening'"),
     (bars(axial_stiffness=10.0, count=2), "bodies.1.bars", "axial_stiffness needs 3 bars or more around the axis"),
     # measured peaks
