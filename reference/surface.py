@@ -214,7 +214,7 @@ def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) 
 
 
 def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
-    """Return the peaks of a linear scene, one motion per harmonic superposed; run only what may end early (4.1)."""
+    """Return a linear scene's peaks, a motion per harmonic superposed; run only motions that may end early (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
@@ -280,7 +280,7 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
 
 
 def loads_are_finite(system: System) -> bool:
-    """Return True if the squares of the ground accelerations, which (5.1) needs, are not too large for floats."""
+    """Return True if the squares of ground accelerations, for the amplification (5.1), are not too large for floats."""
     largest = max(np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.record))
     with np.errstate(over="ignore"):
         return bool(np.isfinite(np.square(largest) * 1e8))

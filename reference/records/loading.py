@@ -43,7 +43,7 @@ SUITE_KEYS = ("suite", "motion", "normalized", "components")  # keys of a record
 ARRAY_KEYS = {"time", "acceleration"}  # keys of a record that is given as arrays
 FROM_ARRAYS = "arrays"  # stands for the files of a record that is given as arrays
 READER_KEYS = ("samples", "origin")  # fields of the excitation that the reader fills in
-TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")  # keys whose place a record takes
+TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")  # keys of a two-frequency loading, which a record replaces
 
 
 def load_record_samples(data: dict[str, Any], label: str) -> dict[str, Any]:

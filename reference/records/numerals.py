@@ -13,18 +13,20 @@ from reference.support.constants import GRAVITY
 
 MAX_LINE, MAX_CELL = 1000, 100  # longest part of a line that is searched for words, longest number, both in letters
 MAX_HEADER_LINES = 100  # number of lines at the start of a record file in which its header is searched for
+# Number of m/s^2 in each unit of acceleration
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
 UNITS |= {"cm/s²": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "ft/s^2": 0.3048}
-UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"
+UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"  # units that error messages offer
 SPELLED_UNIT = re.compile(  # matches acceleration units in spellings that UNITS does not list, such as cm/sec/sec
     r"(m|cm|mm|in|inch|inches|ft|feet)[ .*]?(?:/ ?\(?s(?:ec)?(?:\^?2|²| ?/ ?s(?:ec)?)\)?| ?s\^?-2)"
 )
+# Matches one number; its exponent may begin with d, as in Fortran output
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 # Matches one number in a run of numbers of fixed width, with no blanks between them (Fortran output)
 NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
 NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 WORD = re.compile(r"[^\W\d_]{2,}")  # two letters or more in a row: a line that has them is not a line of numbers
-NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # lines of only these are parsed at once, lines with others cell by cell
+NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # lines of only these are parsed as a whole, lines with others cell by cell
 WRITE_RECORD = "write record = "  # start of the part of an error message that says what to write in the scene file
 
 

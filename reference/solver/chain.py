@@ -32,10 +32,10 @@ from reference.solver.work import Workspace
 
 # Columns of the matrix from stages to channels (eigenbasis of A), real parts first, and of the matrix back
 TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
-FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
+FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))  # channels to stages
 # Transforms to channels of two functions of time in a step: a constant 1, and the elapsed share of the step
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# Numbers at all stages that come from a 1 at stage m, sent to channels and back through channel j alone (complex)
+# Matrices, one a channel j, that send numbers at the stages to channel j alone and back to the stages (complex)
 _CHANNEL_RESPONSES = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
 CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (  # parts of _CHANNEL_RESPONSES, transposed for compiled code
     np.array([columns_as_rows(part) for part in parts])
@@ -49,13 +49,13 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return body i's coupling to the body below in a channel (collocation eigenvector); root: h times eigenvalue."""
+    """Return the coefficient that couples body i to the body below for one collocation eigenvalue; root: h times it."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return body i's coupling to the body above in a channel (collocation eigenvector); root: h times eigenvalue."""
+    """Return the coefficient that couples body i to the body above for one collocation eigenvalue; root: h times it."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 
@@ -118,7 +118,7 @@ def transform_from_channels(values: Row) -> Row:
 
 @compiled
 def set_chain_loads(system: System, work: Workspace, h: float) -> None:
-    """Set the loads on the bodies above the platform in a step, and the platform's drive if it kept its velocity."""
+    """Set the loads on the bodies above the platform in a step, and the platform's drive as if it kept its velocity."""
     # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
     # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
     # channels a constant is ONES_IN_CHANNELS and the elapsed time h NODES_IN_CHANNELS. `carried` is the part that

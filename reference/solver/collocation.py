@@ -69,7 +69,7 @@ def _radau_nodes(stages: int) -> np.ndarray:
 
 
 def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
-    """Return weights (len(theta), STAGES) that interpolate stage values at theta, or integrate them from 0 to theta."""
+    """Return weights (T, STAGES) to interpolate stage values at step shares theta (T,) or integrate from 0 to them."""
     basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
@@ -81,23 +81,23 @@ A = _interpolation_weights(NODES, True)  # Butcher's matrix: takes stage values 
 A2 = exact_product(A, A)  # matrix that takes stage values to their second integrals up to the stages
 # Weights that extrapolate stage values to the start of a step, where the known true value shows the error
 AT_START = _interpolation_weights(np.zeros(1), False)[0]
-# Matrix that takes stage values to the coefficients of their polynomial in theta, lowest power first
+# Matrix that takes stage values to the coefficients of their polynomial in theta (share of a step), lowest power first
 MONOMIALS = _solve_linear(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
 def _defect_polynomial() -> np.ndarray:
-    """Return the polynomial in theta that is 1 at 0 and 0 at the stages: its coefficients, highest power first."""
+    """Return the coefficients, highest power first, of a polynomial in the share of a step: 1 at 0, 0 at the stages."""
     coefficients = [1.0]
     for node in NODES.tolist():
         coefficients = [a - b / node for a, b in zip([0.0, *coefficients], [*coefficients, 0.0])]
     return np.array(coefficients)
 
 
-# Coefficients of the interpolation error's shape in a step: a polynomial in theta, 1 at the start, 0 at the stages
+# Coefficients of the interpolation error's shape in a step: polynomial in its share theta, 1 at start, 0 at the stages
 DEFECT_POLYNOMIAL = _defect_polynomial()
 # Weights by which stage accelerations give the error, over h, of stage velocities extrapolated to the step's start
 VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
-# Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from theta = 0
+# Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from the start of a step (theta = 0)
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 

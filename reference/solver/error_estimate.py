@@ -33,7 +33,7 @@ DIFFERENCE_FRACTION, DIFFERENCE_FRACTION_VARYING_FRICTION = 0.4, 1.0
 # the second where friction yields or depends on the velocity: stiff creep needs shorter steps (measured: up to 0.015).
 MIN_ERROR_PER_STEP_TOLERANCE = 5e-4  # part of the smallest stated error, as share of the tolerance inside a step
 MIN_ERROR_FRACTION = 0.007  # smallest stated error, as share of the tolerance that the user requests
-MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07  # the same share where friction yields or depends on the velocity
+MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07  # smallest stated error / tolerance if friction yields or varies with speed
 READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at a peak, since the step before may add as much
 ROUNDING_ERROR = 1e-12  # relative rounding error of a peak at any tolerance: some hundred steps of some ten operations
 # Bounds on the tolerance inside a step: relative error of accelerations; looser ones would save few steps
@@ -46,7 +46,7 @@ YIELDING_TOLERANCE_FACTOR = 0.01
 # Share of RunSettings.period for which the coarser run goes on after the finer run's last peak: its own may be later
 EVENT_MARGIN = 0.01
 
-FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # room of a StepRecord at first: steps; steps per ground sample
+FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first room of a StepRecord: steps, plus steps per ground sample
 # With heating, runs repeat until peaks and mean k_T change by less than MAX_SETTLED_CHANGE of the tolerance. They also
 # end when a change below the tolerance is more than MIN_CONTRACTION_RATIO of the one before: it is then the error of
 # the steps. Early changes may grow, since runs agree up to an instant that comes later with each run.

@@ -31,7 +31,7 @@ NEAR_LIMIT = 0.5
 
 @compiled
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
-    """Return the first theta in the step at which the polynomial of stage `values` passes `target` from `start`."""
+    """Return the first share of the step at which the polynomial of stage `values` passes `target` from `start`."""
     expand_level(work, values, target)
     return locate_first_event(system, work, LEVEL_EVENT, 1.0 if start < target else -1.0, 0.0, start - target)
 
@@ -59,7 +59,7 @@ def locate_onset(system: System, work: Workspace) -> float:
 
 @compiled
 def expand_drive(work: Workspace) -> None:
-    """Set work.powers to coefficients, in theta, of drive and ground acceleration, for a platform at rest in a step."""
+    """Set work.powers to the coefficients of drive and ground acceleration as polynomials over a step at rest."""
     for axis in range(2):
         set_coefficients(row(work.free, axis), work.powers[axis])
     for axis in range(3):
@@ -68,7 +68,7 @@ def expand_drive(work: Workspace) -> None:
 
 @compiled
 def excess_at(system: System, work: Workspace, theta: float) -> float:
-    """Return squared tangential force minus squared friction limit at theta of a step at rest, after `expand_drive`."""
+    """Return squared tangential force minus its squared limit at share theta of a rest step, after `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -103,7 +103,7 @@ def expand_speed(work: Workspace, h: float, target: float) -> None:
 
 @compiled
 def expand_velocity(work: Workspace, h: float, axis: int) -> None:
-    """Set work.powers[axis] to the coefficients, in theta, of the platform's velocity in the step of length h, s."""
+    """Set work.powers[axis] to coefficients of the platform's velocity, a polynomial over the step of length h, s."""
     powers = work.powers[axis]
     set_coefficients(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
@@ -113,7 +113,7 @@ def expand_velocity(work: Workspace, h: float, axis: int) -> None:
 
 @compiled
 def speed_excess(work: Workspace, theta: float) -> float:
-    """Return the squared sliding speed at theta minus the target given to `expand_speed`, m^2/s^2."""
+    """Return the squared sliding speed at share theta of the step minus the target of `expand_speed`, m^2/s^2."""
     powers = work.powers
     vx = vy = 0.0
     for k in range(STAGES, -1, -1):
@@ -124,7 +124,7 @@ def speed_excess(work: Workspace, theta: float) -> float:
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """Return the quantity at theta whose change to positive is the event; way: 1 if a rise through 0, -1 if a fall."""
+    """Return the quantity at share theta that turns positive at events; way: 1 for a rise through 0, -1 for a fall."""
     if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
@@ -132,7 +132,7 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """Return the first theta behind `begin` at which `event_value` > 0; start: its value at `begin`, over `way`."""
+    """Return the first share of a step behind `begin` with `event_value` > 0; start: value at `begin`, over `way`."""
     # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
     # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
     # no more than the largest change from point to point. Then a golden-section search looks for a positive value
@@ -166,7 +166,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
 
 @compiled
 def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
-    """Return theta, between low and high, at which `event_value` becomes positive, by regula falsi."""
+    """Return the share of the step, between low and high, at which `event_value` turns positive, by regula falsi."""
     # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
     # halved. Where the values at the ends differ by orders of magnitude the secants creep; a bisection follows after
     # SECANTS_PER_HALVING secants that have not halved the interval. The end with the positive value is returned, so

@@ -29,7 +29,7 @@ MIN_PIECE = 1e-10  # length of the shortest piece of time, as share of the durat
 # Time since a piece of heating, in its lengths, beyond which its effect on the temperature is integrated by quadrature,
 # and beyond which by moments (sum, mean time, variance) of its heat. The latter holds for blocks of pieces as well.
 FAR_DISTANCE = 4.0  # piece lengths, beyond which quadrature is used
-BLOCK_DISTANCE = 30.0  # piece or block lengths, beyond which moments are used
+BLOCK_DISTANCE = 30.0  # time since a piece or block of heating, in its lengths, beyond which its moments are used
 MAX_LAST_CHANGE = 1e-14  # change of the temperature factor k_T below which its iteration in a piece of time ends
 MAX_ITERATIONS = 50  # largest number of iterations for k_T in a piece of time
 NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the collocation nodes in a piece of time of length 1
@@ -184,7 +184,7 @@ def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficie
 
 @cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
-    """Set k_T, friction's temperature factor, at the S nodes of K pieces; power: at k_T = 1, times temperature rise."""
+    """Set k_T, friction's temperature factor, at S nodes of K pieces of time; power: at k_T = 1, times Heat.rise."""
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))

@@ -51,7 +51,7 @@ MAX_SLOW_STEPS = 2.0  # a slide counts as near its stop if friction would stop i
 DIRECTION_MARGIN = 0.35  # rad, uncertainty of a slide's direction near its stop in a rough run
 MIN_SURE_DRIVE = 0.5  # smallest ratio of drive to friction limit at which a rough run knows the drive's direction
 MAX_HELD_DRIVE = 0.8  # largest ratio of squared drive to squared friction limit at which friction surely holds
-LOOK_AHEAD_DELAY = 0.25  # share of RunSettings.period from the last large acceleration until a rough run is made
+LOOK_AHEAD_DELAY = 0.25  # share of RunSettings.period from the last large acceleration until a rough run looks ahead
 
 
 @compiled

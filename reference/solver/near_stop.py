@@ -48,9 +48,9 @@ MAX_ITERATIONS = 40  # number of Newton iterations after which a step near a sto
 SLOW_CONVERGENCE = 0.01  # ratio of successive Newton corrections above which the derivatives are computed again
 ROUNDING_ANGLE = 1e-13  # rad, change of slip directions by rounding alone: a change this small ends the iteration
 DIRECTION_DIFFERENCE = 1e-6  # rad, change of slip direction in difference quotients, which need only a few digits
-SPEED_DIFFERENCE = 1e-6  # relative change of speed in difference quotients of accelerations with respect to ln S
+SPEED_DIFFERENCE = 1e-6  # relative change of speed in difference quotients of accelerations by the log speed
 MAX_GUESSED_TURN = 0.5  # rad, largest guessed turn of slip direction: a slide turns towards the force, not beyond it
-MAX_CHANGE = 1e3  # a step is unsolved if slip directions, rad, or ln S change by more than this in one iteration
+MAX_CHANGE = 1e3  # a step is unsolved if slip directions, rad, or log speeds change by more than this in one iteration
 
 
 @compiled

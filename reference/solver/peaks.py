@@ -30,7 +30,7 @@ IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components x, y o
 # SEARCH_POINTS as an array of rows of ROW_LENGTH numbers; the first points fill up the last row
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
 MAX_RATE = 60.0  # largest response rate of friction, 1/s, times step length, s, that counts: faster ones add no error
-SETTLED_FRACTION = 0.9  # share of the largest acceleration or displacement so far from which one counts as near it
+SETTLED_FRACTION = 0.9  # an acceleration or displacement above this share of the largest so far counts as near it
 
 
 @compiled
@@ -51,7 +51,7 @@ def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[floa
 
 @compiled
 def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
-    """Return the largest sum of squares of `components` polynomials in work.powers on [low, high], and its theta."""
+    """Return the largest sum of squares of `components` polynomials of work.powers in [low, high], and its place."""
     # SEARCH_POINTS are twice as many as the stages, so the best point is next to the largest maximum of a step that
     # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
     # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
@@ -122,7 +122,7 @@ def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
 
 @compiled
 def interpolation_error(system: System, work: Workspace, contact: int, h: float, body: int, theta: float) -> float:
-    """Return the estimated error, m/s^2, of a body's interpolated acceleration at theta of the step just solved."""
+    """Return the estimated error, m/s^2, of a body's interpolated acceleration at share theta of the solved step."""
     # The error has three parts (docs/decisions/0002-two-run-error.md). (1) The polynomial through the stages misses the
     # acceleration between them: DEFECT_POLYNOMIAL, which is 1 at the start of the step and 0 at the stages, times the
     # defect. At the stages this part vanishes, but positions and velocities there are integrals of a polynomial with
@@ -144,7 +144,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best, the largest squared accelerations, to those in part of the step; return True if any is near."""
+    """Raise work.best, the largest squared accelerations, to those in part of a step; return True if one gets near."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
@@ -200,7 +200,7 @@ def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
 
 @compiled
 def expand_position(work: Workspace, h: float, axis: int) -> None:
-    """Set work.powers[axis] to the coefficients, in theta, of the platform's position in the step of length h, s."""
+    """Set work.powers[axis] to coefficients of the platform's position, a polynomial over the step of length h, s."""
     powers = work.powers[axis]
     set_coefficients(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):

@@ -268,7 +268,7 @@ def is_finite(context: Any, values: Any) -> Any:
     """Return True if the numbers of a row at all stages are finite."""
 
     def lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        """Generate machine code that tests all stages at once."""
+        """Generate machine code that tests all stages together."""
         bits = ir.IntType(ROW_LENGTH)
         known = builder.fcmp_ordered("ord", *[builder.fsub(arguments[0], arguments[0])] * 2)
         never_looked_at = bits(1 << ROW_LENGTH - 1)

@@ -51,7 +51,7 @@ from reference.solver.work import (
 FIRST_STEP = 0.02  # length of the first step of a run, in periods
 NEGLIGIBLE_REMAINDER = 1e-8  # periods before the end of a run within which a failure still counts as finished
 HOLDING_TIME = 1e-6  # periods for which rest or creep is kept, whatever the force, on the border of two phases
-RIM_SQUARED_FRACTION = 0.998  # share of rho^2: a run that fails at a larger squared displacement has reached the rim
+RIM_SQUARED_FRACTION = 0.998  # squared displacement over the rim's, rho^2, above which a run that fails has reached it
 # Largest number of successive phases of zero length: after more of them the state counts as on the border of two
 # phases, each of which ends at once in favor of the other.
 MAX_IDLE_PHASES = 4

@@ -38,7 +38,7 @@ def sample_motion(record: StepRecord, times: Array) -> SampledMotion:
 
 
 def _sample_steps(record: StepRecord, row: NDArray[np.intp], theta: Array, near: NDArray[np.bool_]) -> SampledMotion:
-    """Return the motion at T instants: theta (T,) in step number row (T,); near (T,): True for steps near a stop."""
+    """Return the motion at T instants: shares theta (T,) of steps number row (T,); near (T,): True if near a stop."""
     # Weights (T, S) by which stage values give their polynomial at theta, and its integral up to theta
     value = theta[:, None] ** np.arange(STAGES) @ MONOMIALS
     raised = theta[:, None] ** np.arange(1, STAGES + 1) / np.arange(1, STAGES + 1) @ MONOMIALS
@@ -71,7 +71,7 @@ def step_instants(record: StepRecord, count: int, most: int) -> Array:
 
 
 def _locate_in_steps(clock: Array, times: Array) -> Array:
-    """Return theta (T,) in steps near a stop at which `times` (T,), s, lie; clock: (T, S) s, times of their stages."""
+    """Return the shares (T,) of steps near a stop where `times` (T,), s, lie; clock: (T, S) s, times of stages."""
     coefficients = clock @ MONOMIALS.T
     low, high = np.zeros(len(times)), np.ones(len(times))
     for _ in range(BISECTIONS):

@@ -26,8 +26,8 @@ ERROR_ORDER = 7.0  # power of the step length with which the estimated error of 
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
 # before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
-FATAL_STEP = 1e-9  # shortest step before an outcome such as the rim
-MIN_STEP = 1e-16  # shortest step whose equations have no solution
+FATAL_STEP = 1e-9  # shortest step before an outcome such as reaching the rim
+MIN_STEP = 1e-16  # a step whose equations have no solution is shortened down to this length, in RunSettings.period
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
 NEWTON_FRACTION = 0.01  # share of the tolerance: a smaller change of the accelerations ends Newton's method

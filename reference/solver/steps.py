@@ -48,7 +48,7 @@ ROUNDING_CHANGE = 4e-15  # relative change of accelerations by rounding alone: a
 # Growth of a slide's squared speed in Newton's method above which derivatives are computed again: they are ten times
 # too large by then
 MAX_SPEED2_GROWTH = 100.0
-# Share of rho^2: a step that began at a larger squared displacement and leaves the surface has reached the rim
+# Share of the rim's squared displacement, rho^2: a step that began at more and leaves the surface has reached the rim
 RIM_SQUARED_FRACTION = 0.99
 
 
@@ -196,7 +196,7 @@ def classify_unsolved_step(system: System, work: Workspace) -> int:
 def vertical_acceleration(
     system: System, px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number
 ) -> Number:
-    """Return the vertical acceleration of all bodies relative to the plate (2.2); zero in the small equations."""
+    """Return the vertical acceleration of all bodies relative to the plate (2.2); zero for small vibrations (4.3)."""
     if system.small:
         return broadcast_like(0.0, px)
     _, _, az = vertical_motion(px, py, vx, vy, ax, ay, system.radius)

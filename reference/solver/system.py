@@ -114,7 +114,7 @@ class RunSettings(NamedTuple):
 
 
 def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
-    """Return the scene for compiled code. `v_reg`, m/s, selects the regularized friction law, None the set-valued."""
+    """Pack a scene for compiled code; v_reg, m/s, selects the regularized friction law, None the set-valued law."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
         _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)
@@ -171,7 +171,7 @@ def dry_friction_of(system: System) -> DryFriction:
 
 
 def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
-    """Return link coefficients (N - 1, 2) over the mass of the body above, and below, each link: two arrays (N, 2)."""
+    """Divide link coefficients (N - 1, 2) by the mass of the body above, and below, each link: two arrays (N, 2)."""
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
     below[1:] = links / masses[1:, None]
     above[:-1] = links / masses[:-1, None]

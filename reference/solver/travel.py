@@ -38,7 +38,7 @@ def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -
 
 @compiled
 def locate_displacement(work: Workspace, limit: float, place: float) -> float:
-    """Return the first theta up to `place` at which the squared displacement exceeds `limit`, m^2, by work.powers."""
+    """Return the first step share up to `place` where the squared displacement exceeds `limit`, m^2, by work.powers."""
     low, high = 0.0, place
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] >= place:

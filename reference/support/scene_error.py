@@ -14,6 +14,7 @@ MAX_ERRORS = 50  # largest number of errors of one file that a message lists; it
 MIN_SPELLING_SIMILARITY = 0.7
 # First words of the rules in error messages about a missing key, a missing table and an unknown key
 IS_REQUIRED, IS_MISSING, IS_UNKNOWN = "this key is required", "the table [", "unknown key; "
+# Rules in errors about keys that users know from other programs
 YIELDING_HINT = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
     "or yield_displacement = 0.001, m"
@@ -28,7 +29,7 @@ NO_DAMPER_HINT = (
 )
 EFFECTIVE_RADIUS_HINT = "write radius, the effective radius rho = R - r of the one sliding surface, m"
 DERIVED_KEY_HINT = "follows from radius, friction and the weight: remove this key"
-HINTS = {  # what to write for keys that users know from other programs, by key or "table.key", in letters and digits
+HINTS = {  # what to write in place of keys of other programs, by key or "table.key", reduced to letters and digits
     **dict.fromkeys(("bearings", "isolators"), "did you mean supports?"),
     **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), YIELDING_HINT),
     **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), YIELDING_HINT),

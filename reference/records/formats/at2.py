@@ -19,8 +19,10 @@ MAX_COUNT_DIGITS = 9  # largest number of digits of NPTS, the number of samples
 SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit of time written without a blank after the value of DT
 NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)  # words in files without accelerations
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)  # header line with a unit
+# Matches the rest of a header line, from UNITS on, if it names g as the unit
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
 ACCELERATION_LINE = re.compile(r"\bACC(?:EL\w*)?\b", re.IGNORECASE)  # header line that names an acceleration
+# Matches the rest of a header line, from ACC on, if it names an acceleration in g
 ACCELERATION_IN_G = re.compile(r"ACC(?:EL\w*)?\b[^,;]*?(?:\bIN |, ?|[\[(])[\[(]?G[\])]? ?\.?", re.IGNORECASE)
 
 

@@ -78,6 +78,6 @@ def _header_step(lines: Sequence[str]) -> float:
 
 
 def _split_fields(number: int, line: str, width: int) -> list[float]:
-    """Return the numbers in a line whose fields have `width` letters; number: of the line. Raises RecordError."""
+    """Return the numbers in line `number` of a file, in fields of `width` letters each. Raises RecordError."""
     cells = [line[at : at + width].strip() for at in range(0, len(line.rstrip()), max(width, 1))]
     return [parse_number(number, cell) for cell in cells if cell]

@@ -31,6 +31,7 @@ from reference.support.arguments import quote
 FORMAT = "CSV"  # name of the format
 HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"  # words in error messages
 MAX_PREAMBLE = 20  # largest number of lines above the header
+# Names of the column of the time in a header, in several languages
 TIME_NAMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
 SECOND_NAMES = {"", "s", "sec", "secs", "second", "seconds", "秒"}  # spellings of the unit of time
 ACCELERATION_NAMES = {  # words in a header that name an acceleration
@@ -46,8 +47,10 @@ ACCELERATION_NAMES = {  # words in a header that name an acceleration
 }
 ACCELERATION_NAMES |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
 ACCELERATION_NAMES |= {"aceleración", "aceleracion", "ivme"}
+# Matches a column name that joins acceleration and direction, such as ax or accNS
 ACCELERATION_WITH_AXIS = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
 TEXT_IN_BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")  # a name, its unit in brackets
+# Matches a number with a decimal comma
 DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 
 
@@ -145,7 +148,7 @@ def _split_cells(number: int, line: str, separator: str) -> list[str]:
 
 
 def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
-    """Return the header with the units of the line below it; None if that line has anything else."""
+    """Return the header with units from the line below it; None if that has a number, or no unit of acceleration."""
     units = [cell.strip(" []()") for cell in cells]
     if len(cells) > len(header) or not any(map(str.isalpha, "".join(units))):
         return None

@@ -14,8 +14,8 @@ from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import quote
 
 FORMAT = "JMA CSV"  # name of the format
-SAMPLING_RATE_LINE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
-UNIT_LINE = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
+SAMPLING_RATE_LINE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)  # sampling rate, Hz
+UNIT_LINE = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)  # header line with the unit
 
 
 def recognizes_jma(head: Sequence[str]) -> bool:
@@ -46,7 +46,7 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
 
 
 def _find_header(lines: Sequence[str]) -> tuple[int, list[str]]:
-    """Return the line of the header that names directions only, from 0, and its words. Raises RecordError."""
+    """Return the index, from 0, of the header line that only names directions, and its words. Raises RecordError."""
     for at, line in enumerate(lines[:MAX_HEADER_LINES]):
         words = [word.strip() for word in line.split(",")]
         if len(words) > 1 and all(map(axis_of_word, words)):

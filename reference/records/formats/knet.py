@@ -12,10 +12,10 @@ from reference.records.numerals import parse_number, read_values
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
 
 FORMAT = "K-NET"  # name of the format
-SAMPLING_RATE_LINE = re.compile(r"Sampling Freq\(Hz\)\s+([0-9.]+) ?Hz")
-SCALE_FACTOR_LINE = re.compile(r"Scale Factor\s+([0-9.]+) ?\(gal\)/([0-9.]+)")
-DURATION_LINE = re.compile(r"Duration Time\(s\)\s+([0-9.]+)")
-DIRECTION_LINE = re.compile(r"Dir\.\s+(\S+)")
+SAMPLING_RATE_LINE = re.compile(r"Sampling Freq\(Hz\)\s+([0-9.]+) ?Hz")  # header line with the sampling rate, Hz
+SCALE_FACTOR_LINE = re.compile(r"Scale Factor\s+([0-9.]+) ?\(gal\)/([0-9.]+)")  # header line: gal per count, as a ratio
+DURATION_LINE = re.compile(r"Duration Time\(s\)\s+([0-9.]+)")  # header line with the duration, s
+DIRECTION_LINE = re.compile(r"Dir\.\s+(\S+)")  # header line with the direction
 # Channels of KiK-net: 1 to 3 in the borehole, 4 to 6 at the surface
 DIRECTION_OF_CHANNEL = {"1": "NS", "2": "EW", "3": "UD", "4": "NS", "5": "EW", "6": "UD"}
 HEADER_LINES = 17  # number of lines in the header

@@ -35,7 +35,7 @@ OPTIONS = ("step", "unit", "skip", "column")  # keys with which a scene states h
 MAX_SKIP = 10_000  # largest number of lines that `skip` leaves out
 MAX_COLUMN = 100  # largest column number that `column` may state
 MAX_STEP_VARIATION = 0.01  # a column is a time if its steps differ by at most this share of their mean
-MAX_RECORD_COLUMNS = 4  # lines of at most so many values may be rows of a table, a time and three directions
+MAX_RECORD_COLUMNS = 4  # lines of at most so many values may be table rows (time, 3 directions), which need `column`
 PROPOSAL_ROWS = 50  # lines of numbers that are read to propose options for a plain text
 MIN_TIME_ROWS = 3  # smallest number of rows that show whether a column is a time
 NAMED_UNIT = re.compile(  # unit of acceleration in a header
@@ -78,7 +78,7 @@ def read_plain_text(
 
 @lru_cache(maxsize=64)  # the cache hashes the arguments, whose types the caller has checked
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
-    """Return the accelerations of a text; spacing: time step, s; factor: of its unit to m/s^2. Raises RecordError."""
+    """Return the samples of a text; spacing: time step, s; factor: m/s^2 per unit of the text. Raises RecordError."""
     lines, propose = text.splitlines(), partial(propose_line, text, name)
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: ", propose())
@@ -149,7 +149,7 @@ def word_guesses(missing: Sequence[str]) -> str:
 
 
 def _first_data_line(lines: Sequence[str]) -> int | None:
-    """Return the index, from 0, of the first line of numbers; a line 'count step' still belongs to the header."""
+    """Return the index, from 0, of the first line of data; a line that states their count and step is not data."""
     for number, line in enumerate(lines[:MAX_HEADER_LINES]):
         if _parse_number_line(line) and not _states_count(lines, number):
             return number
@@ -157,7 +157,7 @@ def _first_data_line(lines: Sequence[str]) -> int | None:
 
 
 def _states_count(lines: Sequence[str], number: int) -> bool:
-    """Return True if the line, 'count step', states correctly how many values follow."""
+    """Return True if line `number`, from 0, has a count and a step, and exactly that many values follow it."""
     stated = COUNT_AND_STEP.fullmatch(lines[number][:MAX_LINE])
     behind = sum(len(line.split()) for line in lines[number + 1 :])
     return stated is not None and len(stated[1]) < 10 and int(stated[1]) == behind
@@ -212,7 +212,7 @@ def _read_rows(
 def _column_values(
     rows: Sequence[tuple[int, list[float]]], column: int | None, counted: bool, propose: Callable[[], str]
 ) -> list[float]:
-    """Return the values of one column, or all in file order if nothing speaks against it. Raises RecordError."""
+    """Return values of `column`, from 1, or for 0 or None all in file order. Raises RecordError for unfit lines."""
     if column:
         for number, row in rows:
             if len(row) < column:

@@ -45,7 +45,7 @@ def viscous_factor(system: System) -> float:
 
 @compiled
 def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the static friction limit under the normal force `reaction`, both over the platform's mass, m/s^2."""
+    """Return the static friction limit for normal force `reaction`, both over m1 (m/s^2), at temperature factor k_t."""
     return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
@@ -71,7 +71,7 @@ def rising_rate(system: System, speed: float) -> float:
 
 @compiled
 def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
-    """Return the squared sliding speed, m^2/s^2: along the sphere (3.8); horizontal in the small equations (4.3)."""
+    """Return the squared sliding speed, m^2/s^2: along the sphere (3.8), or horizontal for small vibrations (4.3)."""
     planar = vx * vx + vy * vy
     if system.small:
         return planar
@@ -173,7 +173,7 @@ def largest_coefficient(system: System) -> float:
 
 @compiled
 def decay_rate(system: System, contact: int) -> float:
-    """Return the rate, 1/s, at which friction that is proportional to velocity (creep, lubricated) makes it decay."""
+    """Return the rate, 1/s, at which friction proportional to velocity (creep, lubricated) makes the velocity decay."""
     largest = largest_coefficient(system)
     factor = largest / system.v_reg if contact == CREEPING else largest
     rate: float = factor * system.mass_ratio * system.gravity

@@ -32,7 +32,7 @@ def _keep_coefficient(system: System, k_t: Number, reaction: Number, coefficient
 
 @compiled
 def _coefficient_at_load_and_temperature(system: System, k_t: Number, reaction: Number, coefficient: Number) -> Number:
-    """Return the friction coefficient: `coefficient`, cold and under the weight, corrected for k_T and the reaction."""
+    """Correct a cold friction coefficient under the weight for temperature factor k_t and normal force `reaction`."""
     return coefficient * load_factor(system, k_t, reaction)
 
 
@@ -48,6 +48,7 @@ def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number
     return slip * (1.0 + elasticity(system, reaction))
 
 
+# Corrects friction for temperature and load if either changes it (`exponent` is not None); else keeps it
 scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
 """Return a number proportional to the cold friction coefficient under the weight, corrected for k_T and reaction."""
 
@@ -57,7 +58,7 @@ scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)  
 
 @compiled
 def load_factor(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the ratio of the friction coefficient at k_T and a reaction to the cold one under the weight."""
+    """Return the friction coefficient at temperature factor k_t and a reaction, over the cold one under the weight."""
     return k_t * exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
 
 
@@ -111,5 +112,6 @@ def _acceleration_of_load(
     return load.fx + reaction * (nx - sx), load.fy + reaction * (ny - sy), reaction, determinant
 
 
+# Solves the exact equations for acceleration and reaction, with a variant for friction that varies with load or heat
 exact_equations = choose_variant("exponent", _acceleration_of_given_slip, _acceleration_of_load)  # (3.9)-(3.13)
 """Return (ax, ay, reaction / m1, inertia determinant) by the exact equations."""

@@ -63,7 +63,7 @@ def write_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
 
 @compiled
 def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Set the derivatives of the platform's acceleration by the small equations (4.3)."""
+    """Set the derivatives of the platform's acceleration by the small-vibration equations (4.3)."""
     stage, out, radius = work.stage, work.slopes, system.radius
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, ux, uy = row(stage, REACTION), row(work.ground, 0), row(work.ground, 1)

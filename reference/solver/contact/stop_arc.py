@@ -47,7 +47,7 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return the direction, rad, to which a slide turns from `angle` at a stop; no_turn: sideways share to neglect."""
+    """Return the direction, rad, a slide turns to from `angle` at a stop; no_turn: ratio sideways / drive neglected."""
     # The direction turns one way until its turning vanishes: at the first zero of the sideways acceleration that way.
     # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
     # up to the distance of two samples, and ends at the first change of sign, or after a full turn.
@@ -80,7 +80,7 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """Return the angle, rad, between two at which a slide does not turn, by regula falsi (Dowell and Jarratt 1971)."""
+    """Return the angle, rad, between two others, where slides do not turn: regula falsi (Dowell and Jarratt 1971)."""
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)

@@ -150,7 +150,7 @@ def shorten_failed_step(
 def commit_within_travel(
     system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
 ) -> int:
-    """Make the step's end the new state; return TRAVEL, with work.time there, if the travel ends in it, else SOLVED."""
+    """Make a step's end the new state; return TRAVEL (at work.time) if the isolator's travel ends in it, or SOLVED."""
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
         add_drift(system, work, h, angle)
@@ -179,7 +179,7 @@ def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
 
 @compiled
 def begin_contact_phase(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Prepare the first step of a contact phase; return the time, s, from which it counts."""
+    """Prepare the first step of a contact phase; return the time, s, from which the contact is in this state."""
     since: float = work.time
     if contact == REST:
         since = begin_rest(system, work)

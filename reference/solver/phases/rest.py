@@ -16,7 +16,7 @@ from reference.solver.work import REACTION, Workspace
 # Largest share by which the squared tangential force exceeds the squared friction limit at the onset that is located;
 # with no excess at all, rounding would decide the direction of the slide
 ONSET_EXCESS = 1e-12
-MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # smallest such share at a located onset
+MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # smallest share by which squared force exceeds squared limit at a located onset
 ONSET_DIFFERENCE = 1e-4  # time before an onset, as share of the time up to it, for a difference quotient of the force
 ONSET_ITERATIONS = 8  # largest number of Newton iterations that locate the onset of sliding
 

@@ -51,7 +51,7 @@ CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if th
 # A slide goes on in stretched time (near_stop.py) if it would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME
 # periods, and until then the fastest vibration of the bodies above turns by no more than MAX_CHAIN_ANGLE.
 STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them goes on in stretched time
-STOP_WITHIN_TIME = 0.05  # periods: a slide that would stop within them goes on in stretched time
+STOP_WITHIN_TIME = 0.05  # periods: a slide that would stop within them goes on in stretched time (dt = speed dtau)
 MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the upper bodies' fastest vibration up to the stop
 # Longest step as share of the time to the stop: a longer one would end where the slip direction turns fast
 MAX_WAY_TO_STOP = 0.55
@@ -70,7 +70,7 @@ BARELY_SLIPPING_EXCESS = 1e-4
 # within the share NEGLIGIBLE_STEP of a step begins at v_reg.
 NEGLIGIBLE_STEP = 1e-6  # periods: a slide that fails in a shorter step moves nothing; also the share of a step, above
 NEGLIGIBLE_RESPONSE = 1e-3  # share of friction's response time: a slide that fails in a shorter step moves nothing
-NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest that replace such a slide
+NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest that replace a slide which moves nothing
 MAX_LENGTH_RATIO = 3.0  # a step shorter than 1 / MAX_LENGTH_RATIO of the last one takes no first guess from that
 
 

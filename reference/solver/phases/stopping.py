@@ -28,7 +28,7 @@ MAX_GROWTH = 2.0  # largest ratio of a step to the length with which the last on
 MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the upper bodies' fastest vibration in one step
 # A slide that speeds up again returns from stretched to plain time once speed / acceleration exceeds both these times.
 LEAVING_TIME_FRACTION = 0.3  # share of the length of a plain step
-MIN_LEAVING_TIME = 0.05  # share of RunSettings.period
+MIN_LEAVING_TIME = 0.05  # share of RunSettings.period: least speed / acceleration to end stretched time if speed grows
 # Speed below which a platform that friction can hold may count as stopped: this number times the loading's velocity
 # times the square root of the tolerance
 MAX_STOPPED_SPEED = 0.03
@@ -39,8 +39,8 @@ MAX_DAMPED_JUMP = 0.01
 # platform's peak so far, or below DECISIVE_RISE_FRACTION of the squared peak of a body above, on which the arc acts by
 # its vertical acceleration alone.
 MIN_FOLLOWED_SPEED = 1e-10  # share of the loading's velocity: slower slides are not followed
-DECISIVE_ARC_FRACTION = 0.97  # share of the platform's peak that an acceleration on the arc must exceed
-DECISIVE_RISE_FRACTION = 0.999  # share of the squared peak of a body above that must be exceeded
+DECISIVE_ARC_FRACTION = 0.97  # share of its peak that the platform's acceleration in a turn before a stop must exceed
+DECISIVE_RISE_FRACTION = 0.999  # share of an upper body's squared peak that a value in a turn before a stop must exceed
 # Smallest rise of a squared acceleration along the arc, as share of the squared peak, that may make a new peak
 NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
@@ -61,7 +61,7 @@ NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of 
 # error the accelerations do not show where forces stay constant. With these bounds it stays below 1e-8 of the time and
 # the distance to the stop at the start of the step.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
-LOG_SPEED_CHANGE_GROWTH = 0.7  # increase of this bound in later steps per decrease of ln v since the phase began
+LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of later steps' bounds on log speed change, per decrease of log speed so far
 
 
 @compiled

@@ -206,7 +206,7 @@ def set_yielding_matrix(work: Workspace, h: float) -> None:
 
 @compiled
 def correct_unknowns(work: Workspace) -> float:
-    """Add Newton's correction to stage accelerations and forces; return the largest of accelerations, m/s^2, or inf."""
+    """Add Newton's correction to stage accelerations and forces; return its largest acceleration, m/s^2, or inf."""
     change = 0.0
     for axis in range(2):
         for m in range(STAGES):
@@ -238,7 +238,7 @@ def expand_event(system: System, work: Workspace, contact: int, h: float) -> flo
 
 @compiled
 def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
-    """Return the theta at which the phase ends in the step: 0 at its start, NOT_IN_STEP if it does not end."""
+    """Return the share of the step at which the phase ends: 0 at its start, NOT_IN_STEP if it does not end in it."""
     # At the start of a phase the tested value is zero up to rounding, and its polynomial misses this zero: in the first
     # step the value at stage 1 decides. In any other step the polynomial may be positive at its start by error.
     first = expand_event(system, work, contact, h)
@@ -265,7 +265,7 @@ def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> f
 
 @compiled
 def step_share_to_slowest_point(system: System, work: Workspace) -> float:
-    """Return the theta of the smallest speed in the step, 1 if at its end: friction may have a kink over time there."""
+    """Return the step share at which the speed is smallest, 1 if at its end: friction may have a kink in time there."""
     shear = work.shear
     gain = row(shear, ARGUMENTS + 2) * row(shear, MOTION) + row(shear, ARGUMENTS + 3) * row(shear, MOTION + 1)
     if system.rate == 0.0 or gain[0] >= 0.0:
