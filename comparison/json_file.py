@@ -15,7 +15,7 @@ from reference.support.files import read_file
 
 MAX_FILE_BYTES = 2**26  # size in bytes above which a stored file is refused
 
-T = TypeVar("T")
+T = TypeVar("T")  # type of the content of a stored file
 
 
 def finite_or_none(value: float) -> float | None:
@@ -68,7 +68,7 @@ class StoredFile(Generic[T]):
         return word_how_to_make(f"{self.command}{argument}")
 
     def as_json(self, results: T) -> bytes:
-        """Return results as the bytes of the JSON file, which `load` reads."""
+        """Return results as the bytes of the JSON file, in the form that `load` reads."""
         return format_json(asdict(results)).encode()  # type: ignore[call-overload]
 
     def read(self, content: bytes) -> T:

@@ -61,7 +61,7 @@ FEATURES: tuple[Feature, ...] = (  # all features; the sections of the report st
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
 # Names and rules of the features that the options --only, --skip and --also may name
 SELECTABLE = tuple(feature.selectable_entry for feature in FEATURES if feature.selectable)
-EVERYTHING = Selection(SELECTABLE)  # default selection: for every scene, all analyses but those made on request
+EVERYTHING = Selection(SELECTABLE)  # selection without options: for every scene all analyses but those on request
 
 
 def _make_results_type(features: Sequence[Feature]) -> type[Results]:
@@ -114,5 +114,5 @@ def list_first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Ta
 
 
 def make_study_levels(study: Study) -> list[StudyLevel]:
-    """Return the levels of a study, from a coarse grid of phases to the full one."""
+    """Return the steps in which a study is computed, from a coarse grid of phases to the full one."""
     return make_levels(study, {analysis.key: analysis.level for analysis in select_analyses(study)})

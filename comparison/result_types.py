@@ -19,7 +19,7 @@ from comparison.json_file import finite_or_none
 
 
 def _finite_or_inf(value: float) -> float | Literal["inf"] | None:
-    """Return a number in the form in which the result files store it: "inf" for +infinity, None for NaN."""
+    """Return a number as result files store it: "inf" for +infinity, None for NaN and -infinity, else itself."""
     return "inf" if value == math.inf else finite_or_none(value)
 
 
@@ -33,7 +33,7 @@ def _replace_surrogates(value: Any) -> Any:
     return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
 
 
-Array = NDArray[np.float64]
+Array = NDArray[np.float64]  # array of floating-point numbers
 # Number that is stored in JSON as null if it is NaN or infinite
 Number = Annotated[float, BeforeValidator(_null_as_nan), PlainSerializer(finite_or_none, return_type=float | None)]
 Radius = Annotated[  # number that may be infinite, as the radius of a plane is; stored in JSON as "inf" then
@@ -41,12 +41,12 @@ Radius = Annotated[  # number that may be infinite, as the radius of a plane is;
     BeforeValidator(_null_as_nan),
     PlainSerializer(_finite_or_inf, return_type=float | Literal["inf"] | None),
 ]
-Text = Annotated[str, BeforeValidator(_replace_surrogates)]  # text that UTF-8 can hold
+Text = Annotated[str, BeforeValidator(_replace_surrogates)]  # text; code points that UTF-8 cannot hold are replaced
 Phases = tuple[Number, Number]  # phase pair (alpha1, alpha2), rad
 
 
 class Part(BaseModel):
-    """Base class of the parts of summary.json; made from an object with the same attributes; no unknown keys."""
+    """Base class of the parts of summary.json, made from objects with the same attributes; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)
 
@@ -61,7 +61,7 @@ class UncertainNumber(Part):
 
 
 def require(holds: bool, rule: str) -> None:
-    """Raise ValueError with the text `rule` unless it holds; used to refuse results that contradict themselves."""
+    """Raise ValueError with the text `rule` if `holds` is false; used to refuse results that contradict themselves."""
     if not holds:
         raise ValueError(rule)
 
@@ -75,7 +75,7 @@ RESULT_CONFIG = ConfigDict(  # pydantic's options for every class of results: te
     use_attribute_docstrings=True, revalidate_instances="always", json_schema_extra={"additionalProperties": False}
 )
 
-Class = TypeVar("Class")
+Class = TypeVar("Class")  # class that becomes a class of results
 
 
 @dataclass_transform(frozen_default=True)

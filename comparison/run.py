@@ -98,7 +98,7 @@ def main(
 
 
 def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
-    """Return the command line for the differences at a tenth of the tolerance, its report next to the first."""
+    """Return the command line for the differences alone at a tenth of the tolerance, its report next to the first."""
     place = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(place), "--only", "differences,budget"]
     return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
@@ -115,7 +115,7 @@ def _make_study(options: Options, hierarchy: Sequence[Model]) -> Study:
 
 class StudyRun:
     """
-    A study that the command line asks for: it is planned only, or computed level by level and reported.
+    A study that the command line asks for: planned only, or computed in steps (levels) of finer grids and reported.
 
     Whatever ends it early, finished results are kept, and a printed line says how to continue.
     """
@@ -154,7 +154,7 @@ class StudyRun:
 
     def _close(self, reports: ReportWriter, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
-        Print the last report's results and further commands; return the exit code.
+        Print the last report's results and further commands; return the exit code; stop: interrupt to raise again.
 
         Raises `stop`, the interrupt that ended the run, if any; EndedEarlyError if there is no report.
         """
@@ -177,7 +177,7 @@ class StudyRun:
         self._console.print(line, soft_wrap=True)
 
     def _open_results(self, surfaces: Sequence[Task]) -> TaskResults:
-        """Return the stored results of earlier runs, less those to compute anew, and print how many there are."""
+        """Return the stored results of earlier runs, less those to compute anew; print how many; surfaces: tasks."""
         first = list_first_tasks(self._study, select_analyses(self._study))
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)
@@ -190,7 +190,7 @@ class StudyRun:
     def _compute_levels(
         self, runner: Runner, surfaces: Sequence[Task], reports: ReportWriter, deadline: Deadline
     ) -> KeyboardInterrupt | None:
-        """Compute the levels from coarse to fine, each with a report; return the interrupt that ended this, or None."""
+        """Compute the study from coarse to fine grids, with reports; return the interrupt that ended it, or None."""
         complete: CompleteLevel | None = None
         try:
             planned = make_study_levels(self._study)

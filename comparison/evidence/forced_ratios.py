@@ -23,7 +23,7 @@ class ForcedRatio:
 
 
 def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """Return the ratio of every upper body's amplitude to the platform's under each harmonic; none under a record."""
+    """Return ratios of upper bodies' amplitudes to the platform's under each harmonic; an empty list under a record."""
     if scene.recorded or len(scene.bodies) == 1:
         return []
     return [

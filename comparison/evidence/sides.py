@@ -4,10 +4,10 @@ from scipy.interpolate import CubicHermiteSpline
 
 from reference.problem import Trajectory
 
-# Keys of the codes whose motions are compared: reference equations; the same with Exudyn's regularized friction; Exudyn
+# Keys of motions to compare: of the reference equations, of these with Exudyn's regularized friction, of Exudyn
 EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"
 
 
 def interpolate_platform(motion: Trajectory, axis: int = 0) -> CubicHermiteSpline:
-    """Return a function of time, s: platform position along x (axis 0) or y (1), m, as cubics between instants."""
+    """Return the platform position along x (axis 0) or y (1), m, as a function of time, s, cubic between instants."""
     return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])

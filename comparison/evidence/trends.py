@@ -25,7 +25,7 @@ MAX_EXPONENT_DEVIATION = 0.15
 
 
 class FittedSlope(NamedTuple):
-    """Exponent of |difference| ~ parameter^exponent, uncertainty, or NaN; numbers of differences and phase pairs."""
+    """Exponent of |difference| ~ parameter^exponent, uncertainty, or both NaN; numbers of differences, phase pairs."""
 
     exponent: float
     uncertainty: float
@@ -52,7 +52,7 @@ class Trend:
 
 
 def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> FittedSlope:
-    """Return the exponent n of sizes ~ parameter^n, one for all P phase pairs; sizes, absolute errors: (P, S)."""
+    """Return the exponent n of sizes ~ parameter^n, one for all P phase pairs; sizes, absolute errors: (P, values)."""
     known = np.isfinite(sizes) & (errors <= MAX_FITTED_ERROR * np.abs(sizes)) & (sizes != 0.0)
     rows = np.flatnonzero(known.sum(axis=1) > 1)
     points = int(known[rows].sum())
@@ -83,7 +83,7 @@ def fit_trend(
     error_message: str = "",
 ) -> Trend:
     """
-    Fit the power law |difference| ~ parameter^n, and judge whether n agrees with `expected`.
+    Return the power law |difference| ~ parameter^n fitted to sizes, with the verdict whether n is `expected`.
 
     sizes, errors: signed differences and errors, (phase pairs, values), NaN if unknown. error_message: what went wrong.
     """

@@ -51,7 +51,7 @@ def assemble_report(
     parts_lost = LostParts(lost)
 
     def compute(name: str, function: Callable[..., Any], *words: Any) -> Any:
-        """Return a part of the report; if its computation raises an error, record a line and return None."""
+        """Return function(*words), a part of the report; if it raises an error, record a line and return None."""
         return parts_lost.attempt(f"section {name}", partial(function, *words))
 
     gaps = list_missing_values(study, surfaces)

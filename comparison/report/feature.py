@@ -21,12 +21,12 @@ from comparison.study.selection import Selectable
 from comparison.study.study import Study
 from reference.problem import Family, Scene
 
-Value = TypeVar("Value")
+Value = TypeVar("Value")  # type of the value of a field
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that a run computed: study, surfaces of amplification, results of analyses, families of scenes."""
+    """Everything that a run computed: study, amplification surfaces, results of analyses, families of variants."""
 
     study: Study
     surfaces: xr.Dataset
@@ -37,7 +37,7 @@ class Findings:
 @dataclass(frozen=True)
 class ResultField(Generic[Value]):
     """
-    A field of the results of a study (a key of summary.json) that may be null.
+    Field of the results of a study: a key of summary.json, with a value or null.
 
     name: its key in summary.json. kind: its type. meaning: its description in the schema. load: reads it from the
     folder of the report, where a command left it. compute: makes it of what was found and of the results of the scenes,
@@ -56,7 +56,7 @@ class ResultField(Generic[Value]):
         return value
 
     def read_from(self, results: Results) -> Value:
-        """Return the value of the field in these results, where it must not be null."""
+        """Return the value of the field in results in which it is known not to be null."""
         value = self.get(results)
         assert value is not None, f"{self.name} is shown only where it was found"
         return value
@@ -85,7 +85,7 @@ class SceneField(Generic[Value]):
 @dataclass(frozen=True)
 class Feature:
     """
-    One question that a report answers: its analysis, fields of the results, report section, and rules of selection.
+    One subject of a report, such as worst phases: analysis, fields of results, section, and rules of selection.
 
     key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
     scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and

@@ -41,7 +41,7 @@ GLOSSARY_PATTERN = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sor
 
 
 def mark_term(word: str, text: str = "") -> Markup:
-    """Return `text`, or the word itself, as HTML that shows the word's explanation under pointer or keyboard focus."""
+    """Return `text` ("": the word) as HTML that shows the glossary text of the word under pointer or keyboard focus."""
     explanation = GLOSSARY.get(word)
     shown = symbols(text or word)
     if explanation is None:

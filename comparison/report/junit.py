@@ -21,7 +21,7 @@ ELEMENT_OF_COUNT = {"failures": "failure", "skipped": "skipped"}
 
 @dataclass(frozen=True)
 class JUnitCase:
-    """One test case: a limit, or a comparison without one. failures: a line for each; skipped: why unchecked, or ""."""
+    """Test case: a limit, or a comparison without one. failures: a line per breach; skipped: why unchecked, or ""."""
 
     name: str
     failures: Sequence[str] = ()
@@ -30,7 +30,7 @@ class JUnitCase:
 
 @dataclass(frozen=True)
 class JUnitSuite:
-    """Test suite of one scene: its limits, compute time, s, and date and time of the run; said: further output."""
+    """Test suite of one scene: test cases, compute time, s, date and time of the run; said: text for its output."""
 
     name: str
     seconds: float

@@ -30,7 +30,7 @@ SCRIPT_FILES = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "mo
 
 def render_pages(report: Report) -> dict[str, str]:
     """
-    Return the HTML of index.html, which answers the question of the study, and verification.html, by file name.
+    Return the HTML of index.html (differences between models) and verification.html (tests of codes), by file name.
 
     Neither needs another file. A part that raises an error is one line at the top and, if a section, in its place.
     """
@@ -57,7 +57,7 @@ def render_pages(report: Report) -> dict[str, str]:
 
 
 def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
-    """Return the numbers that a feature adds to the page, compressed and encoded as text."""
+    """Return the result of `numbers`, data that a feature adds to the page, compressed and encoded as text."""
     return compress_to_text(numbers(report))
 
 
@@ -73,7 +73,7 @@ def render_alerts(report: Report) -> Markup:
 
 
 def render_summary(report: Report) -> Markup:
-    """Return the first screen's table of differences between models, with bar charts of their causes, as HTML."""
+    """Return the table of differences between models at the top of the page, with bar charts of causes, as HTML."""
     study, results = report.study, report.results
     waterfalls = [each for scene in results.scenes for each in zip(scene.waterfalls, scene.headlines)]
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
@@ -107,7 +107,7 @@ def has_engine(study: Study) -> bool:
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Return whether a waterfall chart has a bar of at least MIN_DRAWN_BAR, of means or at the largest difference."""
+    """Return whether a chart of differences, in the mean or at the largest, has a bar of at least MIN_DRAWN_BAR."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
     return any(abs(bar.size) >= MIN_DRAWN_BAR for bar in every)
 
@@ -118,7 +118,7 @@ def word_measurements(results: Results) -> str:
 
 
 def list_lead_sentences(report: Report) -> list[tuple[str, str]]:
-    """Return the sentences that sections contribute to the first screen, each with the link to its section."""
+    """Return the sentences that sections show at the top of the first page, each with the link to its section."""
     sections = [section for section in report.sections if section.lead and section.is_present(report.results)]
     lines = [(section.lead(report.results), section) for section in sections if section.lead]
     page = "verification.html"
@@ -132,7 +132,7 @@ def _render_page(
     context: Mapping[str, Any],
     lost: LostParts,
 ) -> str:
-    """Return the HTML of one page; a part whose computation raises an error is left out, with a line in `lost`."""
+    """Return a page's HTML; a failing part is left out, with a line in `lost`; verifies: it is verification.html."""
     study, results = report.study, report.results
     sections = [section for section in report.sections if section.verifies == verifies]
     shown = [section for section in sections if section.is_present(results)]

@@ -90,7 +90,7 @@ def compress_to_text(content: bytes) -> str:
 
 
 def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
-    """Return the curves |size| = uncertainty over the square of phases as polylines of (alpha1, alpha2), rad."""
+    """Return the curves |size| = uncertainty over both phases, 0 to 2 pi, as polylines of (alpha1, alpha2), rad."""
     over = np.pad(np.abs(size) - uncertainty, ((0, 1), (0, 1)), mode="wrap")
     axis = np.append(phase, 2.0 * np.pi)
     lines = contourpy.contour_generator(axis, axis, np.ma.masked_invalid(over.T)).lines(0.0)
@@ -98,7 +98,7 @@ def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[l
 
 
 def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
-    """Return a pair of models for the page: texts; by body, curves |difference| = uncertainty, or the uncertainty."""
+    """Return two compared models for the page: texts; by body, curves |difference| = uncertainty, or uncertainty."""
     surfaces = (
         not scene.recorded
         and _is_drawn_as_surface(report, scene, pair.first)
@@ -118,7 +118,7 @@ def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _is_drawn_as_surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Return whether a model's values are drawn as a surface as computed, without interpolation between phase pairs."""
+    """Return whether a model's values are drawn as a surface as they are: all computed, and no user's engine."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 

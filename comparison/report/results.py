@@ -41,7 +41,7 @@ VALIDATED_BRIEFLY = (
 
 
 class WorkPart(Part):
-    """Number and processor time of one kind of task that is computed in addition to the surfaces."""
+    """Number and processor time of one kind of task that is computed in addition to the amplification surfaces."""
 
     tasks: int = Field(description="number of tasks")
     stored_before: int = Field(description="of these, taken from an earlier run")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Report:
     """
-    Everything from which the pages and files of a report are made.
+    All data of a report, from which its pages and files are made.
 
     results: what summary.json holds. surfaces: of every model, with the completed ones. found: what each analysis
     collected, by its key: motions, demands and pictures are not in the results. features: what the report consists of.

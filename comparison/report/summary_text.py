@@ -24,7 +24,7 @@ def render_summary_text(results: Results) -> str:
 
 
 def _format_as_code(text: str) -> str:
-    """Return a text as Markdown code, between more backticks than it has in a row."""
+    """Return a text as Markdown code, enclosed in more backticks than stand in a row within it."""
     fence = "`" * (1 + max((len(ticks) for ticks in re.findall("`+", text)), default=0))
     space = " " if "`" in text else ""
     return f"{fence}{space}{text}{space}{fence}"

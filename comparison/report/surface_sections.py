@@ -19,7 +19,7 @@ def list_models_in_use(study: Study) -> list[Any]:
 
 
 def _differences_context(report: Report) -> Mapping[str, Any]:
-    """Return variables for the section of differences: those of all scenes, and a logarithmic scale of their sizes."""
+    """Return variables for the section of differences: those of all scenes, a logarithmic scale for their plot."""
     rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
     return {"rows": rows, "dots": make_log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
@@ -31,7 +31,7 @@ def _grids_context(report: Report) -> Mapping[str, Any]:
 
 
 def _costs_context(report: Report) -> Mapping[str, Any]:
-    """Return variables for the section on cost: does a scene limit the isolator's travel; largest compute time, s."""
+    """Return variables for the section on cost: whether a scene limits the travel; largest compute time, s."""
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
         "limited": any(not math.isnan(model.travel_share) for model in outcomes),
@@ -48,27 +48,30 @@ def _models_context(report: Report) -> Mapping[str, Any]:
 
 
 def _surface_feature(key: str, title: str, selectable: bool = False, **about: Any) -> Feature:
-    """Return a feature that computes nothing and only shows a section, from the template named by its key."""
+    """Return a feature that computes nothing: a report section made from the template with its key as name."""
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 
 # Features that compute nothing and only show a section. Amplification is one value, not a surface, under a record.
 AMPLIFICATION_SECTION = _surface_feature("surfaces", "Amplification and motions", selectable=True, folded=False)
+# section: differences between models
 DIFFERENCES = _surface_feature("differences", "Differences", selectable=True, context=_differences_context)
+# section: causes of differences
 BUDGET = _surface_feature("budget", "Causes of the difference", selectable=True, context=_grids_context)
+# section: how runs ended, and their cost
 OUTCOMES = _surface_feature("outcomes", "Outcomes and cost", context=_costs_context)
-MODELS = _surface_feature("models", "Models compared", context=_models_context)
-VERIFICATION = _surface_feature(
+MODELS = _surface_feature("models", "Models compared", context=_models_context)  # section: the models
+VERIFICATION = _surface_feature(  # section: list of tests that check one code alone
     "verification",
     "Tests of each code alone",
     context=lambda report: {"checks": CHECKS},
     verifies=True,
     verdict=lambda results: f"{len(CHECKS)} tests, run by the test command of the README, not by this report",
 )
-PROVENANCE = _surface_feature("provenance", "Provenance")
+PROVENANCE = _surface_feature("provenance", "Provenance")  # section: versions, machine and command of the run
 # Features without a section of their own: interpolation of surfaces between computed phase pairs, and image files
 COMPLETION = Feature(CompletedSurfaces.key, analysis=CompletedSurfaces(), selectable=False)
-PICTURES = Feature(
+PICTURES = Feature(  # image files for the folder of figures; without a section
     Pictures.key,
     analysis=Pictures(),
     figures=lambda report: report.found.get(Pictures.key) or {},

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class CodeCheck(NamedTuple):
-    """Test of one code alone: reference, how closely it agrees and what limits that, name, and file below tests/."""
+    """Test of one code alone: what it is compared with, how well it agrees, what limits that; name, file in tests/."""
 
     side: str
     file: str

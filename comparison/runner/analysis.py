@@ -9,13 +9,13 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 
-LAST_LEVEL = 3  # number of the finest level of a study, at which all phases and analyses are computed
-Result = TypeVar("Result", covariant=True)
+LAST_LEVEL = 3  # number of the last and finest step of a study, in which all phases and analyses are computed
+Result = TypeVar("Result", covariant=True)  # type of the result of an analysis
 
 
 class Analysis(Protocol[Result]):
     """
-    Computation of a study in addition to its surfaces: the tasks to execute, and the result made from their results.
+    Computation of a study beside its amplification surfaces: its tasks, and the result made from what they return.
 
     No task is executed here. `tasks` lists them, a runner executes those that the cache lacks, and `collect` looks the
     results up by the same tasks.
@@ -33,7 +33,7 @@ class Analysis(Protocol[Result]):
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return the tasks to compute for a study; surfaces: of the amplification, None if they are not needed."""
+        """Return the tasks to compute for a study; surfaces: its amplification, None if the tasks need none."""
 
     @abstractmethod
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Result | None:

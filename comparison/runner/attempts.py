@@ -18,11 +18,11 @@ from reference.support.command import OutputError
 FULL_DISK_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
 MAX_LINE_LETTERS = 300  # number of letters after which the reason why a part of the report is lost is cut off
 
-T = TypeVar("T")
+T = TypeVar("T")  # type of what an attempted function returns
 
 
 def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = print_on_stderr) -> T | None:
-    """Return what `act` returns; if it raises return None and pass `say` a line with `what` and the reason."""
+    """Return what `act` returns; None if it raises an error, with a line to `say` that has `what` and the reason."""
     try:
         return act()
     except OutputError:

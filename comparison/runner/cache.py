@@ -69,7 +69,7 @@ class CacheKey:
 
 
 class Cache:
-    """Results stored in files below `folder`; kept: number of results read or written, by kind."""
+    """Results stored in subfolders of `folder`; kept: number of results read or written, by kind of result."""
 
     def __init__(self, folder: Path) -> None:
         """Use this folder for the files; it need not exist yet."""
@@ -121,7 +121,7 @@ class Cache:
                         os.unlink(entry.path)
 
     def trim(self, keys: Iterable[CacheKey]) -> None:
-        """Delete groups that `keys` do not need, least recently used first, while the cache exceeds MAX_CACHE_BYTES."""
+        """Delete groups of results not needed for `keys`, least recently used first, while size > MAX_CACHE_BYTES."""
         needed = {key.group for key in keys}
         with suppress(OSError):  # A run goes on even if the files of the cache cannot be listed.
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]

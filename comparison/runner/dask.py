@@ -34,7 +34,7 @@ MAX_SECONDS_WITHOUT_WORKERS = 60.0  # s without any worker on the cluster after 
 RECOUNT_SECONDS = 2.0  # s after which the workers of the cluster are counted again, as they may join or leave
 CONNECTION_LOST = "the connection to the scheduler was lost"  # error message when the cluster cannot be reached
 
-_ONE_CALL = threading.Lock()  # held during a call, so that the threads of a worker compute one call at a time
+_ONE_CALL = threading.Lock()  # held during a call: the threads of a worker make one call at a time
 
 
 @contextmanager
@@ -77,7 +77,7 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
 
 
 def _finish_call(call: Call) -> None:
-    """Make a call in a thread; raise its error, or TimeoutError if it takes too long: the thread is left behind."""
+    """Make a call in a thread; raise its error, or TimeoutError if it takes too long (the thread then runs on)."""
     ended: Future[Any] = Future()
 
     def run() -> None:

@@ -17,11 +17,12 @@ from reference.support.version import __version__
 
 COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")  # With another version, results are made anew.
 OWN_PACKAGES = ("reference", "multibody", "comparison")  # packages of this project
-USER_MODELS = "comparison.study.user_models"  # module that calls users' engines; their settings state their source
+USER_MODELS = "comparison.study.user_models"  # module that calls users' engines; their settings hold source hashes
 SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules through which every model is called
 # Packages whose versions a report states
 REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
-DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")  # also in the key of stored results that may hold figures
+# versions also in the key of stored results that may hold figures
+DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")
 # Modules whose source code a stored result of an analysis depends on: if it changes, the result is computed again
 ANSWERING_MODULES = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
 

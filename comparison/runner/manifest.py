@@ -17,7 +17,7 @@ MAX_FILE_BYTES = 2**30  # size in bytes above which a file is not read and count
 
 @dataclass(frozen=True)
 class OwnedFile:
-    """File that the study wrote: command that wrote it, and hashes of its content, old and new during replacement."""
+    """File that the study wrote: command that wrote it, hashes of its content; two while it is being replaced."""
 
     command: str
     hashes: tuple[str, ...]
@@ -60,7 +60,7 @@ def format_manifest(manifest: Mapping[str, OwnedFile]) -> bytes:
 
 def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
     """
-    Yield every path below a folder, each with whether it is a folder; a folder comes before its content.
+    Yield every path below a folder, with True if it is a folder; a folder comes before its content.
 
     Raises OSError.
     """
@@ -72,7 +72,7 @@ def walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
 
 
 def is_own_file(file: Path, entry: OwnedFile | None) -> bool:
-    """Return whether a file has the content that the study wrote, by its entry in the manifest; None: no entry."""
+    """Return whether a file has the content that the study wrote; entry: its line of the manifest, None without."""
     if entry is None or file.is_symlink() or not file.is_file():
         return False
     try:

@@ -12,7 +12,7 @@ from comparison.study.study import Study
 
 
 class MappedAnalysis(Analysis[Result]):
-    """Base class of an analysis that calls one function with many arguments: one task each."""
+    """Base class of an analysis that calls one function for many arguments, one task for each."""
 
     function: ClassVar[Any]  # function of one argument, which runs inside a worker process
     without_value: ClassVar[Any]  # function of argument and failed result: returns what stands for the missing value

@@ -117,7 +117,7 @@ def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
 
 
 def refuse_other_page(out: Path, command: str) -> None:
-    """Raise SceneError if index.html in the folder `out` is another command's page: two answers need two folders."""
+    """Raise SceneError if index.html in the folder `out` is another command's page: each needs a folder of its own."""
     page = read_manifest(out).get(PAGE_FILE)
     if page is not None and page.command != command:
         name = page.command.rpartition(".")[2]
@@ -174,7 +174,7 @@ def remove_abandoned_reports(out: Path) -> None:
 
 
 def publish_files(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path]:
-    """Write files into a folder, next to foreign files of the same names; return their paths. Raises OSError."""
+    """Write files into a folder, under another name if a foreign file has theirs; return the paths. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with hold_lock(folder.resolve().parent):

@@ -39,8 +39,8 @@ except ImportError:  # Windows cannot limit a process's processor time; its wall
 SPAWN_CONTEXT = multiprocessing.get_context("spawn")  # starts worker processes as new Python interpreters
 # A process without an answer is ended after this multiple of its limit of processor time as wall time.
 STALLED_WALL_RATIO = 20.0
-# It is also ended after WALL_TIME_RATIO times that limit plus SPARE_WALL_SECONDS, s, of wall time, if that is earlier;
-# wall time is longer than processor time because a process may have to share its processor.
+# A process is also ended after WALL_TIME_RATIO times its processor time limit plus SPARE_WALL_SECONDS, s, of wall time,
+# if that is earlier; wall time is longer because a process may have to share its processor.
 WALL_TIME_RATIO, SPARE_WALL_SECONDS = 5.0, 60.0
 MAX_TIMEOUT = 1e6  # s, longest time that the system accepts when waiting for an answer
 EXIT_SECONDS = 5.0  # s, longest wait for a process to end after its pipe (connection to this process) has closed
@@ -78,7 +78,7 @@ def count_cores() -> int:
 
 @contextmanager
 def open_executor(pool: Pool, jobs: int) -> Iterator[Executor]:
-    """Yield an executor for a block; if it was made here, it ends with the block (at once if the block raises)."""
+    """Yield an executor for a block. One made here is shut down after the block, without waiting if that raises."""
     if isinstance(pool, Executor):
         yield pool
         return

@@ -14,18 +14,18 @@ from comparison.verdicts import MET, NOT_MET, Verdict
 
 EPSILON = 0.1  # the paper's epsilon: a loading period T_c (1 -+ epsilon) is close to the natural period T_c
 ROUNDING = 1e-9  # relative rounding error allowed, so that periods of exactly T_c (1 -+ epsilon) are close to T_c
-# Two surfaces are similar from this correlation on: each then explains half of the other's variance
+# Two amplification surfaces are similar from this correlation on: each then explains half of the variance of the other
 MIN_CORRELATION = 0.7
 # A motion is along the line x = y if |x - y|, divided by the largest displacement, stays below this (solver tolerance)
 MAX_PLANE_DEVIATION = 1e-6
 MIN_AXIS_DIFFERENCE = 0.1  # motions along x and y differ if |x - y| / largest displacement is above this
 SMALL_SWING_RATIO = 0.1  # a swing is small if (displacement / rho)^2, rho: radius of the bearing, is at most this
-# Smallest prominence of a counted peak, as a share of the surface's range; at 20 % grid and integration alter counts
+# Smallest prominence of a counted peak / range of the surface; at 20 % grid and integration alter the counts
 COMPLEX_PROMINENCE = 0.25
 OTHER_PROMINENCES = 0.15, 0.35  # other prominences tried, to see whether the verdict depends on it
-MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, a peak within this distance of a corner (in the square of phases) is near it
-CORNER = (0.0, 0.0)  # rad, the corner (0, 0): the four corners are one point of the periodic square
-# Functions that count peaks and valleys of a surface: on the periodic square of phases, as drawn, or on a profile
+MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, a peak this close to a corner of the square of both phases is near it
+CORNER = (0.0, 0.0)  # rad, both phases at a corner of their square; the four corners are one point, as it is periodic
+# Functions that count peaks and valleys of an amplification surface: over periodic phases, as drawn, or on its profile
 PEAK_COUNTS_BY_VIEW = {
     "periodic": counting.count_periodic_peaks_and_valleys,
     "drawn": counting.count_drawn_peaks_and_valleys,
@@ -35,7 +35,7 @@ PEAK_COUNTS_BY_VIEW = {
 
 @result
 class StatementVerdict:
-    """Verdict on a statement of the paper by the surfaces of one kind of peak in (5.1), with its reason."""
+    """Verdict on a statement of the paper, with its reason, for one definition of the peak acceleration in (5.1)."""
 
     verdict: Annotated[Verdict, "met, not met, or not compared"]
     reason: Annotated[Text, "the numbers that decide, why it cannot hold, or why nothing was compared"]
@@ -46,7 +46,7 @@ class StatementVerdict:
             raise ValueError(f"reason = {self.reason!r}: the verdict {self.verdict!r} needs one")
 
 
-Check = Callable[..., StatementVerdict]  # function that judges a statement by the evidence of its cases
+Check = Callable[..., StatementVerdict]  # function that returns the verdict on a statement from evidence on its scenes
 
 
 def verdict_with_reason(holds: bool, reason: str) -> StatementVerdict:
@@ -61,7 +61,7 @@ def compare_intensity(case: Evidence) -> StatementVerdict:
 
 
 def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> StatementVerdict:
-    """Return the verdict whether the amplification surfaces of two cases (one body of each) are similar."""
+    """Return the verdict whether the amplifications of two scenes (one body of each) over the phases are similar."""
     if any(case.flat(body) for case, body in zip(cases, bodies)):
         return verdict_with_reason(False, "one of them is flat")
     steps = [len(case.mu) // min(len(case.mu) for case in cases) for case in cases]
@@ -71,13 +71,13 @@ def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> St
 
 
 def find_folds(*cases: Evidence) -> StatementVerdict:
-    """Return the verdict whether every surface of the amplification has a fold or jump where it is curved most."""
+    """Return the verdict whether each amplification surface has a fold or a jump where it is curved most."""
     rough = all(not (flat or bend.smooth) for case in cases for _, flat, bend in _list_curvatures(case))
     return verdict_with_reason(rough, "; ".join(map(_describe_curvatures, cases)))
 
 
 def find_no_fold(case: Evidence) -> StatementVerdict:
-    """Return the verdict whether no surface, nor the ground peak that divides it in (5.1), has a fold or a jump."""
+    """Return the verdict whether no amplification, nor its divisor, the ground peak in (5.1), has a fold or a jump."""
     if case.ground is not None and not case.ground.smooth:
         return verdict_with_reason(
             False, f"cannot hold: the denominator of (5.1) has a fold; {_describe_curvatures(case)}"
@@ -93,7 +93,7 @@ def _list_curvatures(case: Evidence) -> list[tuple[int, bool, SharpestCurvature]
 
 
 def _describe_curvatures(case: Evidence) -> str:
-    """Return in words where each body's surface is curved most: kind (fold, jump, smooth) and exponent of the step."""
+    """Return in words where each amplification is curved most: kind (fold, jump, smooth), power of the phase step."""
     words = (
         f"mu_{body} {'flat' if flat else f'{bend.kind} (h^{bend.exponent:.1f})'}"
         for body, flat, bend in _list_curvatures(case)
@@ -132,7 +132,7 @@ def compare_periods(case: Evidence) -> StatementVerdict:
 
 
 def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict:
-    """Return the verdict whether the platform's surface has as many peaks and valleys as the paper counts."""
+    """Return the verdict whether the platform's amplification has as many peaks and valleys as the paper counts."""
     if case.flat(1):
         return verdict_with_reason(False, "flat")
     shares = counting.SHARE, counting.MIN_SHARE, counting.MAX_SHARE
@@ -150,14 +150,14 @@ def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict
 
 
 def compare_complexity(case: Evidence) -> StatementVerdict:
-    """Return the verdict whether body 2's surface has several peaks and valleys, and more than body 1's."""
+    """Return the verdict whether body 2's amplification has several peaks and valleys, and more than body 1's."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
-        """Return how many peaks and valleys the surfaces of bodies 1 and 2 have. share: prominence over their range."""
+        """Return peak and valley counts of bodies 1 and 2 over the phases; share: least prominence / surface range."""
         return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:
-        """Return whether the statement holds with peaks of this prominence (a share of the surface's range)."""
+        """Return whether the statement holds if peaks have at least this share of the surface's range as prominence."""
         first, second = counts(share)
         return min(second) > 1 and sum(second) > sum(first)
 
@@ -169,7 +169,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
 
 
 def find_corner_peaks(case: Evidence) -> StatementVerdict:
-    """Return the verdict whether body 2's amplification has a peak near a corner of the square of phases."""
+    """Return the verdict whether body 2's amplification has a peak near phases (0, 0), a corner of [0, 2 pi]^2."""
     mu = case.mu[..., 1]
     if case.flat(2):
         return verdict_with_reason(False, "flat")

@@ -15,7 +15,7 @@ from comparison.verdicts import NOT_COMPARED
 
 @dataclass(frozen=True)
 class PaperStatement:
-    """Statement of the paper about a figure. rule: when it is met. cannot: why no parameters can meet it, or ""."""
+    """Statement of the paper on a figure. rule: when it is met; cannot: why no parameters meet it, or "", in words."""
 
     figure: str
     says: str
@@ -25,7 +25,7 @@ class PaperStatement:
     cannot: str = ""
 
     def verdict(self, evidence: Mapping[str, Evidence]) -> StatementVerdict:
-        """Return the verdict of the statement's check; "not compared" if a case has phase pairs without a value."""
+        """Return the verdict of the statement's check; "not compared" if a scene has phase pairs without a value."""
         cases = [evidence[case] for case in self.cases]
         for name, case in zip(self.cases, cases):
             if not case.complete:
@@ -39,11 +39,12 @@ _PEAKS_AND_VALLEYS = (
     f"prominence of {100 * SHARE:.0f} % of the range or more, both numbers on the periodic square, or both as drawn or"
     " on the drawn profile over α_1 - α_2"
 )
-_SIMILAR = f"correlation over the phases at least {checks.MIN_CORRELATION:g}"  # rule: similar surfaces
+_SIMILAR = f"correlation over the phases at least {checks.MIN_CORRELATION:g}"  # rule in words: surfaces are similar
 _ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"  # rule: folds
 # Scenes of the paper's figures
 _I, _II, _DRY, _WET = "fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"
 
+# statements of the paper: figure, what it says, rule in words, scenes, function that checks it
 CLAIMS: tuple[PaperStatement, ...] = (
     PaperStatement(
         "Fig. 3",

@@ -38,7 +38,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def print_claims(console: Console, table: ClaimTable) -> None:
-    """Print the verdicts for both kinds of peak in (5.1), then their reasons, and why a statement cannot hold."""
+    """Print the verdicts for both definitions of the peak (5.1), then reasons, and why a statement cannot hold."""
     grid = Table("about", "statement", *table.counts, box=None, pad_edge=False)
     for each in table.statements:
         grid.add_row(each.figure, each.says, *(each.verdicts[name].verdict for name in table.counts))
@@ -50,7 +50,7 @@ def print_claims(console: Console, table: ClaimTable) -> None:
 
 
 def print_ratios(console: Console, study: Study) -> None:
-    """Print, by (4.4) alone, the ratios of the amplitudes of upper bodies to that of the platform."""
+    """Print the ratios of upper bodies' amplitudes to the platform's, by the equations of the links (4.4) alone."""
     console.print("Amplitude of a body over that of the platform under each harmonic, by (4.4) alone:")
     grid = Table("scene", "axis", "period, s", "body", "ratio", "without decay", box=None, pad_edge=False)
     for scene in study.scenes:

@@ -12,7 +12,7 @@ from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.symmetry import complete_surface
 
-# Relative error of surfaces that are computed here: small enough to count peaks
+# Relative error of the amplification where the checks compute it: small enough to count peaks
 SURFACE_TOLERANCE = 1e-3
 CURVATURE_TOLERANCE = 1e-6  # relative error of amplifications whose second differences tell a fold from a smooth curve
 FLAT_RANGE_RATIO = 0.05  # range of a surface divided by its mean, up to which it counts as flat: no resonance
@@ -21,7 +21,7 @@ MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase
 
 @dataclass(frozen=True)
 class Evidence:
-    """Findings on surfaces and motions of one scene by (4.3)-(4.4) as printed, for one kind of peak in (5.1)."""
+    """Findings on a scene by printed small-vibration equations (4.3)-(4.4), for one definition of the peak (5.1)."""
 
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # amplification (n, n, N), NaN if unknown
     error: float = float("nan")  # largest absolute error estimate of the amplification
@@ -36,7 +36,7 @@ class Evidence:
     case: str = ""  # name of the scene in STATEMENT_CASES
 
     def flat(self, body: int) -> bool:
-        """Return whether a body's surface varies by less than its errors, or so little that it shows no resonance."""
+        """Return whether a body's amplification varies over phases within its errors, or too little for resonance."""
         mu = self.mu[..., body - 1]
         return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT_RANGE_RATIO * abs(float(mu.mean()))))
 
@@ -49,7 +49,7 @@ class Evidence:
 @dataclass(frozen=True)
 class CaseInReading:
     """
-    One scene under one definition of the peak in (5.1), on a grid of `grid` phases per axis.
+    One scene to compute with one definition of the peak acceleration (5.1), on a grid of `grid` phases per axis.
 
     known: its surfaces, where the study has them; otherwise they are computed.
     """
@@ -61,11 +61,11 @@ class CaseInReading:
 
 
 def gather_evidence(question: CaseInReading) -> Evidence:
-    """Compute, in a worker process, the surfaces, sharpest curvatures and facts of motions of one case."""
+    """Compute, in a worker process, a scene's amplification, its sharpest curvatures, and facts of the motions."""
     scene, cutoff = STATEMENT_CASES[question.case](), question.reading.cutoff
 
     def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
-        """Return the amplification by the paper's equations at phase pairs (M, 2), rad."""
+        """Return the amplification by the paper's small-vibration equations at phase pairs (M, 2), rad."""
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
 
     surfaces = question.known
@@ -98,7 +98,7 @@ def make_failed_evidence(question: CaseInReading, failed: TaskResult) -> Evidenc
 
 
 def _measure_motions(scene: Scene) -> tuple[tuple[float, ...], float]:
-    """Return, at MOTION_PHASES, `apart` (difference of motions along x and y) and `swing` of `Evidence`."""
+    """Return, at MOTION_PHASES, relative |x - y| of each body, and the platform's largest (displacement / rho)^2."""
     apart, swing = np.zeros(len(scene.bodies)), 0.0
     for phase in MOTION_PHASES:
         place = reference.trajectory(scene, phase, equations="small").position[..., :2]

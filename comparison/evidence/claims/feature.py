@@ -5,10 +5,10 @@ from comparison.evidence.claims.table import Claims, ClaimTable, count_met, word
 from comparison.report.feature import Feature, ResultField
 from comparison.report.section import Section
 
-FOUND = ResultField(
+FOUND = ResultField(  # field of the results with the verdicts on the paper's statements
     Claims.key, ClaimTable, "the paper's statements about its figures; null unless every scene of the paper was studied"
 )
-FEATURE = Feature(
+FEATURE = Feature(  # declaration of this feature: its result field, analysis and report section
     Claims.key,
     (FOUND,),
     analysis=Claims(),

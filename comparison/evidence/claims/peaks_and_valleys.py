@@ -26,7 +26,7 @@ MIN_SHARE, MAX_SHARE = 0.2, 0.4
 
 @dataclass(frozen=True)
 class PeakBasins:
-    """Peaks of a surface as (row, column), highest first; for each grid point, index of the peak where ascent ends."""
+    """Peaks of a surface (row, column), highest first; for each grid point, index of the peak that ascent reaches."""
 
     tops: Sequence[tuple[int, int]]
     regions: NDArray[np.int_]
@@ -54,7 +54,7 @@ def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = 
 
 
 def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
-    """Return the numbers of peaks and valleys of the mean amplification at constant alpha1 - alpha2, -2 pi to 2 pi."""
+    """Return peak and valley counts of the profile: mean amplification at each alpha1 - alpha2, from -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
     along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])

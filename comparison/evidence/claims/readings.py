@@ -11,28 +11,29 @@ from reference.problem import Scene, load_scene, readings
 
 @dataclass(frozen=True)
 class PeakReading:
-    """Which peak acceleration (5.1) means: key of the model; lowest sliding speed that counts, m/s, None for any."""
+    """Definition of the peak in (5.1): key of its model; lowest sliding speed that counts, m/s, None if all count."""
 
     name: str
     model: str
     cutoff: float | None
 
 
-# The two readings of (5.1): the peak counts only rest and sliding above v_c, or also the limit just before a stop
+# Definitions of the peak (5.1): only rest and sliding above v_c count, or also the limit just before a stop (supremum)
 AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
+# peak at any sliding speed, also in the limit just before a stop
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
-READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)  # both readings of (5.1), in the order of tables
+READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)  # both definitions of the peak in (5.1), in the order of tables
 
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
-    """Return the given reading of (5.1), or the literal supremum for a scene without dry friction, where both agree."""
+    """Return the given definition of the peak (5.1); without dry friction the literal supremum, which then agrees."""
     return reading if models.has_dry_friction(scene) else LITERAL_SUPREMUM
 
 
 @cache
 def _make_platform_scene(name: str, oscillator: bool) -> Scene:
     """
-    Return a scene of the paper without the bodies above its platform; its period T_c is close to those of the loading.
+    Return a scene of the paper reduced to its platform, of period T_c close to the loading's, or to an oscillator.
 
     oscillator: instead without friction, of the period T_3x of the second body on its springs: far from both harmonics.
     """

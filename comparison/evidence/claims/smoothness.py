@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 
 DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # directions of second differences, grid steps
-SEARCHED_PLACES = 2  # number of grid points on each surface around which ever smaller steps are tried
-STEP_HALVINGS = 5  # number of times the phase step is halved around such a point: down to 1/32 of the grid's
+SEARCHED_PLACES = 2  # number of grid points on each surface around which ever smaller phase steps are tried
+STEP_HALVINGS = 5  # number of times the phase step is halved around a searched point: down to 1/32 of the grid step
 FITTED_HALVINGS = 3  # number of last halvings to which the exponent is fitted; longer steps still show the peak's shape
-# Second difference ~ step^exponent: the surface is smooth above 1.5, has a fold from 0.5 to 1.5, and a jump below 0.5
+# Second difference ~ (phase step)^exponent: smooth surface above 1.5, a fold from 0.5 to 1.5, a jump below 0.5
 MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5
 
 
 @dataclass(frozen=True)
 class SharpestCurvature:
     """
-    Place where a surface is least smooth: its second difference falls with the lowest power of the step there.
+    Place where a surface is least smooth: its second difference there falls with the lowest power of the phase step.
 
     exponent: that power, NaN where a value is missing. phases: (alpha1, alpha2) of the place, rad.
     """
@@ -47,7 +47,7 @@ class SharpestCurvature:
 
 
 def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tuple[SharpestCurvature, ...]:
-    """Return where each amplification surface mu (n, n, N) is least smooth; solve: mu (M, N) at phases (M, 2), rad."""
+    """Return where each body's amplification mu (n, n, N) is least smooth; solve: mu (M, N) at phases (M, 2), rad."""
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest_places(mu[..., body])]

@@ -27,7 +27,7 @@ from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Amplification, Outcome, Scene, ground_peak, loading_period
 
-RelativeDifferences = tuple[Array, Array]  # differences of amplification, errors: (phase pair, parameter, body)
+RelativeDifferences = tuple[Array, Array]  # relative differences of amplification, errors: (phases, parameter, body)
 
 # rad, phase pairs at which the reference equations are solved
 EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
@@ -44,7 +44,7 @@ MAX_STEPS = 20_000  # largest number of constant steps of one motion; a second r
 EQUATION_TOLERANCE = 1e-7  # relative error asked of the amplification by the reference equations
 # Newton's method in Exudyn's steps: tolerance of the residual relative to the first one, and in units of the weight
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
-STEP_ERROR_FACTOR = 1.5  # error estimate / change of amplification by halved steps, which is 0.5 to 1 coarse errors
+STEP_ERROR_FACTOR = 1.5  # error estimate / change of amplification by halved steps, the latter 0.5 to 1 coarse errors
 
 
 def _compare_at_speeds(
@@ -52,7 +52,7 @@ def _compare_at_speeds(
     scene: Scene,
 ) -> RelativeDifferences:  # fmt: skip
     """
-    Return relative differences of the amplification at each v_reg (`speeds`) from that with set-valued friction.
+    Return relative differences of amplification between friction regularized at each v_reg (`speeds`) and set-valued.
 
     side: package that computes it at v_reg. resolved: with set-valued friction, only rest and speeds above v_reg count.
     """
@@ -67,14 +67,14 @@ def _compare_at_speeds(
 
 
 def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> RelativeDifferences:
-    """Return relative differences and errors; pairs: amplification at one parameter value, and in the limit."""
+    """Return relative differences of amplification, and errors; pairs: at a parameter value, and in its limit."""
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
 
 
 def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
-    """Return the relative differences of Exudyn's amplification with ever stiffer contacts from a rigid contact's."""
+    """Return relative differences of Exudyn's amplification with ever stiffer contacts from that of rigid contact."""
     short = shorten_scene(scene, CONSTANT_STEP_PERIODS)
     v_reg = None if scene.lubricated else STIFFNESS_V_REG
     exact = reference.amplification(short, ENGINE_PHASES, tolerance=EQUATION_TOLERANCE, regularization=v_reg)
@@ -88,7 +88,7 @@ def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
 
 
 def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
-    """Return translational amplification (P, N) in `factor` times the usual constant steps; NaN where Exudyn fails."""
+    """Return Exudyn's translational amplification (P, N), `factor` times the usual constant steps; NaN if it fails."""
     mu = np.full((len(ENGINE_PHASES), len(scene.bodies)), np.nan)
     count = factor * min(MAX_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
     step = scene.duration / count
@@ -124,7 +124,7 @@ _by_engine = partial(  # compares Exudyn at each v_reg with the reference equati
     _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
 )
 
-# Comparisons: what is compared, parameter values that go to zero, expected exponent, function, scenes that it suits
+# Pairs of computations: what is compared, parameter values that go to 0, expected exponent, function, scenes it suits
 CONVERGENCE_CASES = (
     ConvergenceCase(
         "exact equations: regularized against resolved",
@@ -148,7 +148,7 @@ CaseArguments = tuple[Scene, int]  # scene, and index of the comparison in CONVE
 
 
 def fit_limit_trends(task: CaseArguments) -> list[Trend]:
-    """Return the power law of each body for one comparison in one scene. Runs inside a worker process."""
+    """Return the power law of each body's differences for one comparison in one scene. Runs inside a worker process."""
     scene, number = task
     sizes, errors = CONVERGENCE_CASES[number].measure(scene)
     return _fit_trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))
@@ -173,7 +173,7 @@ def _fit_trends(
 
 
 class Convergence(MappedAnalysis[list[Trend]]):
-    """Convergence of each body's amplification in every comparison of CONVERGENCE_CASES and every scene it suits."""
+    """Analysis of how each body's amplification converges in each of CONVERGENCE_CASES and each scene it suits."""
 
     key, stage = "convergence", "convergence"
     seconds = 1.5

@@ -28,7 +28,7 @@ MEASURED_SPEED_SHARE = 0.9  # Friction is measured while the platform moves fast
 
 @result
 class EffectiveModelValues:
-    """Radius, friction, mass, and stiffness of the top link, as a motion shows or the scene states them; else null."""
+    """Radius, friction, mass, and stiffness of the top link: found from a motion, or stated by the scene; else null."""
 
     scene: Annotated[Text, "name of the scene"]
     model: Annotated[str, "key of the model, or scene"]
@@ -44,7 +44,7 @@ class EffectiveModelValues:
 
 
 def word_effective(values: Sequence[EffectiveModelValues]) -> str:
-    """Return in words how much radius, friction and mass that motions show differ at most from those stated."""
+    """Return in words by how much radius, friction and mass found from motions differ at most from the stated ones."""
     known = {each.scene: each for each in values if each.model == "scene"}
     parts = []
     for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
@@ -57,7 +57,7 @@ def word_effective(values: Sequence[EffectiveModelValues]) -> str:
 
 
 def read_scene_values(scene: Scene) -> EffectiveModelValues:
-    """Return radius, friction, mass and top link as stated, and the platform's acceleration at t = 0, when it rests."""
+    """Return radius, friction, mass and top link that the scene states, and platform acceleration at t = 0, at rest."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return EffectiveModelValues(
         scene=scene.name,

@@ -17,7 +17,7 @@ def _effective_of_scene(findings: Findings, scene: Scene) -> list[EffectiveModel
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-EFFECTIVE = SceneField(  # field of each scene's results: values as stated and as motions show them
+EFFECTIVE = SceneField(  # each scene's results: radius, friction, mass, top link, as stated and as motions show them
     EffectiveValues.key, list[EffectiveModelValues], "the scene, then every model", _effective_of_scene
 )
 FORCED = SceneField(  # field of each scene's results: amplitude ratios under each harmonic

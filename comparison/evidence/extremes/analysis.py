@@ -36,7 +36,7 @@ PHYSICAL_OUTCOMES = {
 PHYSICAL_OUTCOMES |= {Outcome.NON_FINITE_LOAD, Outcome.NO_GROUND_MOTION}
 # Outcomes that mean that the solver did not reach the accuracy asked, ran out of steps, or failed
 NUMERICAL_OUTCOMES = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED}
-# A finer run can confirm an amplification if its own error is at most that claimed, or this share of the tolerance.
+# A finer run confirms a result only if its own error is at most the result's, or this share of the tolerance asked.
 CONFIRMING_ERROR_SHARE = 0.1
 RELATIVE_ROUNDING = 1e-12  # Two amplifications whose relative difference is smaller count as equal.
 # Groups of extremes that --reduced also computes with Exudyn's models
@@ -45,14 +45,14 @@ STAGE = "extremes"  # name under which the terminal shows the progress of these 
 # s, processor time after which a cell with its finer runs is stopped: twice what the slowest takes on a busy machine
 CELL_TIME_LIMIT = 300.0
 SECONDS_OF_LONG_ROWS = 30.0  # s, rough processor time of one cell in a row that takes the equations over a second
-# First word of the reason in a cell whose worker process timed out or died; other failures are exceptions
+# First word of the reason in a cell whose worker process timed out or died; "raises" stands for other failures
 PROCESS_FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}
 MIN_TOLERANCE = 1e-10  # smallest relative error that a finer run is asked for: models accept no smaller one
 
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """Answer of a model: amplification mu, error, status; or the broken input rule (`invalid`), or error `raised`."""
+    """Result of a model: amplification mu, error, status; or the broken input rule (`invalid`), or error `raised`."""
 
     mu: Array
     error: Array
@@ -64,7 +64,7 @@ class ModelAnswer:
 def judge_answer(
     reply: ModelAnswer, finer: Sequence[ModelAnswer], tolerance: float, invalid: bool, right: Sequence[str]
 ) -> MatrixEntry:
-    """Return the verdict on an answer's worst phase pair; finer: runs, most trusted first; right: allowed outcomes."""
+    """Return the verdict on a result's worst phase pair; finer: runs, most trusted first; right: allowed outcomes."""
     if reply.raised:
         return MatrixEntry(CellVerdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:
@@ -79,7 +79,7 @@ def judge_answer(
 def _judge_point(
     reply: ModelAnswer, m: int, finer: Sequence[ModelAnswer], tolerance: float, right: Sequence[str]
 ) -> MatrixEntry:
-    """Return the verdict on an answer at phase pair `m`, checked by finer runs; right: correct outcomes, if known."""
+    """Return the verdict on a result at phase pair `m`, checked by finer runs; right: correct outcomes, if known."""
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICAL_OUTCOMES | NUMERICAL_OUTCOMES | {Outcome.OK}):
@@ -120,7 +120,7 @@ def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoin
 def _judge_by_finer_runs(
     status: str, mu: Array, error: Array, share: float, known: Sequence[tuple[Array, Array]], tolerance: float
 ) -> MatrixEntry | None:
-    """Return the verdict of finer runs (most trusted first) on amplification mu, or None; share: its relative error."""
+    """Return the verdict by finer runs, most trusted first, on amplification mu, or None; share: its relative error."""
     for value, estimate in known:
         if reason := _word_excess_over_stated_error(value, estimate, mu, error):
             return MatrixEntry(CellVerdict.FAILED, reason, status)
@@ -135,7 +135,7 @@ def _judge_by_finer_runs(
 
 
 def _word_excess_over_stated_error(finer_mu: Array, finer_error: Array, mu: Array, error: Array) -> str:
-    """Return in words how far the amplification is from a finer run's if further than both errors allow, else ""."""
+    """Return in words how far amplification mu is from a finer run's, if by more than both errors added, else ""."""
     off, allowed = np.abs(mu - finer_mu), error + finer_error + RELATIVE_ROUNDING * np.abs(mu)
     worst = int((off / allowed).argmax())
     times = off[worst] / allowed[worst]
@@ -167,7 +167,7 @@ def list_cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COL
 
 
 def solve_cell(cell: MatrixCell) -> MatrixEntry:
-    """Compute a model's answer at an extreme, then finer runs that check it; return the verdict on the answer."""
+    """Compute a model's amplification at an extreme, then finer runs that check it; return the verdict."""
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
     begin = time.process_time()
@@ -194,7 +194,7 @@ def solve_cell(cell: MatrixCell) -> MatrixEntry:
 
 def makes_checkable_claim(reply: ModelAnswer) -> bool:
     """
-    Return whether finer runs could contradict the answer: not if invalid, failed, or of an error as large as itself.
+    Return whether finer runs could contradict the result: not if invalid, failed, or as uncertain as it is large.
     """
     return not (reply.invalid or reply.raised) and any(
         (error < np.abs(mu)).any() if status == Outcome.TOLERANCE_NOT_MET else status not in NUMERICAL_OUTCOMES
@@ -203,7 +203,7 @@ def makes_checkable_claim(reply: ModelAnswer) -> bool:
 
 
 def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> ModelAnswer:
-    """Return what a function answers for the row's scene and phases; row.max_work: largest number of Exudyn's steps."""
+    """Return a function's result for the row's scene and phases; row.max_work: largest number of Exudyn's steps."""
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
     try:
@@ -219,7 +219,7 @@ def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> 
 
 
 def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
-    """Return the scene described by `stated`, in the form of a scene file; None: key absent. Raises SceneError."""
+    """Return the scene made of the tables of a scene file; a key with the value None is absent. Raises SceneError."""
     try:
         return Scene.model_validate({**stated, "name": "extreme"})
     except ValidationError as error:
@@ -239,7 +239,7 @@ class Extremes:
         return [self._task(cell) for cell in list_cells(self.rows, self.columns)]
 
     def collect(self, results: TaskResults) -> Matrix:
-        """Return the matrix of verdicts; the command adds times and provenance of the run."""
+        """Return the matrix of verdicts from the results; the command adds times and provenance of the run."""
         entries: dict[tuple[str, str], dict[str, MatrixEntry]] = {}
         for cell in list_cells(self.rows, self.columns):
             row = entries.setdefault((cell.row.group, cell.row.title), {})
@@ -249,7 +249,7 @@ class Extremes:
         return Matrix(titles, [Extreme(group, title, row) for (group, title), row in entries.items()], {})
 
     def _task(self, cell: MatrixCell) -> Task:
-        """Return the task that judges a cell; it waits for compilation only if it solves the reference equations."""
+        """Return the task that judges a cell; it waits for compiled code only if the reference equations are solved."""
         row, column = cell.row, cell.column
         functions = {row.amplification or column.amplification, *(function for function, _, _ in column.finer)}
         seconds, compiled = column.seconds if row.quick else SECONDS_OF_LONG_ROWS, EQUATIONS in functions
@@ -264,7 +264,7 @@ def _entry_of_failure(cell: MatrixCell, failed: TaskResult) -> MatrixEntry:
 
 
 def select_quick(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:
-    """Return the extremes that the equations compute in less than a second, most of them without Exudyn's models."""
+    """Return extremes that the reference equations compute in under 1 s, with Exudyn's models only in a few groups."""
     chosen = [
         replace(
             row,

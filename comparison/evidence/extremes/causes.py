@@ -1,16 +1,16 @@
 """Causes why a model has no answer at an extreme, by model and extreme."""
 
 _ENGINE = "translational", "spatial"  # keys of the models of Exudyn
-# Texts that the table below uses more than once: causes, and the common end of two causes
+# Texts used more than once in CAUSES: why a model does not reach the accuracy asked, or the end of such a text
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
-_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"  # end of the next two texts
-_FRICTION = f"friction stops so light a platform {_QUICK}"  # cause in words
-_RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
-_LIGHT = (
+_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"  # end of two causes
+_FRICTION = f"friction stops so light a platform {_QUICK}"  # cause: a light platform
+_RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"  # cause: small v_reg
+_LIGHT = (  # cause: a platform much lighter than the bodies above it
     "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
     "rounding of those which balance at its start"
 )
-# Known causes why a model does not reach the accuracy asked: by quantity and its extreme value, then by model
+# Known causes why a model does not reach the accuracy asked, by (quantity, its extreme value), then by key of the model
 CAUSES: dict[tuple[str, str], dict[str, str]] = {
     ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
     ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),

@@ -35,9 +35,11 @@ def _model_column(key: str, title: str, equations: str, regularization: float | 
     return ModelColumn(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
 
 
-# Keyword arguments of the amplification functions, with friction linear below the sliding speed v_reg
+# Keyword arguments for models with friction linear below the sliding speed v_reg; here: the exact equations
 _REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
+# keyword arguments of Exudyn's translational model
 _TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
+# keyword arguments of Exudyn's spatial model
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 # Import path of the function that computes the amplification by Exudyn at a stated time step or contact stiffness
 STATED_ENGINE = "comparison.evidence.extremes.engine:amplification"
@@ -64,7 +66,7 @@ def make_user_column(model: Model) -> ModelColumn:
 
 
 PLANAR_MODELS = ALL_MODELS[:4]  # keys of the models whose bodies do not rotate
-# Keys of the models of the reference equations: small, exact, and exact with regularized friction
+# Keys of the models by the reference equations: small vibrations, exact, and exact with regularized friction
 REFERENCE_MODELS = ALL_MODELS[:3]
 REGULARIZED_MODELS = ALL_MODELS[2:]  # keys of the models with friction linear below the sliding speed v_reg
 ENGINE_MODELS = ALL_MODELS[3:]  # keys of Exudyn's models

@@ -29,7 +29,7 @@ def amplification(
     step: float | None = None,
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
-    """Return Exudyn's amplification by accuracy levels that begin at a contact stiffness, N/m, or a largest step, s."""
+    """Return Exudyn's amplification; its accuracy levels begin at a contact stiffness, N/m, or largest step, s."""
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)

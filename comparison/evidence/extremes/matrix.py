@@ -31,7 +31,7 @@ MEANING_OF_VERDICT = {  # explanation of each verdict for the report
 
 @result
 class MatrixEntry:
-    """Cell of the matrix: the verdict on the answer of one model at one extreme, with reason, error and time."""
+    """Cell of the matrix of extremes: verdict on one model at one extreme, with reason, error and time."""
 
     verdict: CellVerdict
     """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
@@ -58,7 +58,7 @@ class Extreme:
 
 @result
 class Matrix:
-    """Matrix of verdicts: every model at the extremes of every quantity, checked by finer runs."""
+    """Matrix of verdicts on every model (columns) at the extremes of every quantity (rows), checked by finer runs."""
 
     columns: Annotated[Mapping[str, str], "titles of the models by key"]
     rows: Annotated[Sequence[Extreme], "one per extreme"]
@@ -82,7 +82,7 @@ class Matrix:
         return f"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}"
 
     def groups(self) -> list[list[Extreme]]:
-        """Return the rows of the matrix grouped by the varied quantity."""
+        """Return the rows of the matrix grouped by the quantity that is extreme in them."""
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
     def cells_of(self, verdict: str) -> list[tuple[Extreme, str, MatrixEntry]]:

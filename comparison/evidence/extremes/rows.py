@@ -35,15 +35,15 @@ Phases = tuple[tuple[float, float], ...]  # phase pairs (alpha1, alpha2), rad
 USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs at which most extremes are computed
 # rad, phase pairs that are extremes themselves: by symmetry, forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-# Largest number of Exudyn's steps for a phase pair: in rows of long motions or stiff links, for which MAX_WORK is too
-# small (translational model only); and in rows of towers
+# Largest number of Exudyn's steps for a phase pair, here of long motions or stiff links, for which MAX_WORK is too
+# small (translational model only); below, of towers of many bodies
 MAX_WORK_OF_LONG_ROWS = 4e6
-MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # largest number of steps, by number of bodies
+MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # largest number of steps for towers, by number of bodies
 
 
 @dataclass(frozen=True)
 class ExtremeCase:
-    """One extreme value of one quantity, with the scene that has it and the models that it concerns."""
+    """One extreme value of one quantity, with the scene that has it and the models that are run with it."""
 
     group: str  # the quantity in words
     title: str  # its extreme value in words
@@ -182,7 +182,7 @@ def _chain_cases() -> Iterator[ExtremeCase]:
 
 
 def _bar_cases() -> Iterator[ExtremeCase]:
-    """Yield extremes of the bars that carry a body of 1 kg: ratio of its weight to their buckling load, stiffness."""
+    """Yield extremes of the bars that carry a body of 1 kg: stiffness, ratio of its weight to their buckling load."""
     group = "load over the buckling load of bars"
     yield from _cases_of_group(group, {share: put_on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
     yield ExtremeCase(group, "1.000001", put_on_bars(1.000001), ALL_MODELS, invalid=True)

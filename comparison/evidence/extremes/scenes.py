@@ -20,7 +20,7 @@ def make_baseline_scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """Return the baseline scene (`fig3-I` at twice the amplitude) as in a scene file, values changed; None: no key."""
+    """Return the baseline scene (`fig3-I`, twice the amplitude), values changed, as scene file tables; None: no key."""
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
@@ -57,7 +57,7 @@ def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
 
 
 def put_on_bars(share: float, **keys: Any) -> dict[str, Any]:
-    """Return the baseline scene with its upper body on four bars of 1 m, under that share of their buckling load."""
+    """Return the baseline scene with body 2 on four bars of 1 m; share: its weight / their buckling load."""
     beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
     stated = make_baseline_scene()
     platform, body = stated["bodies"]

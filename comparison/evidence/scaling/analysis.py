@@ -24,11 +24,14 @@ from reference.problem.readings import DEFAULT_V_C
 
 LOADING_SCALES = (1.0, 0.5, 0.25, 0.125)  # factors s by which loading and dry friction are multiplied
 SCALING_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad, phase pairs computed at each scale
-SCALING_TOLERANCE = 1e-8  # relative error asked of the amplification; exact and small equations differ by 1e-5 or more
-EXACT_MINUS_SMALL = "exact minus small"  # name of the amplification's difference between exact and small equations
-SMALL_SCALE_DIFFERENCE = "small, s minus s/2"  # name of its change when loading and friction are halved
+# relative error asked of the amplification, which by exact and small-vibration equations differs by 1e-5 or more
+SCALING_TOLERANCE = 1e-8
+# name of the difference of amplification between exact and small-vibration equations
+EXACT_MINUS_SMALL = "exact minus small"
+# name of the change of amplification by the small-vibration equations when loading and friction are halved
+SMALL_SCALE_DIFFERENCE = "small, s minus s/2"
 
-Arguments = tuple[Scene, bool]  # scene, and whether the peak acceleration is the supremum, at any sliding speed
+Arguments = tuple[Scene, bool]  # scene; True: the peak is the supremum, at any sliding speed; False: the resolved peak
 
 
 def scale_scene(scene: Scene, s: float) -> Scene:
@@ -47,7 +50,7 @@ def scale_scene(scene: Scene, s: float) -> Scene:
 
 
 def fit_scene_trends(task: Arguments) -> list[Trend]:
-    """Return for each body the power laws by which two differences of amplification fall with s. Runs in a worker."""
+    """Return power laws of two amplification differences over the loading scale s, for each body. Runs in a worker."""
     scene, supremum = task
     answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (scale, equations, phases, body)
@@ -75,7 +78,7 @@ def fit_scene_trends(task: Arguments) -> list[Trend]:
 
 
 def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
-    """Return the amplification and its error, each (2, P, N): small, exact equations; P phase pairs; N bodies."""
+    """Return amplification and error, each (2, P, N): small-vibration, exact equations; P phase pairs; N bodies."""
     cutoff = None if supremum else DEFAULT_V_C * s  # lowest sliding speed that counts; it scales with the motion
     answers = [
         reference.amplification(scene, SCALING_PHASES, equations=equations, tolerance=SCALING_TOLERANCE, cutoff=cutoff)
@@ -100,14 +103,14 @@ def _name_peak(scene: Scene, supremum: bool) -> str:
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
-    """Analysis of how the effect of exact geometry on the amplification falls as loading and friction scale down."""
+    """Analysis of how the difference of amplification, exact - small equations, falls with loading and friction."""
 
     key, stage, level = "scaling", "scaling test", 2
     seconds = 0.1
     function, without_value = staticmethod(fit_scene_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return every scene with phases and definition of its peak; none where heat, which does not scale, acts."""
+        """Return scenes with phases with each definition of the peak; none if friction heats: heat does not scale."""
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
         return [
             (scene, supremum) for scene in scenes for supremum in ([True, False] if has_dry_friction(scene) else [True])

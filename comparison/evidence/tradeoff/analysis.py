@@ -34,7 +34,7 @@ TASK_SECONDS = 3.0  # s, processor time that one task should take: it gets as ma
 TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
 # s, resolution of the processor time of a process once it has a time limit; that of a thread is finer
 CLOCK_STEP = 0.01
-OWN_SOLUTION_SECONDS = 0.01  # s per phase pair, rough processor time of a reference solution for one setting alone
+OWN_SOLUTION_SECONDS = 0.01  # s, rough processor time per phase pair of a reference solution made for one setting
 # Methods that check a reference solution, described in words; keys: first word of the method's name
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
@@ -44,7 +44,7 @@ _warmed_functions: set[str] = set()  # import paths of functions that this proce
 
 @dataclass(frozen=True)
 class Measurement:
-    """One thing to measure: what a function answers, and how long it takes, at some phase pairs of a scene."""
+    """One run to measure: a function, the scene and the phase pairs at which its amplification and time are taken."""
 
     scene: Scene
     function: Function
@@ -115,7 +115,7 @@ def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult
 
 
 def join_results(parts: Sequence[SettingResult]) -> SettingResult:
-    """Return the results of several tasks of one function as one result: times added, first error message kept."""
+    """Return results of several tasks of one function as one: times added, steps averaged, first error kept."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
     seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
     return SettingResult(
@@ -132,7 +132,7 @@ class TradeOff:
     supplied: tuple[Model, ...] = ()
 
     def tasks(self) -> list[Task]:
-        """Return the tasks that measure every setting and solve every reference, each of about TASK_SECONDS."""
+        """Return tasks that measure every setting and compute every reference solution, each of about TASK_SECONDS."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
         return list({task.key: task for task in tasks}.values())  # Settings with the same function share its tasks.
 
@@ -145,7 +145,7 @@ class TradeOff:
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
-        """Yield lists of tasks: one list for each reference solution, then two for each setting and its reference."""
+        """Yield lists of tasks: one per reference solution, then two per setting: its own runs, and its reference."""
         questions = {question.key: question for question in list_questions(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
@@ -156,7 +156,7 @@ class TradeOff:
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Return tasks that run a function at a question's phase pairs; seconds: time of one, for 20 s of motion."""
+        """Return tasks that run a function at a question's phase pairs; seconds: time of a pair, for 20 s of motion."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
@@ -188,7 +188,7 @@ class TradeOff:
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """
-    Return the errors and the time of one setting, compared with the reference amplification at M phase pairs, (M, N).
+    Return errors and time of one setting; reference_solution: amplification to compare, M phase pairs, (M, N).
 
     Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
     """
@@ -234,7 +234,7 @@ def _make_solved_question(
 
 def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
     """
-    Return sentences: how closely the most accurate settings, of other methods if there are any, confirm the reference.
+    Return sentences: how closely the most accurate settings (by other methods, if any) agree with the reference.
     """
     by_engine = question.reference_solution[0].startswith("multibody")
     candidates = [each for each in entries if each.question == question.key and not each.model_error and each.complete]
@@ -244,7 +244,7 @@ def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.Measure
         families = [("the same code, asked for less", [each for each in candidates if each.controlled])]
 
     def largest(setting: trade.MeasuredSetting) -> float:
-        """Return the largest of a setting's relative errors of all bodies; infinite if one is not known."""
+        """Return the largest relative error of a setting over its bodies; infinite if one is unknown."""
         return max(np.inf if error is None else error for error in setting.most)
 
     best = [(what, min(others, key=largest)) for what, others in families if others]

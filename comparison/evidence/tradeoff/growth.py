@@ -21,12 +21,12 @@ from reference.problem import Scene, SceneError
 WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # calls that a varied number of workers share, and phase pairs in each call
 
 FILE = "growth.json"  # name of the file with the measured growth
-SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # name of its format
+SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # name of the format of that file
 BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies for which the processor time is measured
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion for which the processor time is measured
-PHASE_PAIRS = "phase pairs"  # name of a quantity with which the processor time grows
+PHASE_PAIRS = "phase pairs"  # quantity with which the processor time grows: number of phase pairs per call
 PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)  # numbers of phase pairs in one call for which the processor time is measured
-PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs while bodies or duration vary, by code
+PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs per call while bodies or duration vary, by program
 TALL_DURATION = 5.0  # s, duration of motion while the number of bodies varies
 # Factor by which the loading is multiplied when bodies are added, or friction would hold the platform at rest
 TALL_LOADING_FACTOR = 3.0
@@ -57,7 +57,7 @@ def split_upper_body(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """Quantity with which processor time grows. scene: function that returns a scene with one of its values."""
+    """Quantity with which processor time grows. scene: function that returns a scene changed to one of its values."""
 
     name: str
     unit: str
@@ -109,6 +109,7 @@ class MeasuredGrowth:
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
 
+# growth.json: its content, what it is called in messages, the command that writes it
 STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance tradeoff --growth")
 
 
@@ -121,7 +122,7 @@ def make_cost_series(
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Return p of seconds ~ values^p, fitted to the larger half, and its standard error; NaN for under 3 values."""
+    """Return p of seconds ~ values^p, fitted to the larger half of values, and standard error; NaN for under 3."""
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # number of values before the first without a measurement
     if known < 3:
         return float("nan"), float("nan")

@@ -26,7 +26,7 @@ LUBRICATED_V_REG = 1e6  # m/s, v_reg in lubricated scenes: above any speed, so t
 
 @njit  # type: ignore[untyped-decorator]
 def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
-    """Return d/dt of the state y = (x, v), each (N, 2), by (3.9)-(3.13), (4.4); friction linear below `corner`, m/s."""
+    """Return dy/dt, y = (x, v), (N, 2) each, by (3.9)-(3.13), (4.4); friction is linear below speed `corner`, m/s."""
     below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
     z = np.exp(s * t + 1j * phase)
@@ -70,7 +70,7 @@ def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Ar
 
 
 def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
-    """Return what `compute_state_derivative` takes after t and y: constants of the scene, harmonics, phases, v_reg."""
+    """Return the arguments of `compute_state_derivative` after t, y: scene's constants, harmonics, phases, v_reg."""
     system = pack_scene(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * LUBRICATED_V_REG), LUBRICATED_V_REG

@@ -35,7 +35,7 @@ STEPS_OF_INTEGRATOR = {
 }
 DRY_REGULARIZATIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, speeds v_reg below which dry friction is linear
 
-# Name of the parameter that varies contact compliance: penetration under the weight / radius of the sliding path
+# Name of the parameter for contact compliance: penetration under the weight / rho, the radius of the sliding path
 PENETRATION_PARAMETER = "penetration under the weight, over rho"
 
 Settings = Mapping[str, Any]  # keyword arguments of a function that computes the amplification
@@ -43,7 +43,7 @@ Settings = Mapping[str, Any]  # keyword arguments of a function that computes th
 
 @dataclass(frozen=True)
 class TradeoffQuestion:
-    """Equations to solve, and reference solution (import path, arguments); points, quick: numbers of phase pairs."""
+    """Equations to solve, and their reference solution (function, arguments); points, quick: numbers of phase pairs."""
 
     key: str
     title: str
@@ -68,7 +68,7 @@ class Setting(StatedSetting):
     against: tuple[str, Settings] | None = None
 
 
-# Keyword arguments of the reference equations, by key of the question
+# Keyword arguments of the reference equations, by key of the question (equations, friction law) that they solve
 _LAWS: Mapping[str, Settings] = {
     "exact": {},
     "small": {"equations": "small"},
@@ -76,11 +76,11 @@ _LAWS: Mapping[str, Settings] = {
 }
 # Keyword arguments of Exudyn for the reference solution with bodies that rotate
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_SOLUTION_TOLERANCE}
-# Function and keyword arguments of each question's reference solution, the most accurate answer to it
+# Function and keyword arguments of each question's reference solution, the most accurate solution of these equations
 _REFERENCE_SOLUTIONS = {
     question: (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE}) for question, law in _LAWS.items()
 }
-# Questions: key, title, reference solution, numbers of phase pairs (usual, --quick), s per phase pair of the solution
+# Equations to solve: key, title, reference solution, phase pairs (usual, --quick), s per phase pair of the solution
 QUESTIONS = (
     TradeoffQuestion("exact", "exact equations, supremum", _REFERENCE_SOLUTIONS["exact"], 48, 12, 0.006),
     TradeoffQuestion("small", "small equations, supremum", _REFERENCE_SOLUTIONS["small"], 48, 12, 0.006),
@@ -92,7 +92,7 @@ QUESTIONS = (
 
 
 def list_questions(scene: Scene) -> list[TradeoffQuestion]:
-    """Return the questions (equations to solve) for which a scene has the data."""
+    """Return the questions (each: equations to solve, with friction law) for which a scene has the data."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
@@ -121,7 +121,7 @@ def _make_curve_settings(
     seconds: float | Sequence[float], **stated: Any,
 ) -> list[Setting]:  # fmt: skip
     """
-    Return the settings of one method, one for each of `values` of the argument of `call` that is varied.
+    Return the settings of one method, one for each of `values` of the varied argument of its function `call`.
 
     question, method, parameter: as `StatedSetting` has them. seconds: s, per point, of each or of all. stated: other
     fields of `Setting`, as `unit` or `against`, by name.

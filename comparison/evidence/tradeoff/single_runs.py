@@ -26,7 +26,7 @@ def run_reference_once(
     equations: str = "exact",
     regularization: float | None = None,
 ) -> tuple[Array, float]:
-    """Return the amplification, (phase pairs, bodies), and the mean step, s, by one run of the equations."""
+    """Return amplification, (phase pairs, bodies), and mean step, s, by one run of the equations, no error control."""
     pairs = check_phases(phases)
     system, demand = prepare_run(scene, equations, regularization, 1e-6, None, "consistent")
     peaks = peaks_at(system, pairs, demand, step_tolerance)
@@ -37,14 +37,14 @@ def run_reference_once(
 def run_engine_once(
     scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """Return amplification (M, N) by one run of Exudyn each; step: factor on steps; level: changed `Level` fields."""
+    """Return amplification (M, N), one run of Exudyn per phase pair; step: step factor; level: new `Level` fields."""
     usual = multibody.levels(scene, model, regularization=regularization)[DEFAULT_ENGINE_LEVEL]
     changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
     return _compute_factors(scene, phases, lambda run: run.peak, model, regularization, level=changed)
 
 
 def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
-    """Return the translational amplification (M, N) by an integrator of `multibody.single_run`; NaN if it gives up."""
+    """Return translational amplification (M, N) by Exudyn's integrator `solver` at a constant step; NaN if it fails."""
 
     def largest(run: Any) -> Array:
         """Return the largest absolute acceleration of every body over its motion, m/s^2."""

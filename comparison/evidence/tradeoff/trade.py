@@ -14,7 +14,7 @@ from comparison.result_types import Array, require, require_size, result
 from reference.problem.scene import MAX_BODIES
 
 FILE = "tradeoff.json"  # name of the file with the measured trade-offs
-SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # name of its format
+SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # name of the format of that file
 MEANINGS = {  # descriptions of the variables in the netCDF file of all measured values
     "mu": "amplification factor (5.1)",
     "reference_solution": "the same by the reference solution of the question",
@@ -85,7 +85,7 @@ class SceneTrade:
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def __post_init__(self) -> None:
-        """Raise an error if an entry has errors of another number of bodies, or answers an unlisted question."""
+        """Raise an error unless each entry has as many errors as there are bodies, and its question is listed."""
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
         keys = {question.key for question in self.questions}
         for each in self.entries:
@@ -94,11 +94,11 @@ class SceneTrade:
             require(each.question in keys, f"question {each.question[:40]!r} of an entry is none of the questions")
 
     def entries_of(self, question: str) -> list[MeasuredSetting]:
-        """Return the measured settings that answer one question, in the order in which they were listed."""
+        """Return the measured settings for the equations of one question, in the order in which they were listed."""
         return [entry for entry in self.entries if entry.question == question]
 
     def methods(self, question: str) -> dict[str, list[MeasuredSetting]]:
-        """Return the measured settings that answer one question, grouped by method."""
+        """Return the measured settings for the equations of one question, grouped by method."""
         curves: dict[str, list[MeasuredSetting]] = {}
         for entry in self.entries_of(question):
             curves.setdefault(entry.method, []).append(entry)
@@ -106,19 +106,19 @@ class SceneTrade:
 
 
 def find_error_quantile(errors: Array, share: float) -> float | None:
-    """Return the quantile of the known errors at `share` (the higher of two neighbors); None if no error is known."""
+    """Return the quantile `share` of the known errors (the higher of two neighbors); None if no error is known."""
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
 def is_pareto_optimal(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
-    """Return whether no other pair (time, error) is at least as small in both and smaller in one."""
+    """Return whether no other pair (time, error) is at least as small as `mine` in both and smaller in one."""
     beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
     return math.isfinite(sum(mine)) and not beaten
 
 
 def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[MeasuredSetting]:
-    """Return the entries with `pareto_front` set; only settings that answer at every phase pair can be on a front."""
+    """Return the entries with `pareto_front` set; only settings with a value at every phase pair can be on a front."""
     complete = [entry for entry in entries if entry.complete and not entry.model_error]
 
     def time_and_error(entry: MeasuredSetting, body: int) -> tuple[float, float]:
@@ -127,7 +127,7 @@ def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
         return entry.seconds, math.inf if error is None else error
 
     def is_on_front(entry: MeasuredSetting, body: int) -> bool:
-        """Return whether no other setting for the same question is better in time and error, by `is_pareto_optimal`."""
+        """Return whether no setting for the same question beats this one in time and error, by `is_pareto_optimal`."""
         rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
         return entry in complete and is_pareto_optimal(time_and_error(entry, body), rivals)
 
@@ -142,6 +142,7 @@ class TradeFile:
     trades: Annotated[list[SceneTrade], "one per scene"]
 
 
+# tradeoff.json: its content, what it is called in messages, the command that writes it
 STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeoff")
 
 

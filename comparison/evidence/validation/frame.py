@@ -34,12 +34,13 @@ SHAKER_MASS_RATIO, SHAKER_LINK_PERIOD = 10.0, 1e4
 FRICTION_GROWTH = 1.0  # fast minus slow friction coefficient: its slope at zero speed stands for viscous damping
 COMPUTED_CYCLES = 12  # number of cycles computed; only the last one is compared with the measurement
 ENGINE_V_REG = 1e-4  # m/s, sliding speed below which friction is linear in Exudyn
-FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run to which the constant friction ratio is fitted, if it was measured
+FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run that constant friction is fitted to; if not measured, the lightest
 # kg, disc of the second run, to which load-dependent friction is fitted as well, or the disc closest to it
 SECOND_FITTED_WEIGHT = 0.450
-DIFFERENCE_STEP = 0.005  # change of friction ratio, or of base scale, in the difference quotients of the fit
+DIFFERENCE_STEP = 0.005  # change of friction ratio, or of the factor on base motion, in difference quotients of the fit
 # Quantities of a cycle of the plate that are compared, and their units
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
+# units of the compared quantities, in the order of NAMES
 UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
 
@@ -55,7 +56,7 @@ class Setup(NamedTuple):
     ratio: float = 0.3  # friction force / weight of the disc
 
 
-INPUT_UNCERTAINTIES = {  # for each field of Setup: its uncertainty, name, unit and source
+INPUT_UNCERTAINTIES = {  # inputs of a frame run, by field of Setup: uncertainty, name, unit and source
     "mass": (0.01 * Setup().mass, "mass", "kg", "authors; 1 % assumed"),
     "stiffness": (0.01 * Setup().stiffness, "stiffness", "N/m", "authors; 1 % assumed"),
     "damping": (0.2 * Setup().damping, "viscous damping", "N s/m", "authors; 20 % assumed"),
@@ -105,7 +106,7 @@ def read_last_cycle(motion: Trajectory, frequency: float) -> Array:
 
 
 def compute_frame_motion(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
-    """Return the motion of a frame run as computed by one code; it begins at the base's largest position."""
+    """Return the motion of a frame run by one code (side); it begins at the largest position of the base."""
     scene, phases = make_frame_scene(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
     return table.compute_released_motion(side, scene, phases, place, ENGINE_V_REG, STUDY_TOLERANCE, "small")
@@ -123,10 +124,10 @@ def solve_quantities(cycles: Cycles, setup: Setup) -> Array:
 
 
 def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
-    """Return the inputs, those named fitted to the mean cycle by the equations; and their scatter, (cycles, names)."""
+    """Return the inputs with those named fitted by the equations to the mean cycle; their scatter, (cycles, names)."""
 
     def curve(at: Setup) -> Array:
-        """Return the last computed cycle of the plate with these inputs."""
+        """Return the motion of the plate in the last computed cycle with the inputs `at`, mm."""
         return read_last_cycle(compute_frame_motion(EQUATIONS, cycles, at), cycles.frequency)
 
     for _ in range(12):
@@ -144,7 +145,7 @@ def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]
 
 class FittedRun(NamedTuple):
     """
-    A run with the friction ratio fitted to its motion.
+    Measured run of the frame with the inputs of its computation, the friction ratio among them fitted to its motion.
 
     setup: fitted inputs. spread: uncertainty of the ratio, from its scatter over the cycles. changed: inputs fitted
     with each of REFITTED_INPUTS changed by its uncertainty. shifted: inputs fitted with the first run's base scale.
@@ -157,13 +158,13 @@ class FittedRun(NamedTuple):
     shifted: Setup
 
     def variations(self) -> list[Setup]:
-        """Return the fitted inputs with, in turn, each one changed by its uncertainty."""
+        """Return a list of the fitted inputs, in each of which one input is changed by its uncertainty."""
         heavier = self.setup._replace(disc=self.setup.disc + INPUT_UNCERTAINTIES["disc"][0])
         return [self.setup._replace(ratio=self.setup.ratio + self.spread), heavier, *self.changed]
 
 
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
-    """Return a run with its fitted friction ratio; shift: inputs whose base scale `shifted` takes, None to fit it."""
+    """Return a run with fitted friction ratio; shift: inputs whose factor on base motion `shifted` takes; None: fit."""
     setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = table.COVERAGE_FACTOR * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + INPUT_UNCERTAINTIES[name][0]} for name in REFITTED_INPUTS)
@@ -225,7 +226,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 
         def between(setup: Setup, low: float, high: float, share: float = share) -> Setup:
-            """Return the inputs with a friction ratio between `low` and `high`, interpolated as a power of the load."""
+            """Return `setup` with a friction ratio `low` at share 0, `high` at 1, a power of the load through both."""
             return setup._replace(ratio=low * (high / low) ** share)
 
         pairs = zip([*first.changed, first.shifted], [*second.changed, second.shifted])
@@ -243,7 +244,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
 def _compare_run(
     cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
 ) -> table.ExperimentFindings:
-    """Compare one run; varied: inputs changed one by one; other: with fitted base scale; own: with this run's ratio."""
+    """Compare one run; varied: inputs changed one by one; other: base motion's factor fitted; own: this run's ratio."""
     title = cycles.run.name + law
     found = [measure_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.MeasuredData(

@@ -16,15 +16,15 @@ from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE, F
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
-ENGINE_V_REG, ENGINE_TOLERANCE = 1e-5, 1e-4  # Exudyn: speed below which friction is linear, m/s; relative error
+ENGINE_V_REG, ENGINE_TOLERANCE = 1e-5, 1e-4  # Exudyn: v_reg, m/s, below which friction is linear; relative error
 TURN_ENCODER_STEPS = 3  # A turning point counts if the angle then goes back by more than this many encoder steps.
 # Number of first half swings to which the loss of angle per half swing, and the half period, are fitted
 FITTED_HALF_SWINGS, PERIOD_HALF_SWINGS = 10, 5
 SHOWN_TURNING_POINTS = (5, 10, 11, 12, 13)  # numbers of the turning points that are compared; the first is number 0
 HALF_SWING_INSTANTS = 20_001  # number of instants in a computed half swing at which its turning point is looked for
-# rad, amplitudes at which half periods are predicted, fitted for this, and fitted again to explain a difference
+# rad, amplitudes at which half periods are predicted; fitted for the prediction; fitted anew to explain a difference
 PREDICTED_ANGLES, FITTED_ANGLE, REFITTED_ANGLE = (1.5, 1.25, 1.0), 0.3, 0.6
-# Half periods at an angle come from half swings whose amplitude is within this of it, rad; least number of them
+# The half period at an angle comes from half swings of amplitudes this close to it, rad; at least so many of them
 ANGLE_HALF_WIDTH, MIN_HALF_SWINGS = 0.1, 4
 
 
@@ -75,7 +75,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
-        """Return the pendulum's motion by one code; values: half period, s, loss per half swing, first angle, rad."""
+        """Return the motion by one code (side); values: half period, s, loss of a half swing, first angle, rad."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 
@@ -123,7 +123,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     data = table.MeasuredData(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
     def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
-        """Return half periods at PREDICTED_ANGLES, ms, by one code; half: half period at vanishing angle, s."""
+        """Return half periods at PREDICTED_ANGLES, ms, by one code (side); half: half period for vanishing angle, s."""
         motions = [_compute_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in PREDICTED_ANGLES]
         parts = [table.read_motion_values(each, _read_half_period, 1) for each in motions]
         return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
@@ -134,7 +134,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     gone = f"gone with the half period fitted at {REFITTED_ANGLE} rad"
 
     def explain(k: int, allowed: float) -> str:
-        """Return in words whether quantity `k` is met with the half period fitted at REFITTED_ANGLE instead."""
+        """Return in words whether the half period fitted at REFITTED_ANGLE makes the error of quantity `k` allowed."""
         if abs(again[k] - data.values[k]) <= allowed:
             return f"{table.INPUT_CAUSE}: {gone}, where friction weighs less"
         return f"{table.NO_CAUSE}: not {gone}"
@@ -157,7 +157,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
 def _compute_half_swings(
     side: str, half: float, friction: float, start: float, swings: float, equations: str = "exact"
 ) -> Trajectory:
-    """Return the pendulum's motion by one code over `swings` half periods, released from rest at `start`, rad."""
+    """Return the motion by one code (side) over `swings` half periods `half`, s, from rest at angle `start`, rad."""
     scene = {
         "title": "Swinging pendulum",
         "name": "pendulum",
@@ -172,7 +172,7 @@ def _compute_half_swings(
 
 
 def _find_turns(swing: FreeSwing, back: float) -> tuple[Array, Array]:
-    """Return instants, s, and angles, rad, of the final rest and of turns where the angle goes back by > `back`."""
+    """Return instants, s, and angles, rad, of turns after which the angle goes back by > `back`, and final rest."""
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
     for time, angle in zip(swing.time, swing.angle):
@@ -204,7 +204,7 @@ def _find_passage_times(swing: FreeSwing) -> Array:
 
 
 def _fit_half_period(sizes: Array, periods: Array, angle: float) -> tuple[float, float]:
-    """Return half period at amplitude `angle`, and uncertainty: linear fit in squares of nearby amplitudes `sizes`."""
+    """Return half period at amplitude `angle`, uncertainty: line fitted over squares of nearby amplitudes `sizes`."""
     near = np.abs(sizes - angle) < ANGLE_HALF_WIDTH
     line = np.polyfit(sizes[near] ** 2 - angle**2, periods[near], 1)
     return float(line[1]), _compute_uncertainty_of_mean(periods[near] - np.polyval(line, sizes[near] ** 2 - angle**2))
@@ -222,7 +222,7 @@ def _read_half_period(motion: Trajectory) -> Array:
 
 
 def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
-    """Return instants, s, and angle sizes, rad, of a computed motion's turning points and its end; NaN beyond it."""
+    """Return instants, s, and angle sizes, rad, of a computed motion's turns and end, filled up with NaN."""
     place, end = interpolate_platform(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
     for begin, stop in pairwise([0.0, *_find_zeros(motion), end]):

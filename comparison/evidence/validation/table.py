@@ -41,7 +41,7 @@ ABSOLUTE_UNITS = (DEGREES, CYCLE)  # Differences in these units are stated as th
 
 @result
 class SideComparison:
-    """What one code computes for a measured quantity: value, difference, uncertainties and verdict."""
+    """What one code computes for a measured quantity: value, difference from it, uncertainties and verdict."""
 
     value: Annotated[float | None, "S; null without an answer"]
     error: Annotated[float | None, "E = S - D"]
@@ -78,11 +78,11 @@ class MeasuredQuantity:
 
     @property
     def base(self) -> float | None:
-        """Return the measured value if differences are stated relative to it, else None."""
+        """Return the measured value if differences are stated relative to it; None if they are stated in its unit."""
         return None if self.unit in ABSOLUTE_UNITS else self.measured
 
     def word(self, side: str) -> str:
-        """Return in words whether one code's value of this quantity is met, and the difference."""
+        """Return in words whether a code's value (side) agrees with the measured one, and their difference."""
         found = self.sides[side]
         return word_verdict(found.verdict, found.error, self.base, self.unit)
 
@@ -134,7 +134,7 @@ class Validation:
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
     def explanations(self) -> dict[str, list[MeasuredQuantity]]:
-        """Return the quantities that are not met, grouped by the cause of the difference."""
+        """Return the quantities whose computed values disagree with the measured ones, grouped by cause."""
         groups: dict[str, list[MeasuredQuantity]] = {}
         for each in self.quantities:
             if each.cause:
@@ -157,7 +157,7 @@ def find_worse_side(each: MeasuredQuantity) -> str:
 
 
 def worse_verdict(each: MeasuredQuantity) -> Verdict:
-    """Return the worse verdict on a quantity of those on the equations' and on Exudyn's value."""
+    """Return the worse of the verdicts on the equations' and on Exudyn's value of a quantity."""
     return each.sides[find_worse_side(each)].verdict
 
 
@@ -178,7 +178,7 @@ def load_record() -> Validation:
 
 
 class ComputedValues(NamedTuple):
-    """Q quantities as computed by one code, (Q,), with their numerical errors."""
+    """Values of Q measured quantities as computed by one code, (Q,), with their numerical errors."""
 
     values: Array
     errors: Array
@@ -218,7 +218,7 @@ def compute_released_motion(
     tolerance: float,
     equations: str = "exact",
 ) -> Trajectory:
-    """Return the motion by one code of N bodies released from rest at `place` (N,), m along x; tolerance: Exudyn's."""
+    """Return the motion by one code (side) of N bodies let go at `place` (N,), m along x; tolerance: Exudyn's."""
     start = np.column_stack([place, np.zeros_like(place)])
     initial = State(start, np.zeros_like(start))
     if side == ENGINE:
@@ -250,7 +250,7 @@ def compare_quantities(
     explain: Callable[[int, float], str],
 ) -> list[MeasuredQuantity]:
     """
-    Return the comparisons of measured quantities with computed ones in one experiment.
+    Return each measured quantity of an experiment compared with computed ones; varied: results with changed inputs.
 
     answers: quantities by code. varied: by the equations, with each input changed by its uncertainty; u_input is the
     root of the sum of the squared changes. explain: returns the cause why quantity k differs by more than allowed.
