@@ -138,7 +138,7 @@ def _broken_limits(
 
 
 def _word_missing_values(gaps: Sequence[MissingValues], answers: Sequence[BatchResult], failed: int) -> list[str]:
-    """Return a line for each model without some of its values, and the solvers' messages; none if `failed` permits."""
+    """Return a line per model with missing values, and the solvers' messages; none for at most `failed` missing."""
     if not sum(gap.points + gap.unusable for gap in gaps) > failed:
         return []
     why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)

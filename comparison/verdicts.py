@@ -12,7 +12,7 @@ from typing import Literal
 
 from comparison.wording import signed
 
-Verdict = Literal["met", "not met", "not compared"]
+Verdict = Literal["met", "not met", "not compared"]  # verdict on a computed value, compared with a stated one
 MET: Verdict = "met"
 NOT_MET: Verdict = "not met"
 NOT_COMPARED: Verdict = "not compared"
@@ -80,7 +80,7 @@ def word_counts(counts: Mapping[Verdict, int], what: str = "comparison") -> str:
 def word_counts_and_largest(
     counts: Mapping[Verdict, int], off: Iterable[tuple[float, float, str]], what: str = "comparison"
 ) -> str:
-    """Return the counts and the largest relative error not met, in words; off: error, stated value, place."""
+    """Return the counts and the largest relative error not met, in words; off: error, stated value, place of each."""
     words = word_counts(counts, what)
     relative = [(error / stated, place) for error, stated, place in off if stated]
     if not relative:

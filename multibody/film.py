@@ -29,8 +29,8 @@ from reference.support.drawing import escape_for_matplotlib
 Array = NDArray[np.float64]
 
 # Radii, m, of the ring of supports and of the spheres with which a scene without spatial data is drawn.
-# DEFAULT_SUPPORTS: places (K, 2), m, of its supports.
 SUPPORT_RING_RADIUS, SPHERE_RADIUS = 1.0, 0.05
+# Places (K, 2), m, of the supports with which a scene without spatial data is drawn.
 DEFAULT_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * SUPPORT_RING_RADIUS / np.sqrt(2.0)
 
 # Distance and thickness of the boxes of a scene without spatial data, as shares of the width of a box.
@@ -216,7 +216,7 @@ def _encode_gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int
 
 
 class _Panel:
-    """Panel of the film with the artists that move in it."""
+    """Panel of the film with the drawn objects (artists of matplotlib) that move in it."""
 
     def __init__(self, panel: Any, drawn: Drawing, axes: tuple[int, int], alpha: float) -> None:
         """Set up axes and outlines of the bodies; axes: the two coordinates shown; alpha: opacity of the bodies."""
@@ -231,7 +231,7 @@ class _Panel:
         panel.set_ylabel(f"{names[1]} [m]" if names[1] != "z" else "z", labelpad=2.0)
 
     def show(self, frame: int) -> None:
-        """Move the artists to their places in a frame."""
+        """Move the drawn objects to their places in a frame."""
         for body, outline in enumerate(self.outlines):
             flat = self.drawn.corners[frame, body][:, self.axes]
             outline.set_xy(flat[ConvexHull(flat).vertices])

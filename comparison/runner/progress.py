@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 LINE_INTERVAL = 15.0  # s, shortest time between two lines of progress when output goes to a file or a pipe
-ROUGH_COST_SHARE = 0.1  # share of all work that counts at its estimated cost when the time left is estimated
+ROUGH_COST_SHARE = 0.1  # share of all work assumed done at its estimated cost in the speed that gives the time left
 PLAIN_WIDTH = 120  # width in letters of output that goes to a file or a pipe
 EXIT_SECONDS = 0.3  # s before the deadline at which work is stopped, because the process takes so long to end
 MIN_TIMER = 1e-3  # s, shortest time to which the timer is set: 0 would switch it off
@@ -45,7 +45,7 @@ class Display:
         self._first: tuple[float, float] | None = None
 
     def advance(self, what: str, count: str, seconds: float) -> None:
-        """Record finished work; what, count: the work and "n of m", in words; seconds: its estimated processor time."""
+        """Record finished work; what: its stage, in words; count: "n of m"; seconds: its estimated processor time."""
         self.done += seconds
         if self._first is None:
             self._first = time.monotonic(), self.done

@@ -21,7 +21,7 @@ class StageCost:
 
 @dataclass(frozen=True)
 class Overrun:
-    """Record stored for a task stopped at its timeout, s of processor time; ending: how it ended, in words."""
+    """Record stored for a task stopped at its timeout (s of processor time); ending: how it ended, in words."""
 
     timeout: float
     ending: str  # how the task ended, in words

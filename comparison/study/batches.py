@@ -39,7 +39,7 @@ class Batch:
 
     @property
     def question(self) -> dict[str, object]:
-        """Return what all batches of a surface have in common: scene without name and title, function, settings."""
+        """Return what batches of an amplification surface share: scene without name and title, function, settings."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
@@ -73,7 +73,7 @@ class Batch:
         return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
 
     def accepts(self, result: BatchResult) -> bool:
-        """Return whether a result fits the numbers of phase pairs and bodies, with values wherever its status is ok."""
+        """Return whether a result has the batch's numbers of phase pairs and bodies, and values where status is ok."""
         return self.fits(result) and not self.ok_without_numbers(result.mu, result.error, result.status)
 
     def fits(self, result: BatchResult) -> bool:
@@ -90,7 +90,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Result of a batch: fields of `reference.problem.Amplification`; error_message: the solver's message, or ""."""
+    """Result of a batch: mu and others as in `reference.problem.Amplification`; error_message: the solver's, or ""."""
 
     mu: Array
     error: Array
@@ -123,7 +123,7 @@ def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Replace unusable answers by NaN, in place: amplification mu and error (M, N), status (M).
+    Set unusable amplifications mu and errors (M, N) to NaN, in place, and adapt status (M); own: of this project.
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is

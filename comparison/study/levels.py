@@ -34,7 +34,7 @@ class StudyLevel:
 
 
 def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
-    """Return the levels of a study from coarse to fine; first: number of each analysis's first level, by key."""
+    """Return the levels of a study from coarse to fine; first: level from which on an analysis is run, by its key."""
     made = [key for key in first if study.restrict_to(key).scenes]
     studies: list[Study] = []
     for number, most in enumerate(MAX_PHASES_OF_LEVEL, start=1):
@@ -56,7 +56,7 @@ def _describe_work(study: Study) -> tuple[object, ...]:
 
 
 def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
-    """Return the study with every model on its finest nested grid of at most `most` phases per axis; most: by kind."""
+    """Return the study, each model on its finest nested grid within `most`: phases per axis by kind of model."""
     strides = {
         model.key: _find_stride(study, model, most["spatial" if model.is_spatial else model.side])
         for model in study.hierarchy

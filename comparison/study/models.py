@@ -48,7 +48,7 @@ def applies_to_no_scene(scene: Scene) -> bool:
 
 def _spatial_data(scene: Scene) -> dict[str, object]:
     """
-    Return a scene's places of supports, sphere radius, and heights and sizes of bodies, by key; None if not stated.
+    Return by key a scene's places of supports, sphere radius, and heights and sizes of bodies; None where not stated.
     """
     isolator = scene.isolator
     data: dict[str, object] = {
@@ -89,7 +89,7 @@ def has_spatial_unloaded_bars(scene: Scene) -> bool:
 @dataclass(frozen=True)
 class Model:
     """
-    One model of the study. `adds`: the report's sentence on what it adds. `settings`: arguments of its functions.
+    Model of the study (equations or engine). `adds`: the report's text on what it adds. `settings`: function arguments.
     `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
     `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
     whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they are not computed again.
@@ -127,7 +127,7 @@ class Model:
 
     @property
     def is_spatial(self) -> bool:
-        """Return whether its bodies rotate."""
+        """Return whether bodies rotate in this model."""
         return self.settings.get("model") == "spatial"
 
     @property
@@ -140,7 +140,7 @@ class Model:
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
-        """Return keyword arguments of its amplification in a study of this tolerance; full: it leaves nothing out."""
+        """Return keyword arguments for its amplification in a study of this tolerance; full: nothing is skipped."""
         asked = {"full": True} if full else {}
         return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
 
@@ -197,7 +197,7 @@ def chain_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
 
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return the pairs of models whose differences answer the study's question.
+    Return the pairs of models to compare: the first with the last, both programs on the same equations, and others.
 
     They are, as far as the scene allows: every user's engine against its partner, then the total, the difference
     under the paper's assumptions, and the like-for-like one. left_out: keys of models without results. The total then
@@ -247,7 +247,7 @@ def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return the pairs of models that differ by one effect: neighbors in the chain, others, and two peak definitions.
+    Return pairs of models that differ by one effect, successive ones first, and pairs with two definitions of the peak.
 
     An effect as integrated is a share of the amplification of the chain's first model, so that the effects of the chain
     add up to the total. Between literal suprema it is a share of the literal supremum of the small equations.
@@ -272,14 +272,15 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
-    """Return the pair of models that differ by `effect`, as a share of `base`'s amplification; where: end of key."""
+    """Return the pair of models that differ by `effect`, relative to the amplification by `base`; where: key's end."""
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
 
 
-# Texts on what counts as a model's peak acceleration: first, all of its motion; second, only rest and faster sliding.
+# Text on what counts as the peak acceleration of models in which all of the motion counts
 _PEAK = "largest value the computed motion reaches"
+# Text on what counts as the peak acceleration of models in which sliding slower than v_c does not count
 _RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
 
@@ -288,7 +289,7 @@ def _model_after(before: Model, changed_assumptions: Mapping[str, str], **change
     return replace(before, assumptions={**before.assumptions, **changed_assumptions}, **changes)
 
 
-# The models in their order: each is the one before it with other assumptions or another definition of the peak
+# First of the models: small-vibration equations (4.3)-(4.4), literal supremum. Each later one is a changed earlier one.
 SMALL = Model(
     key="small",
     title="small equations, literal supremum",
@@ -313,6 +314,7 @@ SMALL = Model(
     in_chain=has_smooth_friction,
     seconds=0.0005,
 )
+# Exact equations of large displacements (3.9)-(3.13), with the friction law and the literal supremum of SMALL
 EXACT = _model_after(
     SMALL,
     {
@@ -326,6 +328,7 @@ EXACT = _model_after(
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
+# The motion of SMALL, with the peak that an integration sees: slow sliding, below v_c, does not count
 SMALL_AS_INTEGRATED = _model_after(
     SMALL,
     {"mu_i": _RESOLVED_PEAK},
@@ -338,6 +341,7 @@ SMALL_AS_INTEGRATED = _model_after(
     reading=AS_INTEGRATED,
     in_chain=applies_to_every_scene,
 )
+# The motion of EXACT, with the peak that an integration sees: slow sliding, below v_c, does not count
 EXACT_AS_INTEGRATED = _model_after(
     EXACT,
     {"mu_i": _RESOLVED_PEAK},
@@ -349,10 +353,12 @@ EXACT_AS_INTEGRATED = _model_after(
     reading=AS_INTEGRATED,
     in_chain=applies_to_every_scene,
 )
+# Assumptions that differ in models with regularized friction: friction law, and what counts as the peak in mu_i
 _REGULARIZED_FRICTION_ASSUMPTIONS = {
     "friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}",
     "mu_i": _PEAK,
 }
+# Small-vibration equations with friction that is linear below v_reg; REGULARIZED adds the exact geometry
 SMALL_REGULARIZED = _model_after(
     SMALL_AS_INTEGRATED,
     _REGULARIZED_FRICTION_ASSUMPTIONS,
@@ -365,6 +371,7 @@ SMALL_REGULARIZED = _model_after(
     in_chain=applies_to_no_scene,
     seconds=0.001,
 )
+# Exact equations of large displacements with friction that is linear below v_reg, as in Exudyn
 REGULARIZED = _model_after(
     EXACT_AS_INTEGRATED,
     _REGULARIZED_FRICTION_ASSUMPTIONS,
@@ -376,6 +383,7 @@ REGULARIZED = _model_after(
     applies=has_dry_friction,
     seconds=0.001,
 )
+# Model of Exudyn: spheres in hollow spheres with an elastic contact, and bodies that only translate
 TRANSLATIONAL = _model_after(
     REGULARIZED,
     {
@@ -400,6 +408,7 @@ TRANSLATIONAL = _model_after(
     most=16,
     seconds=0.06,
 )
+# Model of Exudyn whose bodies also rotate, with heights and sizes, on supports that may lift off
 SPATIAL = _model_after(
     TRANSLATIONAL,
     {
@@ -423,7 +432,7 @@ SPATIAL = _model_after(
 MODEL_HIERARCHY: tuple[Model, ...] = (  # all models for rigid friction and stiff bars, from simple to complete
     SMALL, EXACT, SMALL_AS_INTEGRATED, EXACT_AS_INTEGRATED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# Effects between models outside the chain: name of the effect, end of the pair's key, first and second model
+# Pairs of models that differ by one effect beside the chain of models: effect, end of the pair's key, both models
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
     (EXACT_AS_INTEGRATED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
@@ -447,9 +456,10 @@ def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
 
 # Models of Exudyn with bars softened by the weight that they carry, for scenes that state stiffnesses of unloaded bars
 SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_bars)
-SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)
+SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)  # spatial model, bars softened by weight
 
 
+# SMALL_AS_INTEGRATED with friction that is rigid before it slides, for scenes whose friction yields elastically
 SMALL_RIGID_FRICTION = _model_after(
     SMALL_AS_INTEGRATED,
     {"friction": "set-valued Coulomb, rigid before it slides, where the scene's yields"},
@@ -465,7 +475,7 @@ _YIELDS = "elastic up to mu N before it slides, mu constant or of the slip veloc
 
 
 def _tell_of_yielding(model: Model, only: bool) -> Model:
-    """Return `model` with texts that mention elastic yielding of friction; only: whether it yields in every scene."""
+    """Return `model` with texts on elastic yielding of friction; only: whether friction yields in every scene."""
     if model.applies is has_dry_friction:  # used with rigid friction only: its texts stay
         return model
     friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"
@@ -480,7 +490,7 @@ def _tell_of_yielding(model: Model, only: bool) -> Model:
 
 def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
     """
-    Return the models with those added that only some scenes need: softened bars, and rigid friction where it yields.
+    Return the models plus those that only some scenes need: softened bars; rigid friction, where friction yields.
 
     Models with softened bars are added at the end. The one whose friction stays rigid comes first.
     """

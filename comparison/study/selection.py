@@ -73,7 +73,7 @@ class Selection:
 
 def refuse_unknown(names: Iterable[str], analyses: Sequence[Selectable], added: bool = False) -> None:
     """
-    Raise ValueError, with the nearest name, where one of the names is no analysis.
+    Raise ValueError, with the nearest name, for a name that is no analysis; if `added`, also for what a command makes.
 
     added: whether they are asked for besides the usual ones; then none may be what only a command makes.
     """
@@ -102,7 +102,7 @@ def select_names(
     skip: Sequence[str] | None,
     also: Sequence[str] = (),
 ) -> tuple[str, ...]:
-    """Return names of selected analyses: `only` or the usual ones, and `also`, with all their needs, less `skip`."""
+    """Return names of selected analyses: `only` or the usual ones, and `also`, plus what they need, less `skip`."""
     needs = {each.name: each.needs for each in analyses if each.needs}
     kept = {each.name for each in analyses if not each.on_request} if only is None else set(only)
     kept |= set(also)

@@ -17,12 +17,12 @@ from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
 
-# Relative error asked of every amplification without --tolerance, and of analyses by Exudyn; default of multibody, too
+# Relative error required of amplifications without --tolerance, and of analyses by Exudyn; also multibody's default
 STUDY_TOLERANCE = 1e-3
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
-    """Raise SceneError, one line, if two scenes or families have the same name; names: source and name of each."""
+    """Raise SceneError, one line, if two scenes or families of scenes share a name; names: source and name of each."""
     seen: dict[str, str] = {}
     for source, name in names:
         if name in seen:
@@ -34,7 +34,7 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
 @cache
 def nested_grids(grid: int) -> tuple[int, ...]:
     """
-    Return the phases per axis of nested grids, from coarse to `grid`: each divides the next; factors 2 come first.
+    Return the numbers of phases per axis of nested grids, up to `grid`: each divides the next; factors 2 come first.
 
     >>> nested_grids(48), nested_grids(96), nested_grids(7)
     ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
@@ -81,7 +81,7 @@ class Study:
 
     @cached_property
     def strides(self) -> dict[str, int]:
-        """Return the stride of every model by its key: the smallest with at most its `most` phases per axis."""
+        """Return by key each model's stride k (it computes every k-th phase): the smallest that `Model.most` allows."""
         strides, stride = {}, 1
         for model in sorted(self.hierarchy, key=lambda model: -(model.most or self.grid)):
             most = min(model.most or self.grid, self.grid)
@@ -160,11 +160,11 @@ class Study:
         return [solved[first == number] for number in range(level.max() + 1)]
 
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """Return the phase pairs that the model is asked for, as indices on the whole grid, from coarse to fine."""
+        """Return the phase pairs that the model computes, as indices on the whole grid, from coarse to fine."""
         return np.concatenate(self.places_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
-        """Return the batches of all models, each from coarse to fine, cut independently of the number of workers."""
+        """Return the batches of phase pairs of all models, coarse grids first, whatever the number of workers."""
         return [
             batch
             for model in self.hierarchy

@@ -43,7 +43,7 @@ MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status t
 
 @dataclass(frozen=True)
 class EngineAnswer(Amplification):
-    """Answer of a user's engine. error_message: quotes statuses that are no known outcome; "" without any."""
+    """Amplification by a user's engine. error_message: quotes statuses that are no known outcome; "" without any."""
 
     error_message: str = ""
 
@@ -67,7 +67,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """Note in an exception the last line of the user's own code that it passed through; file: that of the engine."""
+    """Add to an exception a note on the last line of the user's code that it passed through; file: the engine's."""
     if file is None:
         return
     folder = file.parent

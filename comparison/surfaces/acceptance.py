@@ -67,7 +67,7 @@ def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
 
 
 def check_limits(bodies: Sequence[BodyComparison], gaps: Sequence[MissingValues]) -> list[Limit]:
-    """Return every limit of a scene, compared with its bodies and with its missing values, in the order of its keys."""
+    """Return every limit of a scene, compared with differences by body or with missing values, in order of its keys."""
     closure = bodies[0].scene.acceptance.closure
     limits = list(_check_differences(bodies, gaps))
     if closure is not None:

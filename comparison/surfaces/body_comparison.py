@@ -32,12 +32,12 @@ class BodyComparison:
 
     @cached_property
     def pairs(self) -> list[Pair]:
-        """Return the pairs of models that answer the study's question."""
+        """Return the pairs of models to compare: first with last, both programs on the same equations, and others."""
         return self.study.pairs(self.scene)
 
     @cached_property
     def effect_pairs(self) -> list[Pair]:
-        """Return the pairs of models that differ by one effect: successive ones, others, and two peak definitions."""
+        """Return pairs of models that differ by one effect, successive ones first, or by the definition of the peak."""
         return effect_pairs_of(self.scene, self.study.hierarchy, self.study.left_out(self.scene))
 
     @cached_property

@@ -50,7 +50,7 @@ def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEnt
 
 
 def compute_closure_error(comparison: BodyComparison) -> float:
-    """Return the largest |sum of steps - total| of all phase pairs, relative to the first model; NaN if unknown."""
+    """Return the largest |sum of effects - total| of all phase pairs, relative to the first model; NaN if unknown."""
     total = comparison.difference(comparison.total_pair)
     differences = [comparison.difference(pair) for pair in comparison.consecutive_model_pairs]
     coarsest = max([total.stride, *(each.stride for each in differences)])

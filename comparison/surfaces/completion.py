@@ -56,7 +56,7 @@ Arguments = tuple[Scene, Model, Mapping[str, object], Array]
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Amplification mu and its estimated absolute error, (n, N), at held-out phase pairs; NaN without an answer."""
+    """Amplification mu and estimated absolute error, (n, N), at phase pairs held out as a check; NaN without value."""
 
     mu: Array
     error: Array
@@ -167,7 +167,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
 
 def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
     """
-    Return random phase pairs that the model does not compute, as indices on the whole grid, alpha2 fastest.
+    Return the held-out phase pairs: random, not computed by the model, as indices on the whole grid, alpha2 fastest.
 
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
     """
@@ -192,7 +192,7 @@ def bound_share_beyond_error(held_out: int) -> float:
 def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """Return a completed surface, or why none, for each body of each model that lacks phases or is spatial on few."""
+    """Return a completed surface, or why none, per body: of models without all phases, and of a coarse spatial one."""
     if scene.recorded:
         return []
     listed = []
@@ -206,7 +206,7 @@ def complete_surfaces(
 
 
 def add_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
-    """Return `surfaces` with `completed`, the amplification on all phases where it may be drawn, and a certificate."""
+    """Return `surfaces` with `completed`, amplification on all phases where it may be drawn, and its error measures."""
     nothing, meaning = np.full(surfaces["mu"].shape, np.nan), "mu on all phases, completed through a finer model"
     about = {"units": "1", "long_name": meaning, "confidence": CONFIDENCE}
     found = surfaces.assign(completed=(surfaces["mu"].dims, nothing, about))
@@ -236,7 +236,7 @@ def _complete_body(
     body: int,
     unused: HeldOut | None,
 ) -> Completion:
-    """Return the finer model's surface plus the interpolated difference, or the reason why there is none."""
+    """Return a body's completed surface (finer model plus interpolated difference), or the reason why there is none."""
     asked, nan = model.tolerance(study.tolerance), float("nan")
     about = scene.name, model.key, finer.key if finer else "", body
 

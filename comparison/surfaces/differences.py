@@ -113,7 +113,7 @@ def compute_difference_statistics(scene: str, difference: ModelDifference) -> di
 
 
 def make_difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
-    """Return the statistics of a difference of two models; independent, not_ok: see the fields of `Difference`."""
+    """Return statistics of two models' difference; independent, not_ok: numbers of phase pairs, see `Difference`."""
     pair, size, known = difference.pair, difference.size, difference.known
     grid = len(size)
     stated = known & np.isfinite(difference.uncertainty)

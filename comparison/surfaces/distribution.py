@@ -51,7 +51,7 @@ class GridMaximum:
 
 
 def compute_distributions(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[Distribution]:
-    """Return a distribution for each model and body with an answer, in this order."""
+    """Return the distribution of the amplification for each model and body that has values, in this order."""
     listed = []
     for model, body, mu, error in _usable_values(surfaces, scene, models):
         known = mu[np.isfinite(mu)]
@@ -65,7 +65,7 @@ def compute_distributions(surfaces: xr.Dataset, scene: Scene, models: Sequence[M
 
 
 def find_grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[GridMaximum]:
-    """Return the maximum for each model and body, in this order; of equal values the first phase pair."""
+    """Return the largest amplification for each model and body, in this order; of equal ones the first phase pair."""
     maxima, nan = [], float("nan")
     for model, body, mu, error in _usable_values(surfaces, scene, models):
         if not np.isfinite(mu).any():

@@ -13,21 +13,21 @@ from comparison.surfaces.statements import name_engine, word_engine, word_engine
 from comparison.surfaces.surfaces import count_outcomes
 from comparison.surfaces.waterfall import NAN, Waterfall
 
-# Share of the total difference above which an effect is named as a cause, and of an effect above which its interaction
-# with another effect is stated
+# An effect above this share of the total difference is named as its cause; the interaction of an effect with another
+# one is stated if it is above this share of the effect
 NAMED_SHARE = 0.2
-# By effect: key of the pair of models that adds it where effects come in another order, and that order in words
+# For each effect: key of the pair of models that differ by it if effects come in another order; that order in words
 SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
 }
-# By effect: key of the pair of models that differ by it if the peak is the literal supremum
+# For each effect: key of the pair of models that differ by it if the peak is the literal supremum
 SUPREMUM_PAIRS = {"geometry": "geometry-supremum"}
 
 
 @result
 class Effect:
-    """Mean difference that one effect makes for a body, and that if effects are added in another order."""
+    """Mean difference that one effect makes for a body, and its mean if effects are added in another order."""
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]
@@ -223,7 +223,7 @@ def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
 
 
 def find_main_cause(effects: Sequence[Effect], causes: Sequence[Effect]) -> str:
-    """Return the name of the largest effect if it is a cause; "" if errors leave open which effect is the largest."""
+    """Return the name of the largest effect if `causes` has it; "" if not, or if errors leave open which it is."""
     first, second = (sorted([*effects, NO_EFFECT, NO_EFFECT], key=lambda effect: -abs(effect.mean)))[:2]
     told = abs(first.mean) - abs(second.mean) > math.hypot(first.error, second.error)
     return first.effect if told and first in causes else ""

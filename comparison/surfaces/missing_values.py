@@ -66,7 +66,7 @@ class MissingValues:
         return ", ".join(f"{what}{self._word_count(count)}" for what, count in parts if count)
 
     def _word_count(self, count: int) -> str:
-        """Return in words at how many phase pairs values are missing; "" under a record, which has one value."""
+        """Return in words at how many phase pairs values are missing; "" under a recorded motion (one value)."""
         if self.asked == 1:
             return ""
         return f" at {f'any of {self.asked}' if count == self.asked else f'{count} of {self.asked}'} phase pairs"
@@ -84,7 +84,7 @@ class ComparedStudy(Study):
 
 
 def leave_out_empty_models(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
-    """Return the study without models that lack any usable value, unless fewer than two models would remain."""
+    """Return the study without models that have no usable value, unless fewer than two models would remain."""
     without_results = {}
     for scene in study.scenes:
         steps = chain_of(scene, study.hierarchy)
@@ -134,10 +134,10 @@ def advise_on_outcome(study: Study, scene: Scene, model: Model, outcome: str) ->
 
 
 def _find_answered_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
-    """Return for the phase pairs asked of a model whether every body has a value."""
+    """Return for each phase pair that a model was to compute whether every body has a value."""
     return np.asarray(np.isfinite(select_values(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
 
 
 def _find_usable_points(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
-    """Return for the phase pairs asked of a model whether every body has a value with no error above half of it."""
+    """Return for each phase pair asked of a model whether every body has a value with no error above half of it."""
     return np.asarray(np.isfinite(usable_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

@@ -22,9 +22,9 @@ MIN_INDEPENDENT_PHASES = 4  # smallest number of independent phase pairs from wh
 
 def estimate_sampling_error(sizes: Array, independent: int) -> float:
     """
-    Estimate the absolute error of a mean over all phases that is taken over the grid of `sizes`; NaN if unknown.
+    Estimate the sampling error of the mean of `sizes` on a phase grid; independent: values that no symmetry relates.
 
-    sizes: (n, n), NaN where a value is missing. independent: phase pairs with a value that no symmetry relates.
+    sizes: (n, n), NaN where a value is missing. The error is absolute, that of a mean over all phases; NaN if unknown.
     """
     grid = len(sizes)
     if independent < MIN_INDEPENDENT_PHASES:

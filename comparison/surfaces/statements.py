@@ -62,7 +62,7 @@ def word_total(numbers: Headline) -> str:
 
 
 def _word_total_under_record(numbers: Headline) -> str:
-    """Return by how much the last model differs from the first under a record."""
+    """Return by how much the last model differs from the first under a recorded motion."""
     first, second = numbers.first_name, numbers.second_name
     size = word_difference(numbers.mean, numbers.error)
     if numbers.resolved:
@@ -169,7 +169,7 @@ def word_engine_verdict(row: Difference, title: str) -> str:
 
 
 def word_engine_without_values(title: str, like: str, missing: str, outcomes: Mapping[str, int]) -> str:
-    """Return that an engine of the user is not compared; missing: which of the two has no usable value."""
+    """Return a sentence that a user's engine is not compared; missing: which of the two has no usable value."""
     counts = ", ".join(f"{count} × {outcome}" for outcome, count in outcomes.items() if outcome != "ok")
     why = counts or "errors above half of the values"
     return f"{name_engine(title)} is not compared with the {like}: no usable value by {missing} ({why})."
@@ -195,7 +195,7 @@ def _digits_above(found: float, allowed: float) -> str:
 
 def word_limit_check(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) -> str:
     """
-    Return whether the limits are kept, and which comparisons have no limit.
+    Return a sentence on whether the acceptance limits are kept, and which comparisons have no limit.
 
     limits, broken: their numbers. unchecked: by scene, the pairs of models without a limit.
     """
@@ -221,7 +221,7 @@ def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
 
 def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     """
-    Return the answer to the whole study's question in at most three sentences.
+    Return the result of the whole study in at most three sentences; measured: its last sentence.
 
     How far the paper's equations lie from the last model, in which reading; how closely the codes agree where they
     solve the same, and what the other reading is worth; what was measured.

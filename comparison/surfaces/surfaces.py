@@ -27,7 +27,7 @@ MEANING_OF_VARIABLE = {  # unit and meaning of each variable that `label_surface
     "cap_share": {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
     "status": {"long_name": "named outcome of the point"},
 }
-NOT_ASKED = "not asked"  # status at phases that a model skips because it computes every k-th phase
+NOT_ASKED = "not asked"  # status at phases that a model skips because it computes only every k-th phase
 
 
 def make_surface_tasks(study: Study) -> list[Task]:
@@ -50,7 +50,7 @@ def make_surface_tasks(study: Study) -> list[Task]:
 
 
 def collect_batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResult]:
-    """Return the models' answers to the batches; NaN with the reason for a task that ended without a result."""
+    """Return the models' results for the batches; NaN with the reason for a task that ended without a result."""
     return [
         results.value(task, lambda batch, failed: batch.without_result(failed.outcome, failed.error_message))
         for task in tasks
@@ -59,7 +59,7 @@ def collect_batch_results(tasks: Sequence[Task], results: TaskResults) -> list[B
 
 def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
-    Return the models' answers as a data set with dimensions scene, model, body, alpha1, alpha2 (rad).
+    Return the models' results as a data set with dimensions scene, model, body, alpha1, alpha2 (rad).
 
     `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
     scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
@@ -133,7 +133,7 @@ def copy_to_mirror_images(study: Study, arrays: Sequence[NDArray[Any]]) -> None:
 
 
 def find_largest_cap_share(surfaces: xr.Dataset, scene: str, model: str) -> float:
-    """Return the platform's largest displacement, as a share of the pendulum radius rho; NaN without an answer."""
+    """Return the platform's largest displacement, as a share of the pendulum radius rho; NaN without a value."""
     return float(surfaces["cap_share"].sel(scene=scene, model=model).max())  # max() skips NaN
 
 
@@ -145,13 +145,13 @@ def find_largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) ->
 
 
 def find_common_stride(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
-    """Return k where every k-th phase of the study was asked of all these models."""
+    """Return the smallest k such that all these models compute every k-th phase of the study."""
     strides = surfaces.variables["stride"].values
     return int(max(strides[_find_model_index(surfaces, scene, model)] for model in models))
 
 
 def select_values(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> NDArray[Any]:
-    """Return a variable of the first model, by body if it has them, at the phases asked of all these models."""
+    """Return variable `name` of the first of `models` at the phases that all of them compute; mu and error by body."""
     every = slice(None, None, find_common_stride(surfaces, scene, *models))
     values: NDArray[Any] = surfaces.variables[name].values[
         (*_find_model_index(surfaces, scene, models[0]), ..., every, every)
@@ -160,7 +160,7 @@ def select_values(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -
 
 
 def count_outcomes(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, int]:
-    """Return how many of the phase pairs asked of the model ended in each outcome, most frequent first."""
+    """Return how many of the phase pairs that the model was to compute have each outcome, most frequent first."""
     return dict(Counter(select_values(surfaces, "status", scene, model).ravel().tolist()).most_common())
 
 

@@ -65,7 +65,7 @@ def make_waterfall(comparison: BodyComparison) -> Waterfall:
 
 
 def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
-    """Return the largest difference of any engine model (without one, of the last model) and the first model."""
+    """Return the largest difference of any engine model (without one, of the last model) from the first model."""
     models = comparison.model_sequence
     later = [model for model in models[1:] if model.side == "engine"] or models[-1:]
     totals = [replace(comparison.total_pair, second=model, base=models[0]) for model in later]
@@ -74,7 +74,7 @@ def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
         return LargestDifference((), WaterfallBar(models[-1].key, NAN, NAN, False), (NAN, NAN), 0)
 
     def size(pair: Pair) -> float:
-        """Return the largest absolute difference of a pair."""
+        """Return the largest absolute difference of a pair of models at any phase pair."""
         difference = comparison.difference(pair)
         return abs(difference.at(difference.size, difference.largest_place))
 

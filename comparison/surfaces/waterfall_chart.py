@@ -39,7 +39,7 @@ class ChartBar:
 
 
 def place_bars(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: LinearScale) -> list[ChartBar]:
-    """Return the bars of a waterfall, ready to be drawn."""
+    """Return the bars of a waterfall with their positions on the axis, ready to be drawn."""
     return [_place_bar(bar, model, start, scale) for bar, model, start in _bars_with_starts(bars, total)]
 
 
@@ -116,7 +116,7 @@ def _place_bar(bar: WaterfallBar, model: str, start: float, scale: LinearScale) 
 
 
 def _tick_values(low: float, high: float) -> list[float]:
-    """Return round values within an axis at steps of 1, 2 or 5 times a power of ten."""
+    """Return round values between the ends of an axis, at steps of 1, 2 or 5 times a power of ten."""
     rough = (high - low) / MAX_TICKS
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(digit * power for digit in (1.0, 2.0, 5.0, 10.0) if digit * power >= rough)

@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 # The largest step is divided so many times by `STEP_RATIO` in the first chunk, in which the contact force settles.
 FIRST_DIVISIONS = 2
 
-# Largest ratio of the numbers of steps in two successive chunks at the largest step: a chunk never grows faster.
+# Largest ratio of the number of steps in a chunk of largest steps to that in the chunk before it
 MAX_CHUNK_GROWTH = 2
 
 # Number of Newton iterations that count as one step of the budget: a step that needs more counts as several.
@@ -188,7 +188,7 @@ class _AdaptiveRun:
         return (last, too_large, None, None) if change is None else (change.row, None, None, change)
 
     def _choose_steps(self) -> tuple[int, float, int]:
-        """Return the number of steps wanted, and length and number of those taken, which end at record samples."""
+        """Return the number of steps wanted, and length and number of those to take, which end at record samples."""
         at, level, end, ground = self.at, self.level, self.integration.end, self.model.ground
         at.divisions = max(at.divisions, level.min_divisions(at.time))
         step = level.step / STEP_RATIO**at.divisions

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Candidate:
     """
-    Peaks of one level of accuracy with the parts of their error, in units of the model.
+    Peak accelerations at one level of accuracy of the engine, with the parts of their error, in units of the model.
 
     Attributes:
     - shares_contact: Whether the level before has the same contact stiffness, and so does not show the error of the
@@ -73,11 +73,11 @@ class Candidate:
         return float((self.errors / self.run.peaks.value).max())
 
     def meets(self, tolerance: float) -> bool:
-        """Return whether the answer is confirmed and every body's relative error is at most `tolerance`."""
+        """Return whether other runs confirm the peaks and every body's relative error is at most `tolerance`."""
         return self.confirmed and bool((self.errors <= tolerance * self.run.peaks.value).all())
 
     def may_meet(self, tolerance: float) -> bool:
-        """Return whether the answer would meet the tolerance without the error of rounding."""
+        """Return whether the peaks would meet the tolerance without the error of rounding."""
         return self.confirmed and bool((self.level_errors <= tolerance * self.run.peaks.value).all())
 
     def is_limited_by_rounding(self, tolerance: float) -> bool:
@@ -91,7 +91,7 @@ class Candidate:
         return larger and bool((self.level.rounding > best.errors).any())
 
     def add_compliance_error(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
-        """Return the answer with the error from the contact's finite stiffness, by a run on a softer contact."""
+        """Return the candidate with the error by finite stiffness of the contact, from a run on a softer contact."""
         if not self.misses_compliance_error:
             return self
         level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)

@@ -61,7 +61,7 @@ def slip_change_ratios(
 
 @cache_on_disk(__file__, nogil=True)
 def find_rim_exit_rows(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
-    """Find the first row in which coordinate `height` reaches `rim`, and the first with all contacts open, or T."""
+    """Find the first row where coordinate `height` reaches `rim`, and the first with all contacts open; T if none."""
     steps = len(coordinates)
     beyond, lost = steps, steps
     for row in range(steps):

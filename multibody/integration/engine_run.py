@@ -29,7 +29,7 @@ Ground = Callable[[Array], Array]
 # A value of a run below this share of its largest one is not the largest at any other level of accuracy either.
 SETTLED_FRACTION = 0.9
 
-# Time in which warping of supports dies out after they close, as a multiple of the square root of its compliance.
+# Time in which out-of-plane warping of the supports dies out after they close, over the square root of its compliance
 WARPING_RELAXATION = 20.0
 
 

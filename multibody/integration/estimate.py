@@ -52,13 +52,13 @@ SAFETY_OF_BEARINGS = 2.0
 # their peaks come at 1.7).
 STARTING_TIME = 4.0
 
-# Factor by which one level reduces the error: smallest, at stops, and largest, in smooth motion. A factor above
+# Factor by which a level of accuracy reduces the error: smallest at stops, largest in smooth motion. A factor above
 # MAX_CREDIBLE_RATE counts as accidental.
 MIN_RATE, MAX_RATE = 2.0, 4.0
 MAX_CREDIBLE_RATE = 5.0  # factor of error reduction by one level, above which two errors count as canceling
 
-# Relative error of a peak per largest warping load while all supports are closed (measured: up to 0.22, where
-# supports reach the slip speed v_reg one by one).
+# Relative error of a peak per largest warping load (part of the support forces that has no resultant) while all
+# supports are closed (measured: up to 0.22, where supports reach the slip speed v_reg one by one).
 ERROR_PER_WARPING_LOAD = 0.25
 
 # Smallest relative error at the first level of a motion with impacts, halved by every level of equally stiff supports:
@@ -173,7 +173,7 @@ def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, bef
 
 
 def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
-    """Return errors (N,); if one is too large for levels that converge, all are at least as large as the peaks."""
+    """Return `errors` (N,); if one is too large for levels that converge, all are at least as large as the peaks."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
         return errors

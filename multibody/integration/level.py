@@ -31,13 +31,13 @@ MAX_LEVELS = 8
 # Smallest tolerance at which a recorded loading has an extra coarse level before level 0 (docs/records/multibody.md).
 MIN_LOOSE_TOLERANCE = 1e-2
 
-# Relative error of a peak that level 0 typically has: a closer agreement of two levels counts as accidental.
+# Relative error of a peak that accuracy level 0 typically has: a closer agreement of two levels counts as accidental.
 ERROR_FLOOR_OF_LEVEL_0 = 8e-4
 
-# Largest relative change of the slip velocity in one step at level 0: a step with a larger change is divided.
+# Largest relative change of the slip velocity in one step at accuracy level 0: a step with a larger change is divided.
 MAX_SLIP_CHANGE = 0.14
 
-# Largest penetration of the contact under the weight at level 0, as a share of the pendulum radius rho.
+# Largest penetration of the contact under the weight at accuracy level 0, as a share of the pendulum radius rho.
 MAX_PENETRATION = 1e-6
 
 # Largest response time of the contact, as a share of the relaxation time of friction, at level 0, unless rounding needs
@@ -54,8 +54,8 @@ MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04  # the same where bodies rotate
 # not followed the change when the motion ends, and a run on a softer contact would not show that error.
 MAX_CONTACT_RESPONSE_TIME_OVER_DURATION = 0.05
 
-# Largest change of the contact force, as a share of the peak, that the contact need not follow: it is vertical and adds
-# to the horizontal acceleration as a square.
+# Largest ratio of the change of contact force, in weights, to the peak, in units of g, for which a contact may be too
+# slow to follow the change: it is vertical, and adds to the horizontal acceleration as a square.
 MAX_NEGLIGIBLE_FORCE_CHANGE = 0.03
 
 # Relative tolerance of the forces in Newton's iteration at level 0. No level has one below MIN_NEWTON_TOLERANCE,
@@ -86,10 +86,10 @@ MAX_WEAK_PENETRATION = 4e-4  # largest penetration under the weight at a weak lo
 # Smallest peak, in units of g, by which the penetration is divided, so that it stays finite.
 MIN_PEAK_AS_DIVISOR = 1e-300
 
-# Compliance of real bearings against warping, in units of rho under the weight: answers in which supports open hold
-# for it. Supports that all stay closed may have COMPLIANCE_OF_CLOSED_SUPPORTS: the load is then shared evenly.
+# Compliance of real bearings against out-of-plane warping of their ring, in pendulum radii under the weight: results
+# with openings hold for it. Supports that all stay closed may have COMPLIANCE_OF_CLOSED_SUPPORTS: load is then even.
 PHYSICAL_WARPING_COMPLIANCE = 4e-4
-COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4  # in units of rho, largest compliance against warping of closed supports
+COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4  # largest compliance against warping if all supports are closed, in pendulum radii
 
 # Ratio of the penetrations, and so of the contact compliances, of two successive levels.
 COMPLIANCE_RATIO = 4.0
@@ -185,7 +185,7 @@ class Level:
         return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:
-        """Return a level of the same contact in steps `SCAN_RATIO` times as large, to look ahead."""
+        """Return a coarse level, of the same contact in steps `SCAN_RATIO` times as large, to scan the later motion."""
         return replace(
             self,
             step=SCAN_RATIO * self.step,
@@ -293,7 +293,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return the penetrations, in rho, of the softest and the stiffest contact; slowest: longest response time."""
+    """Return the penetrations of softest and stiffest contact, in model units; slowest: longest response time."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
     # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that

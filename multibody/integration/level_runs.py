@@ -47,7 +47,7 @@ Array = NDArray[np.float64]
 # Outcomes of a run that stops before the end of the motion without an event, such as a platform at the rim.
 UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 
-# Largest error that the warping load of closed supports may cause, as a share of the tolerance.
+# Largest error by the warping load (part without resultant of closed supports' forces), as a share of the tolerance
 MAX_WARPING_ERROR_SHARE = 0.2
 
 # Largest share of the engine steps allowed for a phase pair that the first run may take if supports may rattle.
@@ -143,7 +143,7 @@ class LevelRuns:
         return run
 
     def make_candidate(self) -> Candidate | None:
-        """Return the last level's answer with its error; None if a run on supports as stiff as real bearings failed."""
+        """Return the last level's peaks and errors; None if a run on supports as stiff as real bearings failed."""
         # The error is a sum of parts that different comparisons show: step, iteration and contact from the levels
         # before, rounding of contact forces from the stiffness of two levels, load sharing from the load that warping
         # takes, and the springs of real bearings from a run on them. Two rules keep the parts from hiding each other.
@@ -198,7 +198,7 @@ class LevelRuns:
         )
 
     def _count_levels_on_same_springs(self) -> int:
-        """Return how many earlier levels, from level 0 on, have the same warping compliance as the last level."""
+        """Return how many earlier levels, from level 0 on, have the last level's warping compliance of supports."""
         *before, last = self.levels[: len(self.runs)]
         springs = last.warping_compliance
         return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
@@ -281,12 +281,12 @@ class LevelRuns:
 
 
 def _with_physical_warping_compliance(level: Level) -> Level:
-    """Return `level` with the warping compliance of real bearings under the supports."""
+    """Return `level` with the compliance of real bearings against out-of-plane warping of the ring of supports."""
     return replace(level, warping_compliance=PHYSICAL_WARPING_COMPLIANCE)
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
-    """Return `level` with a warping compliance that keeps the error of the warping load of `run` within tolerance."""
+    """Return `level` with warping compliance <= `softest`: the error by warping load of `run` stays in tolerance."""
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)

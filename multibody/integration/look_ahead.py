@@ -30,7 +30,7 @@ NEAR_PEAK_FRACTION = 0.8
 # If a contact force of a scan falls below this value, in weights, the contact might open in the accurate run.
 NEAR_OPENING_FORCE = 0.2
 
-# Time from the last large value to the scan of the later motion, in units of time: one period of the pendulum.
+# Time from the last large value to the scan of later motion, in the model's unit of time: one period of the pendulum
 QUIET_TIME_BEFORE_SCAN = 2.0 * math.pi
 
 

@@ -42,7 +42,7 @@ class PhasePair:
 
     @property
     def end(self) -> float:
-        """Duration of the motion, in units of time."""
+        """Duration of the motion, in the model's unit of time."""
         return self.scene.duration / self.model.units.time
 
     @cached_property

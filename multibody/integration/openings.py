@@ -37,7 +37,7 @@ SIMULTANEOUS_CLOSING_TIME = 1e-7
 # contacts with uneven loads at a tilt, which rigid contacts would not cause.
 MAX_GAP_OF_JOINT_IMPACT = 1.0
 
-# Speed of approach, in units of velocity, below which a closing makes no impact: the contact's damper stops it.
+# Speed of approach, in units of the model, below which a closing makes no impact: the contact's damper stops it.
 MIN_IMPACT_SPEED = 1e-5
 
 # Force of the contact's damper at a closing, in weights, beyond which no peak counts until contact forces have settled.
@@ -46,7 +46,7 @@ MAX_QUIET_FORCE = 1e-3
 # After a closing no peak is read until contact forces have settled: for this multiple of the square root of the
 # penetration, or for BEARING_SETTLING_TIME if that is longer.
 CONTACT_SETTLING_TIME = 40.0
-BEARING_SETTLING_TIME = 0.04  # in units of time, time in which real bearings spring back after a closing
+BEARING_SETTLING_TIME = 0.04  # time in which real bearings spring back after a closing, in the model's unit of time
 
 # Numbers by which a step is divided to find a flight that begins and ends within the step.
 FLIGHT_SEARCH_DIVISORS = 2.0 ** np.arange(1, 8)
@@ -57,7 +57,7 @@ FIRST_STEP_OVER_RESPONSE = 0.25
 
 @dataclass(frozen=True)
 class Event:
-    """First opening or closing in a chunk: the last row before it, and a mask (K,) of the contacts that change."""
+    """First opening or closing of contacts in a chunk: last row before it, mask (K,) of the contacts that change."""
 
     row: int
     closes: bool

@@ -171,7 +171,7 @@ class PeakReader:
 
 
 def find_kinks(time: Array, knots: Array, near: float) -> Rows:
-    """Find the rows of `time` that lie within `near` of one of the knots; both arrays rise."""
+    """Find the rows of `time` that lie within `near` of one of the knots (kinks of the loading); both arrays rise."""
     if not len(knots):
         return NO_ROWS
     return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
@@ -293,7 +293,7 @@ def _list_smooth_stretches(
 
 
 def _find_smooth_side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
-    """Return the first and the last row on the same side of all corners as `row`."""
+    """Return the first and the last row that no corner of the friction law separates from `row`."""
     place = bisect_left(corners, row)
     first = corners[place - 1] + 1 if place > 0 else 0
     return first, corners[place] if place < len(corners) else count - 1

@@ -28,7 +28,7 @@ from reference.support.arguments import Range
 
 Array = NDArray[np.float64]
 
-# Default limit of the engine's steps in all runs of one phase pair: beyond it the pair has no answer.
+# Default limit of engine steps in all runs of a phase pair: beyond it the pair misses the tolerance or has no values.
 MAX_WORK = 2e6
 WORK_RANGE = Range(1.0, 1e12, "steps")  # admissible values of max_work, the limit of steps that a caller may give
 
@@ -90,7 +90,7 @@ def refine(
 
 class _AnswerSearch:
     """
-    Search for the answer of one phase pair among its levels of accuracy.
+    Search among the levels of accuracy for peaks of one phase pair that meet the tolerance.
 
     candidate: answer of the last level, if it has one. complete: the last answer whose error misses no part. best: the
     complete answer with the smallest error. different_motions: number of the last levels with impacts that were another
@@ -116,7 +116,7 @@ class _AnswerSearch:
         self.has_ended = False
 
     def add_level(self) -> None:
-        """Run the next level, and decide by the answer, if any, whether the search ends."""
+        """Run the next level, and decide by its peaks and errors, if any, whether the search ends."""
         run = self.runs.run_next_level()
         done = self.runs.runs
         if run.outcome in UNFINISHED_OUTCOMES:
@@ -139,7 +139,7 @@ class _AnswerSearch:
             self._judge(self.candidate)
 
     def make_last_answer(self) -> Refinement:
-        """Return an answer that misses the tolerance, or one without values and with the outcome that says why."""
+        """Return peaks that miss the tolerance, or a result without values and with the outcome that says why."""
         pair = self.runs.pair
         if self.candidate is None:
             return _refuse_unfinished(pair, self.runs.runs)
@@ -173,7 +173,7 @@ class _AnswerSearch:
             self.best = candidate
 
     def _end_with(self, answer: Refinement) -> None:
-        """End the refinement: no further level runs."""
+        """End the search with this answer: no further level runs."""
         self.answer, self.has_ended = answer, True
 
     def _complete(self, candidate: Candidate) -> Candidate:
@@ -189,7 +189,7 @@ class _AnswerSearch:
 
 
 def _answer_beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | None) -> Refinement:
-    """Return the finest answer, whose error misses the tolerance, or the last one whose error is known."""
+    """Return the peaks of the finest level, whose error misses the tolerance, or the last whose error is known."""
     if np.isfinite(finest.errors).all():
         return _make_answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
     # the run that would show the error by the contact's compliance has no answer

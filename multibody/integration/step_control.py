@@ -33,7 +33,7 @@ MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256
 SLIP_CHANGE_PER_SMALL_CHUNK = 4.48
 MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096  # bounds of the steps in a chunk of small steps
 
-# Largest first step after a kink of the loading, divided by the relaxation time of friction and `Level.slip_change`.
+# Largest first step after a loading kink / (relaxation time of friction * allowed slip change, `Level.slip_change`)
 KINK_STEP_RATIO = 4.0
 
 # Largest step times the rate at which friction that depends on the slip speed changes this speed (`SpeedFriction`): as
@@ -77,7 +77,7 @@ class StepControl:
         return changes
 
     def _kink_step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, per_change: float) -> Array:
-        """Return the ratio (T,) of the first step after a kink of the loading to that allowed near peaks; else 0."""
+        """Return the ratio (T,) of first steps after kinks of the loading to those allowed near peaks; 0 for others."""
         # While the platform creeps, its acceleration follows that of the ground within the relaxation time of friction.
         # Behind a kink the slope changes within that time, and longer steps would show an oscillation. Bodies that turn
         # with the platform, and dampers, follow the acceleration of the platform. So the first step behind a kink is

@@ -11,21 +11,21 @@ from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_stiffness
 from reference.problem import Scene, exponents
 
-# Number of steps at level 0 in the shortest period of loading, pendulum and chain.
+# Number of steps at accuracy level 0 in the shortest period of loading, pendulum and chain of bodies.
 STEPS_PER_PERIOD = 150
 
-# Number of steps at level 0 in the shortest period of elastic bars, whose vibration is a small part of the
+# Number of steps at accuracy level 0 in the shortest period of elastic bars, whose vibration is a small part of the
 # accelerations.
 STEPS_PER_BAR_PERIOD = 40
 MAX_BAR_DIVISION = 20.0  # largest factor by which elastic bars reduce the step: faster bars are not resolved
 
-# Number of steps at level 0 in a decay time, in which a brief motion decays by a factor e.
+# Number of steps at accuracy level 0 in a decay time, in which a brief motion decays by a factor e.
 STEPS_PER_DECAY = 24
 DECAY_TIMES = 28.0  # number of decay times in which a brief motion decays by 1e12; then it needs no short steps
 
 
 def largest_step(period: float, model: EngineModel) -> float:
-    """Return the largest step at level 0, in units of time, for this shortest period; elastic bars may need less."""
+    """Return the largest step at level 0, in the model's unit of time, for this shortest period; less for fast bars."""
     step = period / STEPS_PER_PERIOD
     if model.fastest_bar_frequency > 0.0:
         of_bars = 2.0 * math.pi / model.fastest_bar_frequency / STEPS_PER_BAR_PERIOD
@@ -35,7 +35,7 @@ def largest_step(period: float, model: EngineModel) -> float:
 
 def shortest_period(scene: Scene, model: EngineModel) -> float:
     """
-    Return the shortest period, in units of time, of the loading, the pendulum and all modes of the chain of bodies.
+    Return the shortest period of loading, pendulum and all modes of the chain of bodies, in the model's unit of time.
 
     A record has no period: it is linear within every step.
     """
@@ -58,7 +58,7 @@ def shortest_period(scene: Scene, model: EngineModel) -> float:
 
 
 def fastest_damper_rate(scene: Scene, units: Units) -> float:
-    """Return a bound of the decay rates of the damped links, per unit of time (Gershgorin's theorem)."""
+    """Return an upper bound of the decay rates of damped links, per model unit of time (Gershgorin's theorem)."""
     per_mass = scene.damping.max(axis=1)
     below, above = per_mass / scene.masses[1:], per_mass / scene.masses[:-1]
     return float(2.0 * (np.append(above, 0.0) + np.append(0.0, below)).max() * units.time)
@@ -66,7 +66,7 @@ def fastest_damper_rate(scene: Scene, units: Units) -> float:
 
 def list_brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
     """
-    List the end and the step needed at level 0, in units of time, of every brief motion that `step` does not resolve.
+    List end and step needed at level 0, in the model's time unit, of every brief motion that `step` does not resolve.
 
     They are harmonics that decay, the start of a lubricated platform, and that of strongly damped links. From rest the
     platform takes on the speed that balances the loading within its relaxation time. Over much longer steps the

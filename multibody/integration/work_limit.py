@@ -19,8 +19,8 @@ from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
 from reference.support.arguments import check_number
 
-# Ratio of the steps for one motion (levels 0 and 1, and a run on a softer contact) to those of level 0 if all were its
-# largest. Smaller steps at stops double the number of steps.
+# Number of steps for one motion (levels 0 and 1, and a run on a softer contact) over that of level 0 if all its steps
+# were the largest. Smaller steps at stops double the number of steps.
 WORK_PER_MOTION_OVER_COARSEST_RUN = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 # Damping ratio of the contact: at 1 its vibration along the normal dies out within a few of its periods.
 DAMPING_RATIO = 1.0
 
-# Rounding error of a position, in units of rho. Divided by the penetration it is that of the contact force, in weights.
+# Rounding error of a position, in the model's unit of length; over the penetration, that of contact force, in weights
 POSITION_ROUNDING = 1e-15
 
 # Slip speed, in units of velocity, up to which the friction coefficient of a lubricated contact grows linearly with
@@ -76,7 +76,7 @@ def corner_and_relaxation(scene: Scene, regularization: float | None, units: Uni
 
 def viscous_relaxation(scene: Scene, units: Units) -> float:
     """
-    Return the relaxation time of a lubricated platform's slip speed, in units of time; inf without lubrication.
+    Return the relaxation time of a lubricated platform's slip speed, in the model's time unit; inf if not lubricated.
 
     It is m1 / (f_c m_sum g) with the platform's mass m1, the viscous friction coefficient f_c and the total mass m_sum.
     """
@@ -88,7 +88,7 @@ def place_on_sphere(
     offset: Array, speed: Array, ground: Array, penetration: float
 ) -> tuple[Array, Array, float, float]:
     """
-    Return position, velocity, gap and slip speed of the platform on the sphere, pressed in like a single body.
+    Return position, velocity, gap and slip speed of a platform on the sphere, pressed in as if all mass were one body.
 
     offset, speed: horizontal (2,). ground: the plate's acceleration (3,). Returns displacement (3,), velocity (3,),
     gap and slip speed, all in units of the model. For several bodies off the vertical the penetration is not exact; the

@@ -6,7 +6,7 @@ MAX_NAME_BYTES = 200  # bytes of a name without its ending: file systems allow 2
 
 
 def name_figure_file(scene: str, *parts: str, ending: str = ".png") -> str:
-    """Return the name of a figure file, scene and parts joined by hyphens; a long one is cut, then hash and parts."""
+    """Return a figure's file name, scene and parts joined by hyphens; a long one is cut and ends in hash and parts."""
     stem = "-".join([scene, *parts])
     written = stem.encode(errors="surrogateescape")
     if len(written) > MAX_NAME_BYTES:
