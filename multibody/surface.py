@@ -161,7 +161,7 @@ class _ReducedModel:
         self, pairs: Array, ground: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> tuple[Array, Array, NDArray[np.str_], Array, Array]:
         """
-        Return amplification and error (M, N); status, time of failure, s, displacement, m, (M,), of pairs (M, 2), rad.
+        Return amplification, error (M, N); status, time of failure, s, displacement, m, (M,), at phases (M, 2), rad.
 
         ground: denominators of (5.1), (M,), m/s^2.
         """
@@ -184,7 +184,7 @@ class _ReducedModel:
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
-        """Refine runs at a phase pair to the tolerance; use the complete model if the reduced one has no answer."""
+        """Refine runs at a phase pair to the tolerance; use the complete model if the reduced one gives no result."""
         pair = PhasePair(self.scene, self.built, phase, in_full=self.in_full)
         point = refine(pair, tolerance, levels=levels, max_work=max_work)
         if self.complete is not None and np.isnan(point.peaks).any():
@@ -206,7 +206,7 @@ def _reduce_model(scene: Scene, model: str, regularization: float | None, full: 
     built = assemble(moving, chosen, regularization, **axes)
 
     def complete() -> tuple[Scene, EngineModel]:
-        """Assemble the model that the caller names, for phase pairs at which the reduced model has no answer."""
+        """Assemble the model that the caller names, for phase pairs at which the reduced model gives no result."""
         return scene, assemble(scene, model, regularization)
 
     return _ReducedModel(moving, built, complete if chosen != model else None, full)

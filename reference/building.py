@@ -26,7 +26,7 @@ MAX_KINDS = 3  # at most so many different buildings, or kinds of friction, are 
 @dataclass(frozen=True)
 class Building:
     """
-    Weight, periods, damping and isolator of a building as read from a scene; of each pair, 0 is along x and 1 along y.
+    Weight, periods, damping and isolator of a building as read from a scene; of each pair, index 0 is x and 1 is y.
 
     Attributes
     ----------

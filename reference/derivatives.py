@@ -77,7 +77,7 @@ class Sensitivity(Estimates):
     warning: str
 
     def __repr__(self) -> str:
-        """Return the derivative, its error, friction law, interpretation of (5.1) and warning in one line."""
+        """Return the derivative, its error, friction law, definition of the peak in (5.1) and warning in one line."""
         if np.size(self.value) == 1:
             slope = f"{float(np.squeeze(self.value)):.6g} ± {float(np.squeeze(self.error)):.1g}"
         else:
@@ -89,7 +89,7 @@ class Sensitivity(Estimates):
 
 
 class _ComputedQuantity(NamedTuple):
-    """Value and error of a quantity, with the friction law and the interpretation of (5.1) that it used."""
+    """Value and error of a quantity, with the friction law and the definition of the peak in (5.1) that it used."""
 
     value: Array
     error: Array
@@ -194,7 +194,7 @@ class _ProgressLines:
 
 
 class _VariedQuantity:
-    """The quantity as a function of one number in the scene, with all values computed so far."""
+    """The user's quantity as a function of the number at one key of the scene, with all values computed so far."""
 
     def __init__(
         self,
@@ -211,7 +211,7 @@ class _VariedQuantity:
         self.known: dict[float, _ComputedQuantity] = {value: middle}
 
     def at(self, value: float) -> _ComputedQuantity:
-        """Return the quantity of the scene in which the key has this value."""
+        """Return the quantity of the scene in which the varied key has the given value."""
         if value not in self.known:
             began = time.monotonic()
             self.known[value] = _value_and_provenance(self._quantity(self.scene.with_values({self.key: value})))
@@ -219,7 +219,7 @@ class _VariedQuantity:
         return self.known[value]
 
     def value_or_nan_at(self, value: float) -> _ComputedQuantity:
-        """Return the quantity at a value, or NaN if the scene with it is invalid or has no answer."""
+        """Return the quantity at a value of the varied key; NaN if the scene is invalid or gives no result."""
         try:
             return self.at(value)
         except ValueError:
@@ -229,7 +229,7 @@ class _VariedQuantity:
 
 
 def _find_sensitivity(line: _VariedQuantity) -> Sensitivity:
-    """Return derivative and finite changes of the quantity, and a kink or jump if the two contradict each other."""
+    """Return derivative and finite changes of the quantity, and a kink or jump if derivative and changes disagree."""
     derivative, middle = _differentiate_line(line), line.middle
     moved = [line.value_or_nan_at(line.value * (1.0 + share)) for share in FINITE_CHANGES]
     change = Estimates(
@@ -256,7 +256,7 @@ def _find_sensitivity(line: _VariedQuantity) -> Sensitivity:
 
 def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, float], jump: float = 0.0) -> str:
     """
-    Return a sentence on where a quantity has a kink or a jump, and how far from it the derivative holds.
+    Return a sentence on a quantity's kink or jump: where it is, how far away in percent, and the slopes beside it.
 
     Examples
     --------
@@ -271,11 +271,11 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
 
 
 def _differentiate_line(line: _VariedQuantity) -> Estimates:
-    """Return the derivative of the quantity by its key, by central differences with the step of the smallest error."""
+    """Return the quantity's derivative by its key, from central differences with the step of the smallest error."""
     middle, value = line.middle, line.value
 
     def difference(step: float) -> tuple[Array, Array, Array]:
-        """Return the central difference, half the change of slope at the key's value, and the error of both."""
+        """Return the quantity's central difference, half its change of slope at the key's value, and error of both."""
         high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
         error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
         return (
@@ -323,7 +323,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
 
 
 class _QuantityAtValue(NamedTuple):
-    """One number of the quantity, which may be an array, with its error, at the value `at` of the key."""
+    """One element of the quantity, which may be an array, with its error, where the varied key has the value `at`."""
 
     at: float
     value: float
@@ -350,7 +350,7 @@ class _Bracket(NamedTuple):
 
     @property
     def jump(self) -> float:
-        """Change of the quantity from point to point, minus the change that the mean of both outer slopes makes."""
+        """Change of the quantity between both points, less the change by the mean of the slopes outside of them."""
         return self.high.value - self.low.value - 0.5 * (self.below + self.beyond) * self.width
 
 
@@ -417,7 +417,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
 
 
 def _value_and_provenance(found: Any) -> _ComputedQuantity:
-    """Return value, error, interpretation of (5.1) and law of friction from the result of a user's function."""
+    """Return value, error, definition of the peak in (5.1) and friction law from the result of a user's function."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:

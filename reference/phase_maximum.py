@@ -176,7 +176,7 @@ def worst_phases(
 
 
 def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
-    """Return a search from each of the phase pairs (K, 2), rad, that has an answer."""
+    """Return a local search started at each of the phase pairs (K, 2), rad, at which the surface has a value."""
     points = surface.compute(phases)
     return [
         LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
@@ -187,7 +187,7 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
 def _classify_highest(
     surface: Surface, searches: Sequence[LocalSearch]
 ) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
-    """Return kind (smooth, kink or jump) and high side of the highest maxima; move those at a jump along it first."""
+    """Return kind (smooth, kink, jump) and high side of the highest maxima; searches at a jump first move along it."""
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
     kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:

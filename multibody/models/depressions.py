@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Depressions:
     """
-    Geometry of the platform's depressions over spheres on the plate, in units of the model, where rho is one.
+    Geometry of the platform's depressions over spheres on the plate, in units of the model: pendulum length rho = 1.
 
     ring: places of the spheres, (K, 2). center: the platform's center of mass at rest, from the middle of the plane of
     the depressions, (3,). radius: of the spheres. vertical: index of each sphere's vertical coordinate, (K,) or (0,).
@@ -31,7 +31,7 @@ class Depressions:
     vertical: NDArray[np.int_]
 
     def sphere_positions(self, coordinates: Array) -> tuple[Array, Array]:
-        """Return positions (T, K, 3) of spheres from the centers of depressions, in axes of plate and platform."""
+        """Return positions (T, K, 3) of spheres from depression centers: in axes of the plate, and of the platform."""
         turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
@@ -39,7 +39,7 @@ class Depressions:
         return apart, np.einsum("tij,tki->tkj", turned, apart)
 
     def clearance(self, coordinates: Array) -> Array:
-        """Return the distances (T, K) of depressions and spheres at coordinates (T, n); negative where they overlap."""
+        """Return the gaps (T, K) between depressions and spheres at coordinates (T, n); negative where they overlap."""
         _, inside = self.sphere_positions(coordinates)
         across, upward = np.hypot(inside[..., 0], inside[..., 1]), inside[..., 2]
         # a sphere below the rim touches nothing until it is back in its depression, or has left it (`rows_beyond_rim`)
@@ -48,7 +48,7 @@ class Depressions:
 
     def is_near_rest(self, coordinates: Array) -> bool:
         """
-        Return whether bounds prove for all coordinates (T, n) that no sphere leaves the rim and no tilt is 90 degrees.
+        Return whether bounds prove that no sphere leaves its depression and no tilt is 90 degrees; coordinates: (T, n).
 
         The proof spares `rows_beyond_rim`, which costs more. A platform that is displaced by u and turned by an angle t
         moves a depression at the distance l from its center by |u| + t l at most, and lifts it by |u_z| + t l.
@@ -72,7 +72,7 @@ class Depressions:
         return np.asarray(outside.any(axis=1))
 
     def contact_normals_and_jacobian(self, coordinates: Array) -> tuple[Array, Array]:
-        """Return contact normals (K, 3), and Jacobians (K, 3, 6) of contact points for the platform velocities."""
+        """Return contact normals (K, 3) and Jacobians (K, 3, 6) from platform velocities to those of contact points."""
         normals = self._platform_normals(coordinates)
         levers = self._sphere_centers(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)
@@ -94,10 +94,10 @@ class Depressions:
 
 
 class FlatUnderside(Depressions):
-    """Geometry of a flat slider's plane on spheres, in place of depressions; it touches their tops at rest."""
+    """Geometry of a flat slider's plane on spheres, in place of depressions; at rest the plane touches sphere tops."""
 
     def clearance(self, coordinates: Array) -> Array:
-        """Return the distances (T, K) of plane and spheres at coordinates (T, n); negative where they overlap."""
+        """Return the gaps (T, K) between plane and spheres at coordinates (T, n); negative where they overlap."""
         _, inside = self.sphere_positions(coordinates)
         clear: Array = 1.0 - inside[..., 2]
         return clear
@@ -120,7 +120,7 @@ def rotation_matrices(angles: Array) -> Array:
 
 
 def angular_velocity_matrix(angles: Array) -> Array:
-    """Return the matrix (3, 3) from rates of the angles (3,), rad, to angular velocity: its columns are the axes."""
+    """Return the matrix (3, 3) that maps rates of the angles (3,), rad, to angular velocity; columns: rotation axes."""
     about_x, about_y = _axis_rotations(0, angles[0]), _axis_rotations(1, angles[1])
     return np.column_stack([[1.0, 0.0, 0.0], about_x[:, 1], (about_x @ about_y)[:, 2]])
 
@@ -134,7 +134,7 @@ def cross_matrix(vectors: Array) -> Array:
 
 
 def _axis_rotations(axis: int, angle: Array) -> Array:
-    """Return the matrices (..., 3, 3) of rotations by `angle` about one axis."""
+    """Return the matrices (..., 3, 3) of rotations by `angle`, rad, about `axis` 0, 1 or 2 (x, y, z)."""
     matrix = np.zeros((*np.shape(angle), 3, 3))
     first, second = (axis + 1) % 3, (axis + 2) % 3
     matrix[..., axis, axis] = 1.0

@@ -40,12 +40,12 @@ CENTER_MASS, CENTER_STIFFNESS = 1e8, 1e10
 # Ratio of the friction coefficient of a contact at rest to the scene's: it creeps at v_reg divided by this ratio.
 RESTING_COEFFICIENT_RATIO = 1e6
 
-# Slip speed at which a slide ends at level 0, as a multiple of sqrt(mu g u_y), with friction coefficient mu and yield
-# displacement u_y: in short steps noise of the contact force makes as much slip. What is left of the slide stretches
-# the spring beyond its limit, and this does not count as yield.
+# Slip speed at which a slide ends at accuracy level 0, as a multiple of sqrt(mu g u_y), with friction coefficient mu
+# and yield displacement u_y: in short steps noise of the contact force makes as much slip. What is left of the slide
+# stretches the spring beyond its limit, and this does not count as yield.
 SLIDE_END_SPEED_RATIO = 0.1
 
-# Elongation of a spring beyond its limit at level 0, as a share of the yield displacement, up to which a contact rests.
+# Largest elongation beyond a spring's limit, over yield displacement, at which a contact rests at accuracy level 0.
 NEGLIGIBLE_EXCESS = 1e-4
 
 # Ratio of v_reg, the slip speed below which friction of a sliding contact is linear, to the speed at which slides end.
@@ -60,7 +60,7 @@ SMALLEST_DISPLACEMENT = 1e-300
 
 class ContactChange(NamedTuple):
     """
-    Beginning or end of a contact's slide, at the share `step_share` of the step after `row`.
+    Start or end of a contact's slide, in the step after a motion's `row`, at the share `step_share` of that step.
 
     slides: whether the contact begins to slide. limits: elastic displacements (K,) at which contacts slide there, to
     which springs at rest are shortened and the spring that begins to slide is set; None where a slide ends.
@@ -76,7 +76,7 @@ class ContactChange(NamedTuple):
 @dataclass(frozen=True)
 class FrictionSprings:
     """
-    Torsion springs of the spheres, on which contacts yield before they slide, in units of the model.
+    Torsion springs on the spheres, in units of the model: they yield elastically before a contact slides.
 
     turns: index of the rotations of each sphere, (K, 3). law: friction law of the contacts. displacement: elastic
     displacement at which they slide under the weight. slide_end: slip speed at which slides end at level 0. Arguments
@@ -92,7 +92,7 @@ class FrictionSprings:
     slide_end: float
 
     def begin(self, state: EngineState) -> None:
-        """Set the friction coefficient of every contact for a run from `state`, in which it rests or slides."""
+        """Set each contact's friction coefficient for a run from `state`: by whether the contact rests or slides."""
         for contact, factor in zip(self.contacts, self.coefficient_ratios(state)):
             self.mbs.SetObjectParameter(contact, "dynamicFriction", factor * self.law.largest)
 
@@ -101,12 +101,12 @@ class FrictionSprings:
         return [1.0 if slides else RESTING_COEFFICIENT_RATIO for slides in self._mark_sliding(state)]
 
     def set_slide_end(self, end: float) -> None:
-        """Set the regularization speed v_reg of all contacts in proportion to the slip speed that ends slides."""
+        """Set the regularization speed v_reg of all contacts in proportion to the slip speed `end` that ends slides."""
         for contact in self.contacts:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
     def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
-        """Return the relative change (T,) in each step: that of the springs, or that of the slip velocity if larger."""
+        """Return each step's relative change (T,): of springs, or of velocity over slip speed, weighted, if larger."""
         turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
         slip = np.maximum(motion.slip[1:], end)[:, self._mark_sliding(state)].min(axis=1, initial=math.inf)
         turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip
@@ -114,7 +114,7 @@ class FrictionSprings:
         return np.append(0.0, changes)
 
     def find_sliding_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
-        """Find the first contact that begins or ends to slide in steps from `state`; None if there is none."""
+        """Find the first contact that begins or ends a slide after `state`, or None; end: slip speed that ends it."""
         if len(motion.time) < 2:
             return None
         time, slip, limit = motion.time, motion.slip, self.limits(motion)
@@ -206,7 +206,7 @@ class FrictionSprings:
 
 
 def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
-    """Find the step in which a spring passes its limit; excess: elongation beyond it / a negligible one."""
+    """Find the step in which a spring passes its limit; excess: elongation beyond it, divided by a negligible one."""
     rows = np.flatnonzero((excess[1:] > 1.0) & (excess[1:] > excess[:-1]))
     if not len(rows):
         return None
@@ -226,7 +226,7 @@ def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
 def make_friction_springs(
     mbs: Any, scene: Scene, units: Units, contacts: list[Any], first: int, depressions: Depressions
 ) -> FrictionSprings | None:
-    """Return the springs of `contacts`; first: index of their first coordinate. None where friction is rigid."""
+    """Return the torsion springs of `contacts`, None if friction is rigid; first: index of their first coordinate."""
     if not scene.dry_friction.elastic:
         return None
     turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)
@@ -243,13 +243,13 @@ def make_friction_springs(
 
 
 def slide_end_speed(scene: Scene, units: Units) -> float:
-    """Return the slip speed, in units of velocity, at which a slide ends at level 0 where friction yields."""
+    """Return the slip speed, in the model's unit, at which a slide on yielding friction ends at accuracy level 0."""
     return SLIDE_END_SPEED_RATIO * math.sqrt(scene.friction_coefficient * scene.yield_displacement / units.length)
 
 
 @dataclass(frozen=True)
 class TurningSpheres:
-    """Spheres that rotate on springs: their markers, the engine's object on their coordinates, its matrices (n, n)."""
+    """Spheres that rotate on springs: markers, one engine object for all, stiffness and damping matrices (n, n)."""
 
     markers: list[Any]
     bodies: list[Any]
@@ -266,9 +266,9 @@ def add_turning_spheres(
     mbs: Any, scene: Scene, units: Units, places: Array, radius: float, moved: float = 0.0
 ) -> TurningSpheres:
     """
-    Add spheres that rotate on springs, at places (K, 2) and height one in units of length; none if friction is rigid.
+    Add spheres that rotate on springs, none if friction is rigid; moved: their total mass if they also move vertically.
 
-    moved: mass of all spheres, if they can move vertically and are pressed upwards by the weight; else 0.
+    places: (K, 2), at height one in units of length. moved: 0 if spheres cannot rise; else the weight presses them up.
     """
     if not scene.dry_friction.elastic:
         return TurningSpheres([], [], np.zeros((0, 0)), np.zeros((0, 0)))

@@ -130,7 +130,7 @@ class ImpactLaw:
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
-        """Return the speeds (K,) at which the platform leaves spheres, if these cannot rise and if they are free."""
+        """Return two speeds (K,) at which the platform leaves spheres: if these cannot rise, and if they are free."""
         platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
             PLATFORM_SLICE
         ]
@@ -216,7 +216,7 @@ class ImpactLaw:
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _solve_impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """Solve for impulses (K, 3), normal and tangential; rebound: smallest normal speed (K,) after the impact."""
+        """Solve for contact impulses (K, 3), normal and tangential; rebound: least normal speed (K,) after impact."""
         # Projected Gauss-Seidel (Jean and Moreau 1992): each contact in turn takes the impulse that satisfies its own
         # law while all other impulses stay fixed. In the tangent plane the block of the contact is replaced by its
         # largest eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not

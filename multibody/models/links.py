@@ -33,10 +33,10 @@ Array = NDArray[np.float64]
 # Largest stiffness of elastic bars in tension, weights / rho, and in bending, weights * rho: stiffer bars act as rigid.
 MAX_BAR_STIFFNESS = 1e7
 
-# Length of the rods of dampers, in units of length: longer rods make larger rounding errors and a wrong Jacobian.
+# Length of the rods of dampers, in the model's unit: longer rods make larger rounding errors and a wrong Jacobian.
 ROD_LENGTH = 100.0
 
-# Compliance of a stiff link in tension (and, times rho^2, in bending) as a multiple of that of the contact.
+# Compliance of a stiff link in tension (and, times pendulum length^2, in bending) as a multiple of that of the contact.
 LINK_COMPLIANCE_RATIO = 10.0
 
 
@@ -74,7 +74,7 @@ class Link:
         return LINK_COMPLIANCE_RATIO * penetration * float(self.carried[0]) if self.bars is None else 0.0
 
     def damping_time(self, penetration: float) -> float:
-        """Return the ratio of damping to stiffness along a stiff link, in units of time; 0 for elastic bars."""
+        """Return the ratio of damping to stiffness along a stiff link, in the model's time unit; 0 for elastic bars."""
         if self.bars is not None:
             return 0.0
         return float(2.0 * np.sqrt(self.carried[0] * LINK_COMPLIANCE_RATIO * penetration))
@@ -178,7 +178,7 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Set the stiffness of a link: `shear` (2, 2), `twist`, `stiff` in all other directions; carried: as in `Link`."""
+    """Set a link's stiffness: `shear` (2, 2), `twist`, otherwise `stiff`; carried: mass above, also times x and y."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear

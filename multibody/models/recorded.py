@@ -62,7 +62,7 @@ class RecordedGround:
         return True
 
     def _enter_interval(self, interval: int) -> None:
-        """Set value and rate of the acceleration for interval k, between samples k - 1 and k; 0 precedes the first."""
+        """Set value and rate of the acceleration for interval k, from sample k - 1 to k; 0 is before the first one."""
         if interval == self._interval:
             return
         self._interval, knot = interval, max(interval - 1, 0)
@@ -73,7 +73,7 @@ class RecordedGround:
 
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
-    """Return length and number of steps from `time`, at most `step` and `count`, that end at each sample passed."""
+    """Return length and number of steps from `time`, at most `step` and `count`, where a step ends at each sample."""
     # The time to the next knot is divided into equal steps. Further intervals of the same length can have the same
     # step in the same call of the engine; an interval of another length ends the chunk.
     place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0

@@ -65,9 +65,9 @@ Array = NDArray[np.float64]
 
 def assemble_spatial(scene: Scene, regularization: float | None, *, contact_force: bool = False) -> EngineModel:
     """
-    Assemble the spatial model of a scene in the engine; arguments are those of `assemble_translational`.
+    Assemble the spatial model of a scene, whose bodies rotate on supports that may open, in the engine.
 
-    Raises ValueError if the scene has no data of supports or bodies.
+    Arguments are those of `assemble_translational`. Raises ValueError if the scene has no data of supports or bodies.
     """
     units = units_of(scene)
     geometry = _measure_geometry(scene, units)
@@ -213,7 +213,7 @@ def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, number
 
 
 def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, shared: bool) -> Supports:
-    """Add the spheres of the supports: fixed, on springs to share the load, or free to roll if friction is elastic."""
+    """Add the supports' spheres: fixed, on springs that share the load, or on torsion springs for elastic friction."""
     places = geometry.places
     if scene.dry_friction.elastic:
         moved = SPHERES_MASS if shared else 0.0
@@ -266,7 +266,7 @@ class _SpatialSystem:
         return BODY_COORDINATES * len(self.index)
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
-        """Set the penetration of the contacts under the weight and the compliance of the supports against warping."""
+        """Set the contacts' penetration under the weight and the supports' compliance against warping out of plane."""
         self._set_penetration(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
@@ -277,14 +277,14 @@ class _SpatialSystem:
         return np.array([link.damping_time(penetration) for link in self.links])
 
     def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
-        """Switch off the engine's contacts `is_open` (K,), and set up the others for `penetration`."""
+        """Switch off the engine's contacts `is_open` (K,); set up the others for a `penetration` under the weight."""
         self._set_penetration(penetration)
         for contact in compress(self.contacts, is_open):
             self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
             self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
 
     def _set_penetration(self, penetration: float) -> None:
-        """Set stiffness, damping and radii of all contacts for their penetration under the weight."""
+        """Set stiffness, damping and radii of all contacts for `penetration` under the weight, or that of bearings."""
         pressed = self.bearing_penetration or penetration
         radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
         stated = self.scene.isolator.support_damping
@@ -297,7 +297,7 @@ class _SpatialSystem:
         index, pressed = self.index, self.bearing_penetration or penetration
 
         def set_extent(distance: float) -> None:
-            """Make the contact triangles large enough for a platform that moves by `distance`, in units of length."""
+            """Make the planes' triangles large enough for a platform that moves by `distance`, in units of length."""
             for contact in self.contacts:
                 set_plane_extent(self.mbs, contact, distance, 1.0 + self.radius)
 
@@ -321,7 +321,7 @@ class _SpatialSystem:
         return state
 
     def warping_displacement(self, coordinates: Array) -> Array:
-        """Return the largest warping displacement (T,) of any support, from a plane, for coordinates (T, n)."""
+        """Return the largest distance (T,) of any support from the plane that fits all best, at coordinates (T, n)."""
         vertical = self.body_coordinates + self.supports.vertical
         largest: Array = np.abs(coordinates[:, vertical] @ self.supports.warping).max(axis=1, initial=0.0)
         return largest

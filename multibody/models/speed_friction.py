@@ -73,7 +73,7 @@ class SpeedFriction:
         self._set_coefficients(mbs, 0.0)
 
     def friction_feedback_rate(self, slip: Array) -> Array:
-        """Return the largest rate (T,), of K contacts, at which speed-dependent friction changes slip speeds (T, K)."""
+        """Return the largest rate (T,), over contacts, at which speed-dependent friction changes slip speeds (T, K)."""
         rate: Array = (self._mass_ratio * self.law.steepness(slip) * np.minimum(slip / self._threshold, 1.0)).max(
             axis=1
         )
@@ -104,7 +104,7 @@ class SpeedFriction:
         return True
 
     def _read_speeds(self, contact: Array, velocities: Array) -> list[float]:
-        """Return the speeds on which coefficients depend: slip speeds; the platform's if friction is elastic."""
+        """Return the speeds on which coefficients depend: slip speeds, or the platform's if friction is elastic."""
         if self.law.elastic:
             return [math.hypot(*velocities[:3])] * len(self._add_contacts)
         speeds: list[float] = contact[SLIP_INDEX::DATA_PER_CONTACT].tolist()

@@ -31,7 +31,7 @@ MAX_DETERMINATE_SUPPORTS = 3
 # Stiffness of the springs under the spheres, against heave and tilt, divided by the stiffness of the contacts.
 SPHERE_STIFFNESS_RATIO = 10.0
 
-# Displacement by warping, in units of rho, of a support under its share of the weight; levels of accuracy set others.
+# Displacement of a support out of plane (warping) under its share of the weight, over rho; accuracy levels set others.
 MIN_WARPING_COMPLIANCE = 2e-5
 
 # Mass of all spheres together as a share of the total mass: so small that it hardly affects the motion.
@@ -108,7 +108,7 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set springs by how far contacts penetrate and supports warp, each under the weight, in units of rho."""
+        """Set springs by contact penetration and out-of-plane warping of supports under the weight, in units of rho."""
         stiffness, damping = _sharing_springs(count, penetration, warping_compliance)
         mbs.SetObjectParameter(springs, "stiffnessMatrix", _combine_tilt_and_warping(warped, *stiffness))
         mbs.SetObjectParameter(springs, "dampingMatrix", _combine_tilt_and_warping(warped, *damping))
@@ -119,7 +119,7 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
 def _sharing_springs(
     count: int, penetration: float, warping_compliance: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return two pairs, stiffness and critical damping of the springs: (against heave and tilt, against warping)."""
+    """Return (stiffness, critical damping) of the springs, each a pair: (against heave and tilt, against warping)."""
     stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * warping_compliance)
     return (stiff, soft), (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
@@ -136,7 +136,7 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
     warped = warping_projection(ring) if shared else np.zeros((0, count))
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set springs by how far contacts penetrate and supports warp, each under the weight, in units of rho."""
+        """Set springs by contact penetration and out-of-plane warping of supports under the weight, in units of rho."""
         if not shared:
             return
         block = np.ix_(vertical, vertical)

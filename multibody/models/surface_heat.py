@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 # Temperature is a sum of decays exp(-x^2 t). Spacing of ln x in it: relative error exp(-pi^2 / (2 LOG_SPACING)) = 7e-8.
 LOG_SPACING = 0.3
 
-# Smallest x in this sum, times the square root of the duration: still slower decays hardly add to the temperature.
+# Smallest x in a temperature's sum of decays exp(-x^2 t), times sqrt(duration): slower decays hardly add to it.
 MIN_DECAY_RATE_ROOT = 1e-5
 
 # Share of the duration: heat that was released less than this time before has no effect on the temperature yet.
@@ -29,7 +29,7 @@ KERNEL_CUTOFF_TIME = 1e-6
 
 class _HeatState(NamedTuple):
     """
-    Heat in the contact surfaces at one instant, as shares of exponential decays in time.
+    Heat in the contact surfaces at one instant, divided among exponential decays that make up the temperature.
 
     time: instant, in units of time. shares: heat in each of the decays, W s, (K, X). power: power of friction, W, (K,),
     whether the platform covers the contact or not. distance: of the platform from the center, in units of length.
@@ -54,7 +54,7 @@ class SurfaceHeat:
         self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
-        """Delete heat states after `time`, where a run begins; return whether the friction power then is known."""
+        """Delete heat states after `time`, where a run begins; return whether the friction power at `time` is known."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
             self._kept = [_HeatState(0.0, nothing, nothing[:, 0], 0.0)]

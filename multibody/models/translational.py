@@ -50,7 +50,7 @@ LOCKED_INERTIA = 1e15
 # Radius R of the hollow sphere, in units of rho, chosen freely: in translation only R - r = rho has an effect.
 HOLLOW_RADIUS = 2.0
 
-# Radius r of the sphere, in the model's unit of length (rho, if the slider is not flat).
+# Radius r of the sphere, in the model's unit of length (pendulum length rho = R - r, if the slider is not flat).
 SPHERE_RADIUS = HOLLOW_RADIUS - 1.0
 
 
@@ -62,7 +62,7 @@ def assemble_translational(
     axes: int = 2,
 ) -> EngineModel:
     """
-    Assemble the translational model of a scene in the engine.
+    Assemble the translational model of a scene, whose bodies do not rotate, in the engine.
 
     regularization: v_reg, m/s, of dry friction; None where the contact is lubricated or frictionless. contact_force:
     whether to record it. axes: 1 for a motion in the plane of x and z, in which the bodies above the platform have no
@@ -155,7 +155,7 @@ class _TranslationalSystem:
         return EngineState(coordinates, velocities, contact_data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return `state` with its contact force settled (`settle_contact`), from which to go on with a smaller step."""
+        """Return `state` with the same contact force, by penetration alone, from which to go on with a smaller step."""
         x, y, z = (0.0, 0.0, 0.0) if self.scene.flat else state.coordinates[:3].tolist()
         to_center_of_hollow_sphere = -x, -y, 1.0 - z
         length = math.hypot(*to_center_of_hollow_sphere)

@@ -42,7 +42,7 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """Return units in which total mass, pendulum length rho and g are one; on a plane loading sets the time unit."""
+    """Return units in which total mass, pendulum length rho and g are 1; on a plane the loading sets the time unit."""
     if scene.flat:
         time = min(loading_period(scene), scene.duration) / (2.0 * math.pi)
         return Units(scene.total_mass, GRAVITY * time**2, time)

@@ -31,7 +31,7 @@ ROUNDING_ERROR = 1e-13  # relative rounding error of a natural frequency and of 
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return peak accelerations, m/s^2, and errors, (M, N); largest displacement, m, and if it may reach a limit, (M,).
+    Return peak accelerations, m/s^2, and errors, (M, N); largest displacement, m, and if it may reach its limit, (M,).
 
     The scene is one that `is_linear` allows. Travel ends at phase pairs at which the platform may reach the end of its
     travel, or without one the rim (4.1): such a motion has left the range of the small equations.
@@ -87,7 +87,7 @@ def _harmonic_responses(
 
 
 def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
-    """Return a time derivative, (T,), of (exp(s t) - 1 - s t) / s^2, the displacement under acceleration exp(s t)."""
+    """Return time derivative `order`, (T,), of (exp(s t) - 1 - s t) / s^2, displacement by acceleration exp(s t)."""
     angle = s * time
     if order > 1:
         return np.asarray(s ** (order - 2) * np.exp(angle))

@@ -64,7 +64,7 @@ def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
 
 
 def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray[np.bool_]:
-    """Return True for phase pairs (M, 2), rad, at which the length |v| of the first body may reach `bound`: (M,)."""
+    """Return a mask (M,): phase pairs (M, 2), rad, at which the length |v| of the first body may reach `bound`."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))

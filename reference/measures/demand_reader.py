@@ -78,7 +78,7 @@ class DemandSamples(NamedTuple):
 
     @staticmethod
     def from_motion(motion: Trajectory) -> DemandSamples:
-        """Return the instants and histories of a motion; a history is empty where the motion has none."""
+        """Return the samples of a motion: instants and histories; a history is empty where the motion has none."""
         moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
         support = motion.support_force
         uplift = motion.extra.get("uplift", np.zeros_like(support))

@@ -25,16 +25,16 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
-# Coordinates along each axis of a search's square at which a polynomial is evaluated: first grid, and finer grids
+# Coordinates along each axis of a search's square region at which a polynomial is evaluated: first, and finer grids
 COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids that locate the maximum of the interpolant, each finer than the grid before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
-# A square keeps its size and moves if its best phase pair is farther from its center than this share of its half width
+# A search's square keeps its size and moves if its best phase pair is this share of its half width off center, or more
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of a search's square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # a prediction is good if it errs by at most this share of the square's value range
-FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a square's half width after a good and after a poor prediction
+MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction, over the range of values in a search's square
+FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a search region's half width after a good and a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
 # values in its square, or by more than GAIN_FACTOR times what its LATEST_ROUNDS rounds gained: next to a jump even a
 # small square has a large range.
@@ -52,7 +52,7 @@ CLEAR_FALL = 10.0  # a fall shows the kind of a maximum if it is larger than thi
 
 @dataclass(frozen=True)
 class ComputedPhases:
-    """Values of a surface computed at M phase pairs, as numerator and denominator; NaN where the run gave no answer."""
+    """Values of a surface computed at M phase pairs, as numerator and denominator; NaN where a run gave no result."""
 
     phases: Array  # (M, 2), rad
     numerator: Array  # (M,), largest acceleration of the body, m/s^2, or displacement, m
@@ -61,7 +61,7 @@ class ComputedPhases:
 
     @cached_property
     def value(self) -> Array:
-        """Quotient of numerator and denominator, -inf for a pair without an answer."""
+        """Quotient of numerator and denominator; -inf for a phase pair whose run gave no result."""
         return np.where(np.isfinite(self.numerator), self.numerator / self.denominator, -np.inf)
 
     def select(self, places: slice) -> ComputedPhases:
@@ -101,7 +101,7 @@ class Surface:
 
 @dataclass(eq=False)
 class LocalSearch:
-    """A search for a maximum: its best phase pair so far, and the square of phases around it to compute next."""
+    """A search for a maximum: its best phase pair so far, and the square region of phases around it to compute next."""
 
     phases: Array  # (2,), rad, best phase pair so far
     value: float
@@ -119,7 +119,7 @@ class LocalSearch:
             self.phases, self.value, self.error = points.phases[top], float(points.value[top]), float(points.error[top])
 
     def may_reach(self, highest: float) -> bool:
-        """Return True if the search shall go on: its square is not too small and may contain a value of `highest`."""
+        """Return True if the search shall go on: its region is not too small and may contain the value `highest`."""
         promise = PROMISE_FACTOR * self.value_range
         if len(self.history) > LATEST_ROUNDS:
             promise = min(promise, GAIN_FACTOR * (self.value - self.history[-1 - LATEST_ROUNDS][1]))
@@ -127,7 +127,7 @@ class LocalSearch:
 
     @property
     def recent_gain(self) -> float:
-        """Increase of the search's best value while its square shrank by the last factor of ten."""
+        """Increase of the search's best value while its square region shrank by the last factor of ten."""
         width, value = self.history[-1]
         return value - next((before for wide, before in reversed(self.history) if wide >= 10.0 * width), value)
 
@@ -141,7 +141,7 @@ def make_square_nodes(nodes: int) -> tuple[Array, Array]:
 
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance all searches by one round: compute the phase pairs of each square, then the best pair they predict."""
+    """Advance all searches one round: compute the surface in each square of phases, then at its predicted maximum."""
     # All searches share two calls of the solver, which computes their pairs in parallel. A prediction is good if the
     # value computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly
     # and with more nodes. A search ends where neither the values of its square nor the prediction differ by more than
@@ -169,7 +169,7 @@ def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
 
 
 def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) -> tuple[Array, float]:
-    """Return the phase pair in a search's square with the largest interpolated value of the surface, and this value."""
+    """Return the phase pair in a search's square region with the largest interpolated value, and this value."""
     known = np.isfinite(square.numerator)
     if not known.any():
         return search.phases, -np.inf
@@ -178,7 +178,7 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
     coefficients = (make_square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
 
     def predicted_amplification(first: Array, second: Array) -> Array:
-        """Return the interpolated numerator over the exact denominator at coordinates in [-1, 1] of the square."""
+        """Return interpolated numerator over exact denominator at coordinates in [-1, 1] of the search's square."""
         phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
         denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
@@ -225,7 +225,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
     center, half_width = search.phases, JUMP_SEARCH_HALF_WIDTH
 
     def value(first: Array, second: Array) -> Array:
-        """Return the computed values at coordinates in [-1, 1] of the square; move the search to the best pair."""
+        """Return the computed values at coordinates in [-1, 1] of a square of phases; move the search to the best."""
         phases = center + half_width * np.stack([first, second], axis=-1)
         points = surface.compute(phases.reshape(-1, 2))
         search.move_to_best(points)
@@ -239,7 +239,7 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
 
 
 def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
-    """Return searches, one for each maximum; shifted: shifts of phases, (K, 2), rad, that keep all values."""
+    """Return searches, one for each maximum; shifted: shifts of phases, (K, 2), rad, that keep the surface equal."""
     kept: list[LocalSearch] = []
     for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:

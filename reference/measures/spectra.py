@@ -100,7 +100,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     series = _power_series(damping)
 
     def spectra(motion: Trajectory, first: int = 0, every: int = 1) -> Array:
-        """Return the floor spectra of a motion, from every n-th sample beginning with `first`, and both ends."""
+        """Return floor spectra of a motion from the samples `first`, `first` + `every`, ... and both end samples."""
         last = len(motion.time) - 1
         kept = np.arange(last + 1) % every == first
         kept[[0, last]] = True
@@ -234,7 +234,7 @@ def _check_periods(periods: ArrayLike) -> Array:
 @cache_on_disk(__file__, nogil=True)
 def _largest_accelerations(time: Array, floor: Array, period: Array, damping: float, series: Array) -> Array:
     """
-    Return the largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors (T, C), m/s^2.
+    Return the largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors with acceleration (T, C), m/s^2.
 
     y'' + 2 damping y' + y = -floor, with y the displacement times the square of the natural frequency and derivatives
     by the angle. `series` is that of `_power_series`.

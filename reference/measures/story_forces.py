@@ -150,7 +150,7 @@ def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterato
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
-    """Return a function for the sum of acceleration times `weights` (kg or kg m) of a body and all above, (T, 2)."""
+    """Return a function that sums acceleration times `weights` (kg or kg m) over a body and all above it, (T, 2)."""
     return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 

@@ -87,7 +87,7 @@ def _check_table(value: Any) -> Any:
 
 class Acceptance(Limits):
     """
-    Limits for `--check`: a table for each pair of models; limits outside these tables count for `like_for_like`.
+    Limits for `--check`: a table per pair of models; limits in no table hold for `like_for_like` (same friction law).
 
     Any other table has the name of an engine of the user: its limits against the equations with the same friction law.
     """
@@ -154,7 +154,7 @@ class Acceptance(Limits):
 
     @property
     def allowed_failures(self) -> int | None:
-        """Number of points that may lack an answer: as stated, or else 0 if there are other limits; otherwise None."""
+        """Number of phase pairs that may lack a result: as stated, or else 0 with other limits and None without any."""
         return (
             0 if self.failed is None and (self.list_limited_differences() or self.closure is not None) else self.failed
         )

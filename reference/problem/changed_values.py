@@ -98,7 +98,7 @@ def _changed_key(change: str) -> str:
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
-    """Set the value at a dotted key in nested tables that have these valid keys; None removes it. Raises SceneError."""
+    """Set a value at a dotted key in nested tables (None removes it); keys: valid ones by table. Raises SceneError."""
     key, value = _put_in_record(scene, data, key, value)
     parts = key.split(".")
     place: Any = data

@@ -28,7 +28,7 @@ MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 @require_scene
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     """
-    Return the largest ground acceleration over the duration, the denominator of (5.1).
+    Return the largest ground acceleration over the duration, the denominator of the amplification (5.1).
 
     Parameters
     ----------

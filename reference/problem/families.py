@@ -51,8 +51,8 @@ if TYPE_CHECKING:
 ALL_MOTIONS = "all"  # value of the key `motion` that stands for every motion of a suite
 MOTION_KEY = ("excitation", "record", "motion")  # path of the key that chooses a motion of a suite
 COMBINATIONS = ("product", "zip")  # ways to combine keys: all combinations of values, or the n-th values of all keys
-MAX_SCENES = 1000  # largest number of scenes in a family
-MAX_BODIES_IN_ALL = 50_000  # largest number of bodies in all scenes of a family together
+MAX_SCENES = 1000  # largest number of scenes that one file defines
+MAX_BODIES_IN_ALL = 50_000  # largest number of bodies in all scenes of one file together
 MAX_KEYS = 20  # largest number of keys of a file that have several values
 BOUNDS_KEY = "isolator.bounds"  # key with two factors of friction, each of which makes a scene
 BOUND_NAMES = ("lower bound", "upper bound")  # names of the scenes with the smaller and the larger friction
@@ -193,7 +193,7 @@ def with_bounds(data: dict[str, Any], bounds: tuple[float, float] | None) -> dic
 
 
 def make_family(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
-    """Return the family that a file's tables define; `label` names the file in errors. Raises as `load_family`."""
+    """Return the family of scenes that a file's tables define; `label` names it in errors. Raises as `load_family`."""
     name, combine = Path(label).stem, data.get("combine")
     wrong: list[SceneError] = []
     tables, bounds, running, places = _find_running_keys(data, label, wrong)
@@ -393,7 +393,7 @@ def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter]
 
 
 def _check_bodies(label: str, bodies: Any, scenes: int) -> None:
-    """Raise SceneError for a family with too many bodies, before its scenes are made."""
+    """Raise SceneError if the scenes of a file have too many bodies in all, before these scenes are made."""
     count = len(bodies) if isinstance(bodies, list) else 0
     if count * scenes > MAX_BODIES_IN_ALL:
         rule = (

@@ -128,7 +128,7 @@ class DryFriction:
 
     def at(self, speed: ArrayLike, load: ArrayLike = 1.0) -> NDArray[np.float64]:
         """
-        Return the friction coefficient at slip speeds and normal forces.
+        Return the friction coefficient at slip speeds, m/s, and normal forces over the weight.
 
         Parameters
         ----------

@@ -89,8 +89,8 @@ def _check_text(text: str) -> str:
 
 
 Text = Annotated[str, AfterValidator(_check_text)]  # text without control characters
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
+Positive = Annotated[float, Field(gt=0.0)]  # number above 0
+NonNegative = Annotated[float, Field(ge=0.0)]  # number of 0 or more
 # JSON has no infinity: an infinite radius is the text "inf" there
 Radius = Annotated[
     float,
@@ -116,7 +116,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
-        """Require the numbers of a key, also in lists, to lie in its range; not in lists that are its other form."""
+        """Require the numbers of a key, in lists too, to lie in its range, but not in lists that are its other form."""
         said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])

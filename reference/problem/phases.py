@@ -48,7 +48,7 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
 
 def grid_axes(phases: Array) -> tuple[Array, Array] | None:
     """
-    Return the two axes (A,) and (B,), rad, of a grid of phases (A, B, 2) or (A B, 2).
+    Return the two axes (A,) and (B,), rad, of a grid of phases (A, B, 2) or (A B, 2); None for other phases.
 
     None if the pairs are no grid of at least 2 x 2 whose alpha_2 runs fastest.
 

@@ -34,7 +34,7 @@ LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digi
 
 def check_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
-    Return position and velocity (N, 2) of an initial `State`, inside rim and travel. Raises ValueError, one line.
+    Return position and velocity (N, 2) of an initial `State`, inside radius and travel. Raises ValueError, one line.
     """
     rule = f"must have finite position and velocity of shape ({bodies}, 2)"
     try:

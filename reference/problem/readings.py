@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from reference.problem.scene import Scene
 
-AS_INTEGRATED = "as integrated"  # meaning of the peak in (5.1): what an integration in time resolves
+AS_INTEGRATED = "as integrated"  # definition of the peak in (5.1): what an integration in time resolves
 """The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
-LITERAL_SUPREMUM = "literal supremum"  # meaning of the peak in (5.1): limit of vanishing slip speed
+LITERAL_SUPREMUM = "literal supremum"  # definition of the peak in (5.1): limit of vanishing slip speed
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
-BOTH_READINGS = "in both readings"  # both meanings of the peak in (5.1) agree, as there is no dry friction
+BOTH_READINGS = "in both readings"  # both definitions of the peak in (5.1) agree, as there is no dry friction
 """Reading of a factor without dry friction, which is the same as integrated and as literal supremum."""
 DEFAULT_V_REG = 1e-3  # m/s, slip speed below which regularized friction is linear
 """Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity on both sides."""
@@ -22,7 +22,7 @@ SECOND_V_REG_RATIO = 0.1  # second regularization speed over the first, to see t
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
-    """Return how the peak in (5.1) is taken, in words; "" without rigid dry friction, where both ways agree."""
+    """Return how the peak in amplification (5.1) is taken, in words; "" if both ways agree: no rigid dry friction."""
     if not scene.has_dry_friction:
         return ""
     return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED
@@ -35,7 +35,7 @@ def describe_law(
     effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> str:
     """
-    Describe the friction law of a result, and the effect of regularization that its error does not cover.
+    Describe the friction law of a result, and the change by regularization that the result's error does not cover.
 
     effect: what a tenth of v_reg changes in the amplification and in the displacement, m, where that was computed.
     """

@@ -16,7 +16,7 @@ from reference.problem.excitation import exponents
 from reference.problem.scene import Scene
 from reference.support.constants import GRAVITY
 
-# Largest phase, rad, of the fastest vibration in a motion that is summed from harmonics: longer ones are integrated
+# Largest phase, rad, of the fastest vibration in a motion that is summed from harmonics: longer motions are integrated
 MAX_VIBRATION_ANGLE = 2e5
 RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # reason why a scene with a record permits no reduction
 
@@ -26,13 +26,13 @@ LOAD_SHIFT_FACTOR = 2.0  # safety factor on the shift of the supports' load, com
 
 @dataclass(frozen=True)
 class Reduction:
-    """Answer whether a scene permits leaving out a part of the computation, with the reason; true if it does."""
+    """Whether a scene permits leaving out a part of the computation, with the reason; true if it does."""
 
     allowed: bool
     reason: str
 
     def __bool__(self) -> bool:
-        """Return True if the work may be left out."""
+        """Return True if the part of the computation may be left out."""
         return self.allowed
 
 

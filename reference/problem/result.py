@@ -29,7 +29,7 @@ AXIS_LABELS = {  # quantities that `Trajectory.plot` draws, and the labels of th
 
 
 def _count_statuses(status: NDArray[np.str_]) -> list[str]:
-    """Return the number of points with each status, as texts."""
+    """Return texts with the number of phase pairs of each status."""
     return [f"{count} {name}" for name, count in zip(*np.unique(status, return_counts=True))]
 
 
@@ -188,7 +188,7 @@ class Amplification:
 
     def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
         """
-        Draw amplification mu_i of a grid of phases as a surface, with scene, body, model and reading of (5.1) above it.
+        Draw amplification mu_i (5.1) on a grid of phases as a surface; title: scene, body, model, reading of the peak.
 
         Parameters
         ----------
@@ -422,7 +422,7 @@ class Accuracy:
 
     def error_of(self, value: float, others: Sequence[float], scale: float | None = None) -> float:
         """
-        Return the estimated absolute error of a number that is read from the motion.
+        Return the estimated absolute error of a number read from the motion; others: the same from less accurate runs.
 
         Parameters
         ----------

@@ -38,7 +38,7 @@ LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NEST
 
 def builtin_scenes() -> list[str]:
     """
-    Return names of the paper's own cases, in the order of its figures.
+    Return names of the built-in scenes, the paper's own cases, in the order of its figures.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
 
 
 def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
-    """Return the scene of these tables after reading its record; `label` names it in errors. Raises SceneError."""
+    """Return the scene that tables state, after reading its record; `label` names it in errors. Raises SceneError."""
     unread = None
     try:
         tables = load_record_samples(data, label)

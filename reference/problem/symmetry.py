@@ -26,7 +26,7 @@ def find_half_turns(scene: Scene) -> NDArray[np.intp]:
 
 
 def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """Return for every phase pair of a grid, (grid^2,), the index of the pair of equal amplification to be solved."""
+    """Return for every phase pair of a grid, (grid^2,), the index of the pair of equal amplification solved for it."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = find_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
@@ -44,7 +44,7 @@ def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
 def complete_surface(
     scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]
 ) -> tuple[Array, Array, list[str]]:
-    """Return amplification and error (grid, grid, N) on a grid of phases from the fewest pairs, and all statuses."""
+    """Return amplification and error (grid, grid, N) on a grid of phases from fewest phase pairs, and all statuses."""
     phases, taken = distinct_pairs(scene, grid)
     answer = solve(scene, phases)
     return answer.mu[taken], answer.error[taken], sorted(set(map(str, answer.status)))

@@ -62,9 +62,10 @@ Damping = Annotated[  # damping of a link: ratio of critical, or [cx, cy] in N s
     BeforeValidator(_check_damping),
 ]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]  # [x, y], or one number per harmonic
-PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
-NonNegativePair = Annotated[list[NonNegative], Field(min_length=2, max_length=2)]
+PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]  # positive [x, y], or one for each harmonic
+NonNegativePair = Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  # 0 or more, for each harmonic
 Edges = Annotated[list[Positive], Field(min_length=3, max_length=3)]  # edges of a box along x, y and z
+# Position of a support in a scene file: [x, y], m, each in SUPPORT_POSITION_RANGE
 Position = Annotated[list[Annotated[float, range_validator(SUPPORT_POSITION_RANGE)]], Field(min_length=2, max_length=2)]
 Supports = Annotated[  # number of supports, or their positions
     Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORT_FORMS[0])]
@@ -141,7 +142,7 @@ class Isolator(Table):
         return len(self.supports) if isinstance(self.supports, list) else self.supports
 
 
-MIN_SPREAD_BARS = 3  # smallest number on a ring: fewer bars are not equally stiff in bending about all directions
+MIN_SPREAD_BARS = 3  # smallest number of bars on a ring: fewer are not equally stiff in bending about all directions
 
 
 class Bars(Table):

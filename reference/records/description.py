@@ -119,7 +119,7 @@ class RecordDescription:
 
     @property
     def largest_peak(self) -> float:
-        """The largest peak of its horizontal directions, times the scale, m/s^2."""
+        """The largest peak of the record's horizontal directions, times the scale, m/s^2."""
         return abs(self.scale) * max((one.peak for one in self.directions if one.axis != "z"), default=0.0)
 
     @property
