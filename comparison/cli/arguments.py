@@ -107,7 +107,7 @@ def read_number(option: str, text: str, least: float, most: float, unit: str) ->
 
 
 def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most: Value, rule: str) -> Value:
-    """Return the number that the text of an option states; raise SceneError if none or outside [least, most]."""
+    """Return the number that an option's text states; raise SceneError if it is none or outside [least, most]."""
     try:
         value = kind(text)
     except ValueError:
@@ -119,7 +119,7 @@ def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most
 
 @contextmanager
 def report_write_errors(folder: Path, option: str = "--out") -> Iterator[None]:
-    """Turn a write error of the `with` block into an early end with code 3; option: that names the folder."""
+    """Turn a write error of the `with` block into an early end with code 3; option: the one that names the folder."""
     try:
         yield
     except OSError as error:
@@ -195,7 +195,7 @@ def edit_command_line(
 
 
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return a line: where finished results are kept and how to compute the rest. batches: number of all batches."""
+    """Return a line: where finished results are kept, how to compute the rest. batches: how many there are in all."""
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT_KIND]
     if batches is None:

@@ -22,7 +22,7 @@ from reference.support.arguments import name_some
 
 FIRST_SENTENCES = 8  # largest number of headlines that the terminal shows after an intermediate level of a run
 FILMED_MODELS = ("translational", "spatial")  # keys of the models that multibody.animate can film
-ALERT_LABELS = {  # first words of an alert's line on the terminal, by kind
+ALERT_LABELS = {  # first words of an alert's line on the terminal, by kind of alert
     "refused": "No answer",
     "limit": "Limit broken",
     "lacking": "Values missing",
@@ -53,7 +53,7 @@ def print_check(results: Results, scenes: Sequence[Scene]) -> None:
 
 
 def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
-    """Return a line: limits on demands are checked by another command, with its name; none without such limits."""
+    """Return a line that names the command that checks the scenes' limits on demands; none without such limits."""
     stated = [scene.name for scene in scenes if scene.acceptance.demands is not None]
     if not stated:
         return []

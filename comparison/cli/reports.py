@@ -34,7 +34,7 @@ MIN_REPORT_INTERVAL = 3.0  # s, shortest time from one report of a run to the ne
 
 @dataclass(frozen=True)
 class CompleteLevel:
-    """Level (grid of phases) of a run whose results are all computed; study: without models that have no values."""
+    """Level (grid of phases) of a run, with all results computed; study: without models that have no values."""
 
     level: StudyLevel
     study: Study
@@ -43,7 +43,7 @@ class CompleteLevel:
 
 
 def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
-    """Compute a level: surfaces of amplification, analyses without need of them, then those that need them."""
+    """Compute a level (grid of phases): amplification surfaces, analyses that need none, then those that need them."""
     analyses = select_analyses(level.study)
     tasks = make_surface_tasks(level.study)
     runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
@@ -57,7 +57,7 @@ def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
 
 class ReportWriter:
     """
-    Writer of the report of each level of a run.
+    Writer of the report of each level (grid of phases) of a run.
 
     jobs: workers. began: when the run began. place: where the reports are: next to the folder of the options if that
     holds something else. results: what the last one says; None before the first. level: whose report it is. seconds:
@@ -75,13 +75,13 @@ class ReportWriter:
 
     def is_due(self, complete: CompleteLevel, runner: Runner) -> bool:
         """
-        Return whether to write the report of an intermediate level: if it has new results and no report is recent.
+        Return whether an intermediate level's report is to be written: it has new results, and no report is recent.
         """
         new = any(task.key not in runner.results.stored for task in complete.tasks)
         return new and time.monotonic() - self._last >= MIN_REPORT_INTERVAL
 
     def write(self, complete: CompleteLevel, runner: Runner) -> Results:
-        """Write the report of a level and return its results."""
+        """Write the report of a level (grid of phases) and return the level's results."""
         from comparison.report.writing import write_report  # late: plotting libraries are not needed to refuse or plan
 
         begin = time.monotonic()
@@ -111,7 +111,7 @@ class ReportWriter:
             self.write(replace(complete, study=study), runner)
 
     def _report(self, complete: CompleteLevel, runner: Runner) -> Report:
-        """Return the content of a level's report: study, surfaces, results of analyses, and facts of the run."""
+        """Return the content of the report on a level (grid of phases): study, surfaces, analyses, facts of the run."""
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {

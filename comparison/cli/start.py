@@ -32,7 +32,7 @@ ENVIRONMENT = {"NUMBA_NUM_THREADS": (1, 10**6), "SOURCE_DATE_EPOCH": (0, 253_402
 
 # Environment variables that Numba hands to its compiler (LLVM), by the compiler's argument; it alone can check them
 COMPILER_VARIABLES = {"cpu": "NUMBA_CPU_NAME", "features": "NUMBA_CPU_FEATURES"}
-# Program that makes the compiler check one of them: the compiler reports a wrong value on standard error
+# Program that makes the compiler check one of COMPILER_VARIABLES: the compiler reports a wrong value on standard error
 COMPILER_QUESTION = """
 import os, llvmlite.binding as binding
 binding.initialize_native_target()
@@ -83,7 +83,7 @@ class Clock(NamedTuple):
         return cls(time.monotonic(), sum(os.times()[:4]) + _read_processor_time_of_children())
 
     def since(self, earlier: Clock) -> Clock:
-        """Return the wall time and processor time that passed since an earlier reading."""
+        """Return the wall time and processor time that passed since an earlier reading of the clock."""
         return Clock(self.wall - earlier.wall, self.processor - earlier.processor)
 
 
@@ -97,7 +97,7 @@ def _read_processor_time_of_children() -> float:
     return seconds
 
 
-_started: list[Clock] = []  # times at which this process's command started; else empty
+_started: list[Clock] = []  # the time at which this process's command started, until it is read; else empty
 
 
 def find_command_start() -> Clock:

@@ -52,7 +52,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
 
 
 def _print_models(console: Console, study: Study, families: Sequence[Family]) -> None:
-    """Print a table with a row for each scene file and model: number of phase pairs, of those computed, tolerance."""
+    """Print a table with a row for each scene file and model: phase pairs, how many are computed, tolerance."""
     table = make_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
     for family in families:
         for model in study.hierarchy:
@@ -86,7 +86,7 @@ def _print_levels(console: Console, study: Study) -> None:
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
-    """Print how many results are stored by an earlier run. batches: tasks of surfaces. others: tasks of analyses."""
+    """Print how many results an earlier run stored. batches: tasks for the surfaces. others: tasks of analyses."""
     stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
     if results.cache is not None and stored + analyses:
         rest = f", {analyses} of {len(others)} analyses" if others else ""
@@ -124,7 +124,7 @@ def print_records(
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """Print motions and buildings as read, with warnings, and which scenes lack data for the spatial model."""
+    """Print motions and buildings as read, with warnings, and why scenes cannot be computed by the spatial model."""
     print_records(console, [("", scene) for scene in study.scenes])
     print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:

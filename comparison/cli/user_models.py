@@ -41,7 +41,7 @@ MODEL_SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED_NAME}:{DOTTED_NA
 TAKEN_NAMES = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
 MAX_IMPORT_SECONDS = 60.0  # s, largest processor time to import a user's engine
 
-Engines = Mapping[str, str | Callable[..., Any]]  # functions of the user, or their import paths, by name
+Engines = Mapping[str, str | Callable[..., Any]]  # a user's functions, or their import paths, by name of the engine
 _make_refusal = partial(SceneError, "command line", MODEL_OPTION)  # makes a SceneError on --model from value, rule
 
 
@@ -101,7 +101,7 @@ def word_engine_options(engines: Engines) -> list[str]:
 
 
 def _split_spec(spec: str) -> tuple[str, str, str]:
-    """Split a value of --model; return name, import path of the function, and key of the model it is compared with."""
+    """Split a value of --model into name, import path of the function and key of the model to compare with."""
     match = MODEL_SPEC.fullmatch(spec)
     if match is None:
         raise _make_refusal(spec, f"must be {MODEL_FORM}, as mine=my_engine:amplification")
@@ -130,7 +130,7 @@ def _inspect_function(spec: str, path: str) -> dict[str, Any]:
 
 
 def inspect_in_worker(path: str) -> tuple[str, dict[str, str]]:
-    """Import a user's function in a worker process; return why it cannot be used, or "", and facts such as versions."""
+    """Import a user's function in a worker process; return why it cannot be used (or "") and facts such as versions."""
     module, name = path.split(":")
     with silence_output():
         try:

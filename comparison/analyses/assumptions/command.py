@@ -34,7 +34,7 @@ ENGINE = "multibody:amplification"  # import path of the engine function that th
 
 @command
 def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
-    """Print how the amplification changes when supports and bodies of each scene are varied; return the exit code."""
+    """Print how each scene's amplification changes if its supports and bodies are varied; return the exit code."""
     parser = CommandParser(
         "assumptions",
         "How far mu_i of the spatial model is from the translational one, over rings, heights, ovals, offsets, angles.",

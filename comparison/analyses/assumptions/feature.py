@@ -55,6 +55,7 @@ def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
     return panels
 
 
+# Field of summary.json with the result of this analysis
 FOUND = ResultField(Assumptions.key, Validity, "how far the paper's assumptions hold; null without a spatial model")
 
 
@@ -82,6 +83,7 @@ def assumption_verdict(results: Results) -> str:
     return describe_verdict(FOUND.read_from(results))
 
 
+# Registration of this analysis with the program: field of summary.json, computation, section of the report
 FEATURE = Feature(
     Assumptions.key,
     (FOUND,),

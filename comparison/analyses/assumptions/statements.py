@@ -21,8 +21,8 @@ from reference.problem import Scene
 
 NO_EFFECT = "no effect by symmetry"  # text in place of a change of amplification that a symmetry makes zero
 Base = Literal["the translational model", "the stated spatial model"]  # model that a change is relative to
-TRANSLATIONAL: Base = "the translational model"
-STATED: Base = "the stated spatial model"
+TRANSLATIONAL: Base = "the translational model"  # base of a change of amplification, as a sentence names it
+STATED: Base = "the stated spatial model"  # base of a change: spatial model, building as the scene states it
 SHARE = CHANGE_LIMITS[0]  # largest relative change of a body's amplification with which an assumption holds
 
 
@@ -41,7 +41,7 @@ class Change:
 
     @property
     def verdict(self) -> str:
-        """Return "met" if the change plus its error is at most SHARE, else "not met (by ...)" or "not compared"."""
+        """Return "met" if |change| plus error is at most SHARE (1 %), else "not met (by ...)" or "not compared"."""
         if self.no_effect or not math.isfinite(self.size + self.error):
             return "not compared"
         if hides_limit(abs(self.size), self.error, SHARE):
@@ -51,7 +51,7 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return a body's largest change of amplification over the phase pairs; base: `stated`, or translational model."""
+    """Return a body's largest change of amplification over phase pairs, from `stated` or (None) translational model."""
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
@@ -80,8 +80,8 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Five phrases by varied quantity: the amplification is off its limits at the first size; is within them at zero only;
-# is within them up to {holds}; is off them at {fails}; is within them at all sizes tried
+# Five phrases by varied quantity: the change of amplification exceeds its limit at the first size; is within it only at
+# zero; is within it up to {holds}; exceeds it at {fails}; is within it at all sizes tried
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
              "at {fails:g} m", "every smaller one tried too"),
@@ -173,7 +173,7 @@ def _word_worst(trial: DirectionTrial) -> str:
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
-    """Return a line each for oval, offset and yaw: the amplification's change at the first size, worst direction."""
+    """Return a line each for oval, offset and yaw: change of amplification at the first size in the worst direction."""
     lines = []
     for key in DIRECTED:
         trials = [each for each in found.directions if (each.scene, each.key) == (scene.name, key)]
@@ -190,7 +190,7 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
-    """Return a line: how shortening of bars changes the amplification; none unless both UNDER_LOAD were computed."""
+    """Return a line: how shortening of loaded bars changes the amplification; none unless computed with and without."""
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
@@ -214,7 +214,7 @@ def assumption_lines(found: Validity, scene: Scene) -> list[str]:
 
 
 def list_turning_changes(found: Validity, scene: str) -> list[Change]:
-    """Return how rotation of bodies changes each amplification in the scene as stated; empty if it was not computed."""
+    """Return the change of each body's amplification by rotation of bodies, scene as stated; empty if not computed."""
     stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
     return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
 

@@ -37,7 +37,7 @@ BISECTION_RATIO = 1.25
 
 @dataclass(frozen=True)
 class Trial:
-    """Amplification mu and error, (M, N), of N bodies at M phase pairs, scene varied (None: as stated); cost in s."""
+    """Amplification mu and error, (M, N), of N bodies at M phase pairs in a varied scene (None: as stated); cost, s."""
 
     variation: Variation | None
     mu: Array
@@ -67,19 +67,19 @@ class DirectionTrial:
 
 @dataclass(frozen=True)
 class TaskTrials:
-    """Results of one task: a trial of each variation, the directions compared before, and an error message or ""."""
+    """Results of one task: trials of variations, directions tried to find the worst one, and an error message or ""."""
 
     trials: tuple[Trial, ...]
     directions: tuple[DirectionTrial, ...] = ()
     error_message: str = ""
 
 
-# Arguments of a task: scene, both engine models, variation or varied axes, tolerance, phase pairs, most sizes tried
+# Task arguments: scene, both engine models, variation or varied axes, tolerance, phase pairs, largest number of sizes
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
-    """Compute (in a worker process) amplifications for one variation, or several sizes in each worst direction."""
+    """In a worker, compute amplifications for one variation, or sizes of each quantity in its worst direction."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
     short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # keep its name as key
     pairs = np.array(phases)
@@ -164,7 +164,7 @@ def follow_direction(
 
 def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
     """
-    Return the next size of a variation to try in bracketing the sizes at which CHANGE_LIMITS are exceeded; or None.
+    Return the next size of a variation to try, to bracket the sizes at which changes exceed CHANGE_LIMITS; or None.
 
     tried: sizes, each with the largest change of amplification of every body plus its uncertainty, NaN for no value.
     """

@@ -72,7 +72,7 @@ class AssumptionCell:
 
 @result
 class ValidityRange:
-    """Range of a varied quantity in which a body's amplification stays within a share of the translational result."""
+    """Range of a varied quantity in which a body's amplification is within `share` of the translational result."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -131,7 +131,7 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
 
 
 def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any, bool]:
-    """Return the last size whose change is within `share`, the first that is not, and whether that one is unknown."""
+    """Return the last size with changes within `share`, the next (beyond or unknown), and whether that is unknown."""
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     fails, cell = line[len(held)] if len(held) < len(line) else (None, None)
     untold = cell is not None and hides_limit(cell.largest(body), cell.error_estimate(body), share)
@@ -154,6 +154,7 @@ class Assumption:
     falsified_by: Annotated[str, "what would have shown that mu does not bear it"]
 
 
+# The paper's assumptions (i) to (vi), with what the engine's models do with each, and what would refute it
 ASSUMPTIONS = (
     Assumption(
         "(i)",
@@ -239,7 +240,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
-        Yield the arguments of every task, in scenes with phases that both engine models apply to: one per variation.
+        Yield task arguments in each scene with phases that both engine models apply to: a task per variation or group.
 
         First None, the translational model of the scene itself, then the variations of the spatial one, then groups of
         axes along whose worst direction sizes are tried: one task each. UNDER_LOAD is added where bars give way.
@@ -277,7 +278,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
-    """Return the change of amplification from `plain`, the translational model, to `trial`; symmetry named if zero."""
+    """Return the change of amplification from `plain` (translational model) to `trial`; if symmetry makes it 0, why."""
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""

@@ -60,16 +60,16 @@ class Variation:
         return scene.with_values(values)
 
 
-FEW = (  # variations of ring and height that a study computes in each scene
+FEW = (  # variations that a study computes in each scene: ring radius and heights, times the stated ones
     *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
     Variation(height=0.0),
 )
-MANY = (  # variations that the command `phase-resonance assumptions` computes in each scene
+MANY = (  # variations that `phase-resonance assumptions` computes: ring, heights (times the stated ones), 3 supports
     *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
     *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring (0.5) buildings overturn.
     Variation(supports=3),
 )
-UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # load effects tried if bars are compliant
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # effects of weight, tried on compliant bars
 
 Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # quantity of the building that is varied
 DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # varied in several directions to find the worst one

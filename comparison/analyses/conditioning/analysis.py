@@ -42,8 +42,8 @@ MAX_GRID = 16  # largest number of phases alpha1, and as many alpha2, for the sm
 SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # m/s, cutoff speeds
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, regularization speeds of the friction law
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
-MAX_YIELDING_GRID = 8  # as MAX_GRID, for exact equations with elastic-plastic friction
-OTHER_DAMPING = 0.05  # damping ratio of all links in a second curve over u_y of undamped scenes; 0 for damped ones
+MAX_YIELDING_GRID = 8  # largest number of phases per axis, for exact equations with elastic-plastic friction
+OTHER_DAMPING = 0.05  # damping ratio of all links in a second curve over u_y of an undamped scene; of a damped one 0
 # rad, phase pairs for the engine and the exact equations; no symmetry makes two of them equivalent
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
 ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harmonic: in these the loading is strongest
@@ -51,7 +51,7 @@ ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harm
 
 @result
 class ConditioningCurve:
-    """Statistics over phases of one body's amplification, at falling v_c, v_reg or u_y; at 0: of the supremum."""
+    """Statistics over phases of a body's amplification at falling cutoff, v_reg or yield displacement; 0: supremum."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -93,7 +93,7 @@ def has_yielding_friction_below_links(scene: Scene) -> bool:
 
 class Question(NamedTuple):
     """
-    Model whose amplification is computed at ever smaller v_c, v_reg or u_y, and the keyword that sets these.
+    Model whose amplification is computed at ever smaller cutoff, v_reg or yield displacement, and keyword that sets it.
 
     max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a grid. otherwise: whether the links
     are damped by another ratio than the scene's.
@@ -110,16 +110,16 @@ class Question(NamedTuple):
     otherwise: bool = False
 
     def speeds_of(self, scene: Scene) -> tuple[float, ...]:
-        """Return the speeds, m/s, or yield displacements, m (with the scene's own), at which the model is computed."""
+        """Return speeds, m/s, or yield displacements, m, the scene's own included, at which the model is computed."""
         own = self.own_yield(scene)
         return self.speeds if own is None else tuple(sorted({*self.speeds, own}, reverse=True))
 
     def own_yield(self, scene: Scene) -> float | None:
-        """Return the scene's own yield displacement, m, if this question varies yield displacements; else None."""
+        """Return the scene's own yield displacement, m, if yield displacements are what is varied; else None."""
         return float(f"{scene.yield_displacement:.9g}") if self.argument == "yield_displacement" else None
 
     def damping_of(self, scene: Scene) -> float | None:
-        """Return the damping ratio of every link that replaces the scene's in this question; None if none does."""
+        """Return the damping ratio that replaces the scene's own in every link; None if the scene's own stays."""
         return (0.0 if scene.damping.any() else OTHER_DAMPING) if self.otherwise else None
 
     def with_damping(self, scene: Scene) -> Scene:
@@ -131,7 +131,7 @@ class Question(NamedTuple):
         return scene.with_values(links | {"name": scene.name})
 
     def choose_grid(self, study: Study) -> int:
-        """Return the number of phases per axis: of the study's largest nested grid within `max_grid`, or `max_grid`."""
+        """Return the number of phases per axis: the study's largest nested grid within `max_grid`, else `max_grid`."""
         affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
         return max(affordable, default=self.max_grid)
 
@@ -142,16 +142,16 @@ class Question(NamedTuple):
         return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
 
 
-# Keyword arguments for amplification() by model; those with "equations" are for the reference's function
+# Keyword arguments of reference.amplification() for small-vibration equations; below, those for the other models
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
-EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # for reference.amplification
-YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # elastic-plastic friction
+EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # keyword arguments of reference.amplification()
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # as EXACT, elastic-plastic friction, looser tolerance
 TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
-SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
-OVER_YIELDS = Question(  # how the amplification depends on the yield displacement of friction
+SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # keyword arguments of multibody.amplification()
+OVER_YIELDS = Question(  # how the amplification depends on the yield displacement of friction: exact equations
     "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
 )
-# Models whose amplification is computed at several v_c, v_reg or u_y and compared with the literal supremum
+# Models whose amplification at several cutoffs, v_reg or yield displacements is compared with the literal supremum
 QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, MAX_GRID),
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, MAX_GRID),
@@ -200,7 +200,7 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return each body's curve of amplification over v_c, v_reg or u_y; for v_c and u_y also of its supremum, at 0."""
+    """Return curves of each body's amplification over cutoff, v_reg or yield displacement; suprema at 0 (not v_reg)."""
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
@@ -213,7 +213,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
-    """Return amplifications at every speed and their literal supremum; NaN at phase pairs where one is missing."""
+    """Return amplifications at every speed and literal suprema; NaN at phase pairs where one of them is missing."""
     phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
@@ -265,7 +265,7 @@ def _statistics_at_speed(
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:
-    """Return a curve with NaN in place of statistics for every body of a task that failed, with the reason."""
+    """Return, for every body of a task that failed, a curve with NaN as statistics and the reason of the failure."""
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds_of(scene)
     rows = [_SpeedStatistics()] * len(speeds)
@@ -305,7 +305,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return for each task the scene, the index in QUESTIONS of the model, and the number of phases per axis."""
+        """Return for each task: scene, index of the model in QUESTIONS, number of phases per axis (0: few pairs)."""
         return [
             (scene, number, question.choose_grid(study))
             for scene in study.phased

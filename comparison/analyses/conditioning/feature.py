@@ -11,7 +11,7 @@ from comparison.report.section import Report, Section
 from comparison.wording import scientific, signed, significant
 from reference.problem.readings import LITERAL_SUPREMUM
 
-NAMES = {  # names of the models in plots and tables
+NAMES = {  # names, in plots and tables, of the small-vibration and exact equations and the models of Exudyn
     "small": "small equations",
     "exact": "exact equations",
     "translational": "Exudyn in translation",
@@ -19,13 +19,13 @@ NAMES = {  # names of the models in plots and tables
 }
 # Index, in the palette of plots, of the color of a model's curve
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
-UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of what is varied; tables in this order
+UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of the varied speed or displacement; tables in this order
 # Statistics over phases of the amplification, in the rows of the tables: key and name
 QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
 
 
 def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
-    """Return plots of the platform's amplification per scene: small equations, engine, elastic-plastic friction."""
+    """Return plots per scene of platform amplification: small-vibration equations, engine, elastic-plastic friction."""
     panels = []
     for scene in dict.fromkeys(curve.scene for curve in curves):
         every = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
@@ -48,7 +48,7 @@ def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
 
 
 def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Panel:
-    """Return a plot of a statistic of the amplification over v_c or v_reg, m/s, on a logarithmic axis."""
+    """Return a plot of a statistic of the amplification over cutoff or regularization speed, m/s, on a log axis."""
     label = f"{title}: {quantity} over the smallest resolved speed; " + "; ".join(line["name"] for line in series)
     return make_panel(
         title, label, {"title": "v_c or v_reg, m/s", "log": True}, {"title": quantity}, series, height=280
@@ -129,7 +129,7 @@ def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCu
     }
 
 
-FOUND = ResultField(
+FOUND = ResultField(  # field of summary.json with the result of this analysis
     Conditioning.key,
     list[ConditioningCurve],
     "mu over the smallest resolved speed, and its literal supremum; null if not computed",
@@ -145,6 +145,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
     }
 
 
+# Registration of this analysis with the program: field of summary.json, computation, section of the report
 FEATURE = Feature(
     Conditioning.key,
     (FOUND,),

@@ -27,7 +27,7 @@ from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_mot
 from reference.problem import Scene, phase_grid
 from reference.problem.phases import phase_axis
 
-MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # motions per task: what a code computes in 2 s
+MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # motions per task: as many as a program computes in 2 s
 VARIABLE_PREFIX = "demand_"  # prefix of the variables of demands in surfaces.nc
 
 # arguments of a task: scene, model, relative error that is aimed at, phase pairs (M, 2) in rad
@@ -65,7 +65,7 @@ class DemandStatistics:
 
 
 def compute_demands(task: DemandTaskArguments) -> TaskDemands:
-    """Compute, in a worker process, the demands of the motions of one task by name, and how each motion ended."""
+    """Compute, in a worker process, every demand of the motions of one task, and how each motion ended."""
     scene, model, tolerance, phases = task
     demands = demands_of_motions(scene, phases, lambda phase: compute_motion(scene, model, phase, tolerance=tolerance))
     return dict(demands), [str(status) for status in demands.status]

@@ -11,7 +11,7 @@ from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
-STATISTICS = SceneField(
+STATISTICS = SceneField(  # field of summary.json on each scene: statistics of its demands
     "demand_statistics",
     list[DemandStatistics],
     "one per demand, body and model; empty unless demands of every phase pair were asked for",
@@ -33,7 +33,7 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
 
 
 def demand_lines(results: Results) -> list[dict[str, Any]]:
-    """Return a row of the table of demand statistics for each scene, demand and model, with their names."""
+    """Return a table row of statistics for each scene, demand and model, demand and model named in words."""
     lines = []
     for scene in results.scenes:
         for row in STATISTICS.read_from(scene):
@@ -53,6 +53,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
     }
 
 
+# Registration of this analysis with the program: field of summary.json, computation, dataset, section of the report
 FEATURE = Feature(
     DemandSurfaces.key,
     scene_fields=(STATISTICS,),

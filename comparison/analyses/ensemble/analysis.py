@@ -36,7 +36,7 @@ ENGINE_TOLERANCE = (
 
 @dataclass(frozen=True)
 class MotionDemandsAtScale:
-    """Demands of one motion at one scale by one model. values: NaN or empty if the run ended early or failed."""
+    """Demands of one motion at one scale by one model; values: NaN or empty if the run ended early or failed."""
 
     member: EnsembleMember
     model: str  # key of the model
@@ -71,7 +71,7 @@ class EnsemblePoints:
 
 
 MotionTaskArguments = tuple[Scene, Model, float]  # scene with its motion, model, relative error to aim at
-# demands, story forces, floor spectra, accelerations as integrated if demands has suprema, end of the motion, s
+# Result of a task: demands, story forces, floor spectra, accelerations as integrated if demands are suprema, end, s
 MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
@@ -148,7 +148,7 @@ def _drop_repeated_tasks(tasks: Iterable[Task]) -> list[Task]:
 
 
 def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
-    """Compute one motion by one model; return its demands and, by the exact equations, its floor spectra."""
+    """Compute one motion by one model; return its demands and, if by the exact equations, its floor spectra."""
     scene, model, tolerance = task
     motion = import_function(model.trajectory)(scene, NO_PHASES, tolerance=tolerance, **model.motion_settings)
     spectra = floor_spectra(motion) if model == EXACT else None
@@ -156,7 +156,7 @@ def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
 
 
 def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
-    """Return peak accelerations as integrated by the small or exact equations, whose demands are suprema; else none."""
+    """Return peak accelerations as integrated by small-vibration or exact equations (demands: suprema); else none."""
     scene, model, tolerance = task
     resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: EXACT_AS_INTEGRATED}.get(model.key)
     if resolved is None or not resolved.applies(scene):

@@ -92,7 +92,7 @@ def list_ended_motions(points: EnsemblePoints) -> list[result.EndedMotion]:
 
 
 def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:
-    """Return the ground motions of the suite in their order, each once, at scale 1. listed: by name, from its list."""
+    """Return the suite's ground motions in order, each once, at scale 1. listed: motions by name, from its list."""
     found = []
     for motion, own in group_rows_by(members, "motion").items():
         member = own[0]

@@ -86,11 +86,11 @@ from reference.records.suites import list_motions
 from reference.support.files import write_new
 
 COMMAND = "comparison.ensemble"  # name of the command in the manifest, which lists the files it wrote
-TABLE_FILE = "ensemble.csv"
-PAGE_FILE = "index.html"
-CHECKS_FILE = "junit.xml"
-WRITTEN_FILES = (STORED.name, TABLE_FILE, PAGE_FILE, CHECKS_FILE)
-WORKER_FUNCTIONS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # functions that the workers call
+TABLE_FILE = "ensemble.csv"  # name of the file with the demands of every motion as a table
+PAGE_FILE = "index.html"  # name of the report page
+CHECKS_FILE = "junit.xml"  # name of the file with the checks of demands, as test results in JUnit's format
+WRITTEN_FILES = (STORED.name, TABLE_FILE, PAGE_FILE, CHECKS_FILE)  # names of all files that the command writes
+WORKER_FUNCTIONS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # import paths of the functions that the workers call
 ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}  # models of Exudyn by key
 MAX_SCALES = 100  # largest number of scale factors that a user may ask for
 
@@ -126,7 +126,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
-        """Write and print the equations' results, choose the engine's motions by them; return the engine's tasks."""
+        """Write and print results of the equations, choose the engine's motions by them; return the engine's tasks."""
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.find_missing(ensemble.make_engine_tasks(chosen))
         if further:
@@ -150,7 +150,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 def scale_to_target(
     options: argparse.Namespace, members: tuple[EnsembleMember, ...]
 ) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum | None]:
-    """Return the members scaled to the spectrum of `--target`, if given, and that spectrum. Raises SceneError."""
+    """Return members, scaled to the spectrum of `--target` if given, and that spectrum or None. Raises SceneError."""
     if options.target is not None:
         return match_spectrum(members, options.target, options.periods)
     if options.periods is not None:
@@ -214,7 +214,7 @@ def make_demand_check(
 
 
 def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
-    """Print on standard error the demands that are not met; return the exit code. asked: whether to check them."""
+    """If `asked`, print on standard error all demands whose verdict is not "met", and counts; return the exit code."""
     sys.stdout.flush()  # so that these lines come last if both outputs go to one file
     lines = word_checks(checks)
     if asked:
@@ -291,7 +291,7 @@ def bound_engine_motion_count(members: Sequence[EnsembleMember], asked: EngineRe
 
 
 def _group_largest_scale_by_structure(members: Sequence[EnsembleMember]) -> list[list[EnsembleMember]]:
-    """Return the members (scenes) at the largest scale factor, one list for each structure."""
+    """Return the members (scenes) at the largest scale factor of the motions, one list for each structure."""
     top = max(member.scale for member in members)
     return list(group_rows_by([member for member in members if member.scale == top], "structure").values())
 

@@ -26,7 +26,7 @@ def check_demands(
     stored: str | Path | None,
     within: float,
 ) -> list[str]:
-    """Return lines on demands that miss a limit or stored value; limits: replace the file's. Raises ValueError."""
+    """Return lines on demands beyond limits (`limits`, else the file's) or off stored values. Raises ValueError."""
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
     members = list_members([make_family(with_bounds(data, bounds), str(source))])
@@ -47,7 +47,7 @@ def check_demands(
 
 
 def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
-    """Compute the ensemble in this process; engine: whether the engine also computes the motions that govern."""
+    """Compute the ensemble in this process; engine: whether it too computes the motions that govern demands."""
     results = TaskResults()
     _compute_tasks(results, ensemble.make_equation_tasks())
     chosen = choose_motions(ensemble.collect_points(results).equations, None) if engine else []
@@ -56,6 +56,6 @@ def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
 
 
 def _compute_tasks(results: TaskResults, tasks: Sequence[Task]) -> None:
-    """Compute in this process the tasks without a result, and add their results to `results`."""
+    """Compute in this process the tasks that have no result yet, and add their results to `results`."""
     for task in results.find_missing(tasks):
         results.put(task, execute_task(task))

@@ -31,7 +31,7 @@ GOVERNING_OF_LIMITS = {  # by demand that only the engine has: demands of the eq
     "uplift": ("support_force_max", "support_force_min"),
     "support_displacement": ("displacement",),
 }
-MEDIAN_REASON = "nearest the median displacement"  # reason for the choice of a motion
+MEDIAN_REASON = "nearest the median displacement"  # reason why the engine computes a motion
 ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # reasons why the engine computes a motion
 MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
 EXPECTED_GOVERNING_COUNT = 3  # assumed number of governing motions per structure while the equations are not solved
@@ -42,14 +42,14 @@ EngineRequest = int | tuple[str, ...] | None
 
 @dataclass(frozen=True)
 class ChosenMember:
-    """A motion that the engine computes, and the reasons for it."""
+    """A motion chosen for the multibody engine to compute, and the reasons for the choice."""
 
     member: EnsembleMember
     reasons: tuple[str, ...]
 
 
 def parse_engine_option(words: Sequence[str] | None, members: Sequence[EnsembleMember]) -> EngineRequest:
-    """Return which motions `--engine all | N | NAME` asks for; None: those that govern. Raises SceneError."""
+    """Return which motions `--engine all | N | NAME` asks for (None: those that govern demands). Raises SceneError."""
     if words is None:
         return None
     names = list(dict.fromkeys(member.motion for member in members))
@@ -113,7 +113,7 @@ def _find_governing(points: Sequence[MotionDemandsAtScale]) -> Iterator[tuple[in
 
 
 def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: str) -> dict[str, str]:
-    """Return the motions that govern the demand `limited` by the equations at the largest scale, with their reasons."""
+    """Return the motions that govern a demand with a limit, by the equations at the largest scale, and why in words."""
     worst: dict[str, str] = {}
     for quantity in GOVERNING:
         values = [

@@ -34,7 +34,7 @@ from reference.support.scene_error import printable
 
 LIMIT_KEY_PREFIX = "acceptance.demands."  # beginning of the key of a limit in a scene file
 MEAN_STATISTIC, LARGEST_STATISTIC = "mean", "largest"  # a limit can be on the mean or the largest over motions
-WEIGHT_SHARE_KEY = "base_shear"  # demand whose limit is a share of the weight
+WEIGHT_SHARE_KEY = "base_shear"  # demand whose limit is stated as a share of the structure's weight
 MAX_NAMED_MOTIONS = 3  # above so many, a text states the number of motions in place of their names
 EVENT_COUNT_KEY = "stops"  # demand that counts events: not compared with stored values, whose tolerance is relative
 STORED_TOLERANCE_RANGE = Range(0.0, 10.0)  # admissible relative tolerances of a comparison with a stored ensemble
@@ -219,7 +219,7 @@ def _check_body(
 
 
 def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
-    """Say above which value, `needed`, `ended` unknown demands break a limit on the mean; "" if every value does."""
+    """Say above which value (needed) demands unknown in `ended` motions break a mean limit; "" if every value does."""
     theirs = "a value there" if ended == 1 else "a mean of theirs"
     return f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
 
@@ -241,7 +241,7 @@ def _word_demand(structure: Structure, key: str, body: int | None) -> str:
 
 
 def _compute_mean(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
-    """Return the mean over motions of the demands and of their errors, and "" for the motion, which a mean lacks."""
+    """Return the mean over motions of demands and of their errors, and "" as name of the motion, which a mean lacks."""
     values, errors, _ = zip(*known)
     return sum(values) / len(known), sum(errors) / len(known), ""
 
@@ -284,7 +284,7 @@ def _name_motions(motions: Sequence[str]) -> str:
 def _bound_displacement_by_travel(
     ensemble: EnsembleResult, structure: Structure, key: str, statistic: str, values: Mapping[str, Statistic]
 ) -> tuple[float, str]:
-    """Return a lower bound on the displacement, as motions reached the limit of travel, and their names; else -inf."""
+    """Return a lower bound on a displacement where motions reached the limit of travel, and their names; else -inf."""
     travel = structure.building.travel if structure.building else None
     stripe = ensemble.find_demand(structure.name, "displacement")
     ended = [motion for motion, number in values.items() if number.value is None]

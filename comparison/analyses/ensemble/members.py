@@ -52,7 +52,7 @@ def _is_wrong_duration(value: Any) -> bool:
 
 
 def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
-    """Return all scenes of the families as members. Raises SceneError if one has no record, or if names repeat."""
+    """Return scenes of families (variants of one scene) as members. Raises SceneError: no record, or names repeat."""
     names = [family.name for family in families]
     for name in names:
         if names.count(name) > 1:
@@ -78,7 +78,7 @@ def _word_varied_value(family: Family, key: str, n: int) -> str:
 
 
 def refuse_scenes_without_model_data(members: Sequence[EnsembleMember], model: Model) -> None:
-    """Raise SceneError if a scene lacks data that the engine's model needs."""
+    """Raise SceneError if the scene of a member lacks data that the engine's model needs."""
     for scene in (member.scene for member in members):
         if model.is_spatial and not has_spatial_data(scene):
             rule = why_not_spatial(scene) or "has no supports, heights and sizes of bodies: --model translational"

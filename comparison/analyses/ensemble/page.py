@@ -48,7 +48,7 @@ from reference.problem import GRAVITY
 from reference.records.samples import AXES
 
 Context = Mapping[str, Any]  # variables of a template by name
-ContextReader = Callable[[EnsembleResult, LostParts], Context]  # function: template variables of a section
+ContextReader = Callable[[EnsembleResult, LostParts], Context]  # function that returns template variables of a section
 
 
 def _building_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
@@ -193,7 +193,7 @@ def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return command, times and SHA-256 digests of the input files, for the template."""
+    """Return command, times and SHA-256 digests of the input files of the run, for the template."""
     return {"run": ensemble.run, "digests": sentences.digest_sentence(ensemble)}
 
 

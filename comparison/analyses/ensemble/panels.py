@@ -20,7 +20,7 @@ from comparison.analyses.ensemble.sentences import TRAVEL_REACHED, word_motion_c
 from comparison.report.panels import Panel, make_panel
 from reference.problem import GRAVITY
 
-PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")  # demands that are drawn
+PLOTTED_QUANTITIES = ("displacement", "residual", "base_shear", "uplift", "support_force_max")  # isolator demands drawn
 PERIOD_TICKS = 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0  # s, periods with a number at the axis
 STRIP_WIDTH = 0.3  # width of the strip of a structure's dots, as a share of the distance between strips
 # For each fractile: name, index in FRACTILES, dash pattern of its line (SVG)
@@ -110,7 +110,7 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
 def _travel_arrows(
     ensemble: EnsembleResult, place: int, curves: Sequence[DemandCurve], factor: float
 ) -> list[dict[str, Any]]:
-    """Return plot marks, arrows at the limit of travel, for motions that reach it, each at the smallest such scale."""
+    """Return plot marks (arrows at the limit of travel) for motions that reach it, each at its smallest such scale."""
     structure, one = ensemble.structures[place], len(ensemble.scales) == 1
     travel = structure.building.travel if structure.building else None
     reached = {
@@ -287,7 +287,7 @@ def _make_period_axis(periods: Sequence[float]) -> dict[str, Any]:
 
 
 def _floor_spectrum(ensemble: EnsembleResult, title: str, is_platform: bool) -> Panel:
-    """Return the plot of the median floor spectra, in g, of the platform or of the top body, with that title."""
+    """Return the plot, with that title, of the median floor spectra, in g, of platform or top body by structure."""
     series = [
         _median_line(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
         for place, structure in enumerate(ensemble.structures)

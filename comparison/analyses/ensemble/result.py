@@ -13,7 +13,8 @@ from comparison.verdicts import Verdict
 from reference.problem.scene import MAX_BODIES
 
 FRACTILE_COUNT = 3  # number of fractiles: 16, 50 and 84 %
-RESULT_FILE = "summary.json"
+RESULT_FILE = "summary.json"  # name of the file with the results of an ensemble
+# name and version of the format of RESULT_FILE
 SCHEMA: Literal["phase-resonance/ensemble/4"] = "phase-resonance/ensemble/4"
 
 
@@ -32,7 +33,7 @@ class Statistic:
 
 @result
 class DemandFractile(Statistic):
-    """Fractile of a demand over the motions, with its share of motions below."""
+    """Fractile of a demand over the motions, with the share of motions whose demand is below it."""
 
     share: Annotated[float, "part of the motions below it"] = 0.5
 
@@ -76,7 +77,7 @@ class BuildingRead:
 
 @result
 class Structure:
-    """Structure of the ensemble: scene file, with the values of keys that it varies (but motion and scale)."""
+    """Structure of the ensemble: scene file with one value of each key that it varies, except motion and scale."""
 
     name: Annotated[str, "name"]
     title: Annotated[str, "title of its scenes"]
@@ -304,7 +305,7 @@ class LimitVerdict:
 
 @result
 class EnsembleResult:
-    """Content of the file summary.json of an ensemble."""
+    """Content of an ensemble's file summary.json: structures, motions, demands and their statistics, limits."""
 
     schema: Annotated[Literal["phase-resonance/ensemble/4"], "what the file is"]
     structures: Annotated[Sequence[Structure], "what the statistics are of"]
@@ -386,4 +387,5 @@ class EnsembleResult:
         return found
 
 
+# Result file of an ensemble: its name, type, what it holds in words, and the command that writes it
 STORED = StoredFile(RESULT_FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")

@@ -159,7 +159,7 @@ def find_largest_over_bodies_by_motion(
 
 
 def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
-    """Return the largest number and its body, or NaN if one is unknown; error: how far all errors may raise it."""
+    """Return the largest number and its body, or NaN if one is unknown; its error: how far all errors may raise it."""
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)
@@ -229,7 +229,7 @@ def _word_source(row: DemandRow, column: int) -> str:
 
 
 def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
-    """Return the demands shown in the table with a row for each motion, each in one form."""
+    """Return the columns of the table with a row for each motion: one per demand that was computed."""
     known = {stripe.quantity for stripe in ensemble.stripes if stripe.model == EXACT.key}
     return [
         next(each for each in reversed(MAIN_TABLE_COLUMNS) if _is_motion_column(each, name))
@@ -239,7 +239,7 @@ def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
 
 
 def _is_motion_column(shown: DemandColumn, quantity: str) -> bool:
-    """Return whether `shown` is the form of the demand for the table of motions: not in %, not the platform alone."""
+    """Return whether `shown` is the column of a demand in the table of motions: not in %, not of the platform alone."""
     return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
 
 
@@ -304,7 +304,7 @@ def statistics_of_column(
 def read_column_values(
     ensemble: EnsembleResult, structure: Structure, shown: DemandColumn, model: str
 ) -> dict[str, tuple[Estimate, int | None]]:
-    """Return by motion a column's demand at the largest scale, by one model, with its body."""
+    """Return by name of the motion a column's demand at the largest scale by one model, and the body that has it."""
     bodies = {"": (None,), "platform": (PLATFORM_BODY,)}.get(shown.bodies)
     return find_largest_over_bodies_by_motion(
         ensemble, structure.name, shown.quantity, model, ensemble.largest_scale, bodies
@@ -354,7 +354,7 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """Return a mark for each of mean, fractiles and worst value: `mark` ("≥ "), but "" for known fractiles."""
+    """Return marks of mean, fractiles and worst value: `mark` (such as "≥ ", a bound), but "" for known fractiles."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 
@@ -409,7 +409,7 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
             continue
 
         def size(told: DemandSummary, column: int = column) -> float:
-            """Return a structure's statistic in its display unit, negated if small values are unfavorable."""
+            """Return a statistic of a structure's demand in its display unit, negated if small is unfavorable."""
             return sign * unit_of_column(shown, told.structure)[1] * (told.numbers[column].value or 0.0)
 
         at = max(known, key=size)

@@ -24,7 +24,7 @@ from reference.support.arguments import name_some
 
 TRAVEL_REACHED = Outcome.TRAVEL_REACHED.value  # outcome of a motion that ends at the isolator's limit of travel
 MAX_LISTED_MOTIONS = 12  # largest number of motions that a sentence lists by name
-MAX_LISTED_IN_SENTENCE = 3  # largest number of motions that the answer lists by name
+MAX_LISTED_IN_SENTENCE = 3  # largest number of motions that the main result lists by name
 DIGITS = 12  # number of characters shown of a SHA-256 digest
 DEFINITIONS = (  # definitions of the demands, shown with their table
     "Displacement, drift, story shear, base shear and overturning moment are resultants of x and y, acceleration is "
@@ -63,7 +63,7 @@ DEFINITIONS = (  # definitions of the demands, shown with their table
 )
 
 
-VERTICAL_MOTION = "Vertical ground motion, except where the record has z."  # an entry of NOT_MODELED
+VERTICAL_MOTION = "Vertical ground motion, except where the record has z."  # entry of NOT_MODELED; a count is added
 NOT_MODELED = (  # what no model has; docs/guide/building.md explains each, beginning with the same words
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
@@ -148,7 +148,7 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
 
 
 def limits_sentence(ensemble: EnsembleResult) -> str:
-    """Return how many limits are met, which are not and by how much, and which are not compared; "" without limits."""
+    """Say how many limits are met, which are not and by how much, and which are not compared; "" without limits."""
     if not ensemble.limits:
         return ""
     counts = count_verdicts(each.verdict for each in ensemble.limits)
@@ -215,7 +215,7 @@ def word_plan_sizes(structure: Structure) -> str:
 
 
 def travel_sentence(ensemble: EnsembleResult) -> str:
-    """Return which motions reach the limit of travel at the largest scale, and when; "" if none does."""
+    """Return in words which motions reach the limit of travel at the largest scale, and when; "" if none does."""
     bounds = []
     for structure in ensemble.structures:
         ended = [
@@ -238,7 +238,7 @@ def list_motions_without_displacement(ensemble: EnsembleResult, structure: Struc
 
 
 def outcomes_sentence(ensemble: EnsembleResult) -> str:
-    """Return how many motions the equations completed and how the others ended."""
+    """Return in words how many motions the equations completed and how the others ended."""
     ended = ", ".join(f"{count} {name}" for name, count in ensemble.outcomes.items())
     return f"Outcomes by the equations: {ended}."
 
@@ -261,7 +261,7 @@ def isolator_sentence(structure: Structure) -> str:
 
 
 def restoring_sentence(ensemble: EnsembleResult) -> str:
-    """Return what the re-centering ratio is, and for which structures it is below 1; "" without an isolator."""
+    """Return in words what the re-centering ratio is, and which structures have one below 1; "" without an isolator."""
     ratios = {each.name: each.isolator.restoring for each in ensemble.structures if each.isolator}
     named = label_structures(ensemble)
     below = [named[name] for name, ratio in ratios.items() if ratio < 1.0]
@@ -271,7 +271,7 @@ def restoring_sentence(ensemble: EnsembleResult) -> str:
 
 
 def supremum_sentence(places: Collection[str], differing: Collection[str]) -> str:
-    """Return at which floors the literal supremum of acceleration equals the value as integrated; "" if at none."""
+    """Say at which floors the literal supremum of acceleration equals the value as integrated; "" if at none."""
     if len(differing) == len(places):
         return ""
     where = "At the floors that are left out" if differing else "At every floor"
@@ -333,7 +333,7 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
 
 
 def word_support_motions(ensemble: EnsembleResult, supports: SupportExtremes) -> str:
-    """Return over how many motions the extremes of a support are taken, as "5 of 7 motions"."""
+    """Return in words over how many motions the extremes of a support are taken, such as "5 of 7 motions"."""
     some = f"{supports.motions} of " if supports.motions < ensemble.motions else ""
     return f"{some}{word_motion_count(ensemble.motions)}"
 
@@ -403,7 +403,7 @@ def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """Return which motions lack which demands at the largest scale, and why; not those that reach the travel limit."""
+    """Say which motions lack which demands at the largest scale, and why; not those that reach the travel limit."""
     stripes = {
         shown.name: found
         for shown in MAIN_TABLE_COLUMNS

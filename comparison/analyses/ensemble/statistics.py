@@ -101,14 +101,14 @@ def make_statistic(number: Estimate) -> result.Statistic:
 def compute_mean_and_fractiles(
     numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf
 ) -> list[result.Statistic]:
-    """Return the mean of numbers (None if one is NaN), and their fractiles at `shares`, each with its error."""
+    """Return mean of numbers (None if one is NaN) and fractiles at `shares` (NaN as `worst`), each with its error."""
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
     fractiles = [compute_fractile_with_error(numbers, share, worst) for share in shares]
     return [make_statistic(each) for each in (Estimate(value, error), *fractiles)]
 
 
 def compute_fractile_with_error(numbers: Sequence[Estimate], share: float, worst: float = math.inf) -> Estimate:
-    """Return a fractile of numbers, NaN counting as `worst`; its error: how far it moves if all move by theirs."""
+    """Return a fractile of numbers, NaN counting as `worst`, and its error: how far it moves if all move by theirs."""
     value = np.array([number.value for number in numbers])
     error = np.array([number.error for number in numbers])
     low, middle, high = (
@@ -185,7 +185,7 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
 
 
 def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Estimate:
-    """Return a quantity of a support under one motion. name: support_min, support_max or uplift. number: from 0."""
+    """Return one quantity of a support under one motion. name: support_min, support_max or uplift. number: from 0."""
     values = getattr(point.forces, name)
     return values[number] if values else Estimate(math.nan, math.nan)
 
@@ -193,7 +193,7 @@ def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Es
 def _find_governing_motion(
     numbers: Sequence[Estimate], points: Sequence[MotionDemandsAtScale], sign: float
 ) -> tuple[result.Statistic, str]:
-    """Return the largest number (sign = -1: the smallest) and the motion of its point; NaN does not count."""
+    """Return the largest number (sign = -1: the smallest) and the motion that has it; NaN does not count."""
     known = [pair for pair in zip(numbers, points) if math.isfinite(pair[0].value)]
     if not known:
         return result.Statistic(None, None), ""

@@ -21,7 +21,7 @@ FITTED_PERIODS, DRAWN_PERIODS = 40, 60
 MAX_FILE_BYTES = 2**20  # bytes, largest size of a file with a target spectrum
 ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}  # by heading: factor to m/s^2
 PERIODS, LARGEST = Range(1e-3, 1e3, "s"), 1e6  # admissible periods above 0; largest acceleration, m/s^2, of a target
-FILE_RULE = (
+FILE_RULE = (  # rule for a file with a target spectrum, as error messages state it
     "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods, "
     f"{PERIODS.text} s, with accelerations above 0 and at most {LARGEST:g} m/s^2"
 )

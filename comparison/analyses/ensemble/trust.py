@@ -20,7 +20,7 @@ from comparison.analyses.ensemble.rows import (
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 
-MODEL_TITLES = {
+MODEL_TITLES = {  # names of the models in the table of model ratios, by key
     SMALL.key: "small equations",
     EXACT.key: "exact equations",
     TRANSLATIONAL.key: "translational engine",
@@ -37,8 +37,8 @@ HIDDEN_BY_ROUNDING = 1e-4  # relative difference below which the two decimals of
 EXTRAPOLATED_STATISTICS = ("mean", 0), ("84 %", 3), ("largest", 4)
 # Statistics extrapolated of a smallest support force, whose low values are the unfavorable ones: name, index in a row
 SMALLEST_FORCE_STATISTICS = (("mean", 0), ("16 %", 1), ("smallest", 4))
-MIN_SPREAD_MOTIONS = 2  # number of motions from which a ratio has a spread
-# Words of a sentence on how models differ, by index: the number of effects that it lists
+MIN_SPREAD_MOTIONS = 2  # smallest number of motions over which a ratio has a spread
+# Words of a sentence on how models differ, by index: the number of model differences that it lists
 THING_COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
 
@@ -104,7 +104,7 @@ class ModelRatioRow:
 
     @property
     def read(self) -> tuple[str, float]:
-        """Return the unit in which the demand is shown, and the factor from SI units to it."""
+        """Return the unit in which the demand is shown, and the factor to it from SI units."""
         return unit_of_column(self.shown, self.structure)
 
     @property
@@ -148,7 +148,7 @@ def _make_model_ratio_row(
         return None
 
     def ratio(upper: str, lower: str) -> ModelRatio | None:
-        """Return the ratio of the demand by model `upper` to that by `lower`; None if one was not computed."""
+        """Return the ratio of the demand by model `upper` to that by model `lower`; None if one was not computed."""
         if upper not in others or not (lower == EXACT.key or lower in others):
             return None
         pairs = [(by_model[upper][m] / by_model[lower][m], m) for m in common if by_model[lower][m]]
@@ -173,7 +173,7 @@ def _make_model_ratio_row(
 def _find_largest_deviation(
     ensemble: EnsembleResult, rows: Sequence[ModelRatioRow], pick: str
 ) -> tuple[float, str, str] | None:
-    """Return the largest relative difference by the model ratio `pick`, in any row and motion; its demand; where."""
+    """Return the largest relative difference by model ratio `pick` over rows, with its demand, structure and motion."""
     found = []
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # for annotations only; a study may lack these features
 
 @result
 class FamilyCurve:
-    """Amplification of a body by one model in every scene of a family, along the key that varies; null if unknown."""
+    """Amplification of a body by one model in every variant of a scene, along the key that varies; null if unknown."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -39,7 +39,7 @@ class FamilyCurve:
 
 @result
 class FamilyStep:
-    """Change of a body's amplification from one model to the next (bar of a waterfall) in every scene of a family."""
+    """Change of a body's amplification from one model to the next (bar of a waterfall) in each scene of a family."""
 
     model: Annotated[str, "key of the model that the step leads to, or total"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -74,7 +74,7 @@ def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfal
 
 @result
 class FamilyDemand:
-    """A demand by one model in every scene of a family: median, smallest and largest over motions or phases."""
+    """A demand by one model in every variant of a scene (family): median, smallest, largest over motions or phases."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
@@ -86,7 +86,7 @@ class FamilyDemand:
 
 
 def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
-    """Return the demands of stored motions by scene of the family, one for each model, quantity and body."""
+    """Return demands of stored motions by variant of a scene (family), one for each model, quantity and body."""
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
@@ -105,7 +105,7 @@ def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list
 def list_family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
-    """Return demand statistics over all phases by scene of the family, one for each model, quantity and body."""
+    """Return demand statistics over all phases by variant of a scene, one for each model, quantity and body."""
     found: dict[tuple[str, str, int], dict[str, tuple[float, float, float, int]]] = {}
     for scene in family.scenes:
         for row in statistics.get(scene.name, ()):
@@ -118,7 +118,7 @@ def list_family_demands_over_phases(
 def _make_family_demand(
     family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
 ) -> FamilyDemand:
-    """Return a demand in each scene of a family. key: model, quantity, body. rows: median, lowest, highest, count."""
+    """Return a demand in each variant of a scene. key: model, quantity, body. rows: median, lowest, highest, count."""
     numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
     return FamilyDemand(*key, *map(tuple, zip(*numbers)))
 

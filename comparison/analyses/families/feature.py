@@ -27,7 +27,7 @@ LOG_AXIS_RATIO = 30.0  # ratio of largest to smallest value of the varied key fr
 
 
 class FamilyResult(Part):
-    """Results of the scenes of one file that differ in the value of one key."""
+    """Results of a family: the scenes of one file that differ in the value of one key."""
 
     name: Text
     """name of the file"""
@@ -69,6 +69,7 @@ def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[Fa
     return found or None
 
 
+# Field of summary.json with the results of families: scenes of one file that differ in the value of one key
 FOUND = ResultField(
     "families",
     list[FamilyResult],
@@ -78,7 +79,7 @@ FOUND = ResultField(
 
 
 def family_panels(results: Results) -> list[dict[str, Any]]:
-    """Return per family plots over the varied key: each body's amplification by model, and its change by effect."""
+    """Return per family plots over the varied key: each body's amplification by model and its change between models."""
     scenes = {scene.name: scene for scene in results.scenes}
     listed = []
     for family in FOUND.get(results) or ():
@@ -128,7 +129,7 @@ def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
-    """Return the plot of the change of a body's amplification by each effect, percent, over the family's varied key."""
+    """Return the plot over the varied key of a body's change of amplification by each model difference, percent."""
     effects = {model.key: model.effect or model.title for model in results.models}
     effects |= {TOTAL: "total", UNEQUAL_PHASES: "other phases"}
     lines = [
@@ -154,6 +155,7 @@ def _family_demand_panel(
     return _panel_over_values(family, f"{title} {of_which}", title, f"{title}, {unit}", lines) if lines else None
 
 
+# Registration of this section of the report with the program: its field of summary.json and its content
 FEATURE = Feature(
     "families",
     (FOUND,),

@@ -36,7 +36,7 @@ from reference.problem.measured import BODY_QUANTITIES, Measured
 
 NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")  # for a model without the measured quantity
 
-MeasuredQuantityKey = tuple[str, int]  # name, and number of the body (0: isolator)
+MeasuredQuantityKey = tuple[str, int]  # key of a measured quantity: its name, and number of the body (0: isolator)
 # Arguments of a task: scene, model, relative error to aim at, phase pair in rad, and the measured quantities to compute
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[MeasuredQuantityKey]]
 # computed peak: value and error (NaN if not computed), and the outcome of the motion or why there is no value
@@ -102,7 +102,7 @@ def phases_of_peak(peak: Measured) -> tuple[float, float]:
 
 
 def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[MeasuredQuantityKey]:
-    """Return the measured quantities that a model computes at a phase pair: only amplification if it has a cutoff."""
+    """Return measured quantities that a model computes at a phase pair: only amplification if it has a cutoff speed."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()

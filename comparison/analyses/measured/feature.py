@@ -6,11 +6,12 @@ from comparison.report.section import Section
 from comparison.verdicts import STYLE_CLASSES
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
-FOUND = ResultField(
+FOUND = ResultField(  # field of summary.json with the result of this analysis
     MeasuredPeaks.key,
     list[MeasuredPeak],
     "measured peaks beside what every model computes; null where no scene has any",
 )
+# Registration of this analysis with the program: field of summary.json, computation, section of the report
 FEATURE = Feature(
     MeasuredPeaks.key,
     (FOUND,),

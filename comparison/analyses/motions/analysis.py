@@ -21,7 +21,7 @@ from reference.support.build_cache import cache_on_disk
 
 # Decimation keeps few instants of a stored motion: largest error of lines between them, as a share of `half_range`
 MAX_DECIMATION_ERROR = 0.003
-MIN_RANGE_SHARE = 0.01  # smallest half range of a component that is used, as a share of its largest value
+MIN_RANGE_SHARE = 0.01  # smallest half range used for a component, as a share of the component's largest value
 # Number of phase pairs (k, 2k) 2 pi/5 with stored motions: even over the square of phases, no two mirror images
 EVENLY_SPREAD_PAIRS = 5
 
@@ -53,7 +53,7 @@ def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.
 
 @cache_on_disk(__file__, error_model="numpy", nogil=True)
 def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.bool_]) -> None:
-    """Mark more instants in `kept` (T,) until lines between them miss no value (T, C) by more than `share`."""
+    """Mark more instants in `kept` (T,) until straight lines between them miss no value (T, C) by more than `share`."""
     start = 0
     while start < len(time) - 1:
         end = start + 1
@@ -75,7 +75,7 @@ def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.boo
 
 @dataclass(frozen=True)
 class MotionPlace:
-    """Phase pair whose motion is stored: indices row, column on the grid; why chosen ("" if evenly spread)."""
+    """Phase pair whose motion is stored: row and column in the grid of phases; why chosen ("" if evenly spread)."""
 
     scene: str
     row: int
@@ -91,7 +91,7 @@ def _empty_series() -> Array:
 @dataclass(frozen=True)
 class StoredMotion:
     """
-    One decimated motion at a phase pair of the grid.
+    One decimated motion by one model at a phase pair of the grid, with its demands and floor spectra.
 
     model: key of the model. time: (T,), s. position, acceleration: (T, N, 2), displacement relative to the plate, and
     absolute acceleration. stick: s, intervals of rest, or of creep below v_reg. status: how the motion ended.
@@ -134,12 +134,12 @@ class StoredMotion:
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
-Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # task; float: tolerance; last: phases, rad
+Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # scene, model, tolerance, place, phases, rad
 
 
 def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:
     """
-    Choose phase pairs whose motions are stored (largest differences of models, even spread), and engines for each.
+    Choose phase pairs whose motions are stored (largest model differences, even spread) and engine models for each.
     """
     engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:

@@ -107,12 +107,13 @@ def _round_spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
     )
 
 
-DEMANDS = SceneField(
+DEMANDS = SceneField(  # field of summary.json on each scene: demands of its stored motions
     "demands",
     list[MotionDemands],
     "one per stored phase pair and model; empty without stored motions",
     _demands_of_motions,
 )
+# Registration of this analysis with the program: field of each scene, computation, and data for the page's script
 FEATURE = Feature(
     Motions.key,
     scene_fields=(DEMANDS,),

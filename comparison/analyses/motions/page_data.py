@@ -47,7 +47,7 @@ from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
 
-MotionOffsets = dict[tuple[MotionPlace, str], int]  # by motion: index of its first packed number
+MotionOffsets = dict[tuple[MotionPlace, str], int]  # by place and model of a motion: index of its first packed number
 
 MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed time history, as a share of half its range
 SPECTRUM_DIGITS = 4  # significant digits of a floor spectrum on the page: more are invisible
@@ -60,7 +60,7 @@ def encode_motions(report: Report) -> bytes:
 
 
 def collect_motion_data(report: Report, scene: Scene) -> dict[str, Any]:
-    """Return the data on a scene's stored motions that the page's script reads, without their packed numbers."""
+    """Return the data on a scene's stored motions that the page's script reads, without the packed time histories."""
     return {
         "contact": contact_geometry(scene),
         "places": list(list_pairs_with_motions(report, scene)),
@@ -112,7 +112,7 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Return for the page the supports' contact points, and the share of the displacement that these move back.
+    Return for the page the places of the supports, and how far contact points move back per unit of displacement.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.
@@ -151,7 +151,7 @@ def find_motion_offsets(motions: Sequence[StoredMotion]) -> MotionOffsets:
 
 
 def _list_column_ranges(motion: StoredMotion) -> dict[str, list[int]]:
-    """Return for every time history of the motion, by name, its first column and its number of columns."""
+    """Return for every time history of the motion, by name, its first column and its number of columns when packed."""
     widths = {name: block.shape[1] for name, block in motion.series_by_name().items()}
     return {name: [last - width, width] for (name, width), last in zip(widths.items(), accumulate(widths.values()))}
 
@@ -164,10 +164,10 @@ def round_to_significant_digits(values: NDArray[np.float64], digits: int) -> lis
 
 
 def _list_demands(demands: Demands) -> dict[str, Any]:
-    """Return the demands in a form for JSON, without the status, which stands in the motion's entry."""
+    """Return the demands of a motion for JSON, without the status, which stands beside them in the motion's data."""
 
     def pair(estimate: Any) -> list[Any] | None:
-        """Return [value, error] of an estimate, with a reason if missing; a list of these for several bodies."""
+        """Return an estimate as [value, error], and the reason if missing; of several bodies, a list of these."""
         if estimate is None:
             return None
         if isinstance(estimate, tuple):

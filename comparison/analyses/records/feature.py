@@ -44,7 +44,7 @@ def list_recorded_motions(findings: Findings, scenes: Sequence[SceneResult]) -> 
 
 
 def _recorded_motion(record: RecordDescription) -> RecordedMotion:
-    """Return what was read of a record in the form in which summary.json holds it."""
+    """Return what was read of a ground motion record, in the form in which summary.json holds it."""
     directions = tuple(
         RecordedDirection(one.axis, one.peak, one.mean_over_peak, one.final_velocity, one.final_displacement)
         for one in record.directions
@@ -59,9 +59,10 @@ def word_warnings(records: Sequence[RecordedMotion]) -> str:
     return f"{read}, {warned} with a warning" if warned else f"{read}, no warning"
 
 
-FOUND = ResultField(
+FOUND = ResultField(  # field of summary.json with the recorded ground motions as read
     "records", list[RecordedMotion], "recorded motions as read; null without any", compute=list_recorded_motions
 )
+# Registration of this section of the report with the program: its field of summary.json and its content
 FEATURE = Feature(
     "records",
     (FOUND,),

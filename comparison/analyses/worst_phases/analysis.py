@@ -71,7 +71,7 @@ SearchTaskArguments = tuple[Scene, Model, Model | None, UnsearchedEngine | None,
 
 
 def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
-    """Return a body's largest amplification over all phases by a model, or by the next model that was searched."""
+    """Return a body's largest amplification over all phases by a model, else by a later or, last, an earlier model."""
     searched = {
         worst.model: worst
         for worst in found
@@ -83,7 +83,7 @@ def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str,
 
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Return what is searched: model of equations, engine that solves the same (or None), quantity and body."""
+    """Return the searches to make: model of equations, engine model that solves the same (or None), quantity, body."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -109,7 +109,7 @@ def _starting_phases(
 
 
 def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
-    """Search the largest value by the equations over all phases, and the engine's near it, in a worker process."""
+    """In a worker, search the largest value by the equations over all phases, then the engine's largest near it."""
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
@@ -138,7 +138,7 @@ class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):
     function, without_value = staticmethod(search_worst_phases), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[SearchTaskArguments]:
-        """Yield the arguments of each search: those of a model of equations and of the engine that solves the same."""
+        """Yield the arguments of each search: by equations, and by the engine model that solves the same."""
         for scene in study.phased:
             for model, engine, quantity, body in _list_searches(study, scene):
                 starts = _starting_phases(study, surfaces, scene, model, quantity, body)

@@ -33,14 +33,14 @@ def _word_kind(worst: LargestOverPhases) -> str:
 
 
 def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
-    """Return the curves to draw of a body's amplification over all phases: by small equations and by the last model."""
+    """Return curves of a body's amplification over all phases: by small-vibration equations and by the last model."""
     (last,) = (line.second for line in scene.headlines if line.body == body)
     kept = (SMALL.key, SMALL_AS_INTEGRATED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 
 def _name_reading(report: Report, worst: LargestOverPhases) -> str:
-    """Return the name of the acceleration peak (literal supremum or as integrated) of a largest value, or ""."""
+    """Return the name of the acceleration peak (literal supremum or as integrated); "" for a displacement."""
     if worst.quantity == "displacement":
         return ""
     (scene,) = (scene for scene in report.study.scenes if scene.name == worst.scene)
@@ -48,7 +48,7 @@ def _name_reading(report: Report, worst: LargestOverPhases) -> str:
     return BOTH_READINGS.removeprefix("in ") if has_smooth_friction(scene) else model.reading
 
 
-FOUND = ResultField(
+FOUND = ResultField(  # field of summary.json with the result of this analysis
     WorstPhases.key, list[LargestOverPhases], "the largest values over all phases; null if not computed"
 )
 
@@ -95,6 +95,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
     }
 
 
+# Registration of this analysis with the program: field of summary.json, computation, marks, section of the report
 FEATURE = Feature(
     WorstPhases.key,
     (FOUND,),

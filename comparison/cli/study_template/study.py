@@ -14,7 +14,7 @@ SCENE = Path(__file__).with_name("building.toml")
 
 
 def main() -> None:
-    """Print the range of amplification, equations and engine at the worst phases, and demands there."""
+    """Print the range of amplification, the values by equations and engine at the worst phases, and demands there."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--grid", type=int, default=12, help="phases per axis (default %(default)s)")
     grid = parser.parse_args().grid

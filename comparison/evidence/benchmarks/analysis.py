@@ -26,17 +26,17 @@ from comparison.verdicts import MET, NOT_MET
 from reference.measures.demand_reader import FULL_LENGTH_OUTCOMES
 from reference.problem import State, Trajectory
 
-# Model used for each "side": equations with rigid friction, equations with regularized friction, multibody engine
+# Model of each way to solve a benchmark: equations with rigid friction, with regularized friction, multibody engine
 MODEL_OF_SIDE = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
-TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked of each side
+TOLERANCE_OF_SIDE = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}  # relative error asked, by solver
 READ_SAMPLES = 100_001  # number of instants of a motion by the equations, from which numbers such as extremes are read
-SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by side
+SECONDS_OF_SIDE = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # s, predicted processor time of a motion by solver
 TASK_TIME_LIMIT = 300.0  # s, processor time after which a task is ended
 
 
 @dataclass(frozen=True)
 class SideNumbers:
-    """Numbers that one side (equations or engine) computes for a benchmark, with errors, and how its motion ended."""
+    """Numbers for a benchmark by the equations or the engine, with errors, and how the computed motion ended."""
 
     values: list[float]
     errors: list[float]
@@ -51,7 +51,7 @@ class BenchmarkTable:
     cases: Sequence[BenchmarkCase]
 
     def tasks(self) -> list[Task]:
-        """Return one task for each benchmark and side (equations, smoothed equations, engine)."""
+        """Return one task for each benchmark and way to solve it: equations, smoothed equations, engine."""
         return [self._task(case, side) for case in self.cases for side in MODEL_OF_SIDE]
 
     def collect(self, results: TaskResults) -> Benchmarks:
@@ -63,7 +63,7 @@ class BenchmarkTable:
         return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
-        """Return the task that solves one benchmark by one side (equations, smoothed equations, engine)."""
+        """Return the task that solves one benchmark by `side`: equations, smoothed equations or engine."""
         seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
         return Task(
             solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
@@ -71,7 +71,7 @@ class BenchmarkTable:
 
 
 def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
-    """Solve a benchmark by one side in a worker process; return the numbers to compare with published ones."""
+    """In a worker, solve a benchmark by equations or engine (`side`); return numbers to compare with published ones."""
     case, side = benchmark_and_side
     settings = dict(MODEL_OF_SIDE[side].settings)
     if side != EQUATIONS:
@@ -101,14 +101,14 @@ def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[floa
 
 
 def halve_samples(motion: Trajectory) -> Trajectory:
-    """Return every second sample of a motion: numbers read from it have four times the error, at kinks even more."""
+    """Return a motion with every second sample: numbers read from it have four times the error, at kinks even more."""
     kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
     arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}
     return replace(motion, **arrays)
 
 
 def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
-    """Return the result of a benchmark: published numbers, and those by each side."""
+    """Return the result of a benchmark: published numbers beside those by equations, smoothed equations and engine."""
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -123,7 +123,7 @@ def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> 
 
 
 def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
-    """Return published number `place` of a benchmark with those by each side; without value if a side has too few."""
+    """Return published number `place` beside those by equations and engine; without value if a motion gave too few."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
     for side, answer in answers.items():
@@ -131,13 +131,13 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
             numbers[side] = answer.values[place], answer.errors[place]
 
     def read_number(side: str) -> SideNumber:
-        """Return the number by one side, with its verdict and, if it is "not met", the explanation."""
+        """Return the number by equations or engine, its verdict and, if that is "not met", an explanation."""
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
         return SideNumber(value, error, verdict, explain_deviation(side) if verdict == NOT_MET else "")
 
     def explain_deviation(code: str) -> str:
-        """Return why a side misses the published number: another model in the source, regularized friction, or ""."""
+        """Return why a number misses the published one: another model in the source, regularized friction, or ""."""
         if case.difference:
             return MODEL_EXPLANATION
         (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]
@@ -148,5 +148,5 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
 
 
 def _answer_of_failure(benchmark_and_side: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
-    """Return what stands for the numbers of a side that failed: no numbers, and the reason."""
+    """Return, for a benchmark that equations or engine failed to compute, no numbers and the reason."""
     return SideNumbers([], [], failed.reason, 0.0)

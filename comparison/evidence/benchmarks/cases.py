@@ -26,7 +26,7 @@ from reference.support.files import read_file
 SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"  # folder of the scene files
 INCH = 0.0254  # m in an inch
 BLOCK_WEIGHT = 10.0  # N, weight of the blocks in code_aster's benchmarks
-RAMP_EFFECT = 2e-7  # m, effect on the displacement of a pulse that falls to zero within 1 ms; Newmark's falls at once
+RAMP_EFFECT = 2e-7  # m, change of displacement because the pulse falls to zero within 1 ms, Newmark's at once
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class MotionReading:
     factor: float = 1.0  # factor from SI unit to published unit
 
     def read(self, motion: Trajectory) -> list[float]:
-        """Read the numbers from a motion and return them in the units of the published ones."""
+        """Read the numbers from a motion and return them in the units of the published numbers."""
         values = np.atleast_1d(self.function(motion, **self.arguments))
         return [self.factor * float(value) for value in values]
 
@@ -85,7 +85,7 @@ def list_cases() -> list[BenchmarkCase]:
 
 
 def _wear_power_cases() -> list[BenchmarkCase]:
-    """Return benchmarks of the friction power of a harmonically shaken block, always sliding to stuck (SDND104)."""
+    """Return benchmarks of the friction power of a harmonically shaken block: always sliding, ..., stuck (SDND104)."""
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
@@ -226,10 +226,11 @@ def _linear_cases() -> list[BenchmarkCase]:
 
 
 MASTODON_OPTION = "--mastodon"  # option that names the file with MASTODON's input motion
+# Rule for the file that MASTODON_OPTION names, as error messages state it
 MASTODON_RULE = "must be the CSV file with the input of MASTODON's friction pendulum test: time [s], ax, ay, az"
 READING_ERROR = 3.0  # mm, error of displacements read from the published force-displacement loops (MASTODON)
-MASTODON_RADIUS = 2.2352  # m, radius of the friction pendulum
-MASTODON_WEIGHT = 6285710.0  # N, weight on the friction pendulum
+MASTODON_RADIUS = 2.2352  # m, radius of the friction pendulum in MASTODON's test
+MASTODON_WEIGHT = 6285710.0  # N, weight on the friction pendulum in MASTODON's test
 MASTODON_DURATION = 8.0  # s, computed part of the 50 s of motion; later displacements are smaller
 # MASTODON input motion: number of samples, and time step, s (that after the first sample may differ)
 MASTODON_SAMPLES, MASTODON_STEP = 5002, 0.01

@@ -11,7 +11,9 @@ from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
 from comparison.verdicts import STYLE_CLASSES
 
+# Field of summary.json with the benchmarks, if a command left their file next to the report
 FOUND = make_stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
+# Registration of this section of the report with the program: its field of summary.json and its content
 FEATURE = Feature(
     "benchmarks",
     (FOUND,),

@@ -20,17 +20,20 @@ from comparison.verdicts import (
     word_verdict,
 )
 
+# names of the files with the benchmarks as JSON, and as a Markdown page
 TABLE_FILE, TABLE_PAGE = "benchmarks.json", "benchmarks.md"
 
 
 VALUE_ROUNDING = 1e-12  # relative rounding error of a computed value, which is no deviation from a published one
+# Explanation why a number with regularized friction misses the published one
 FRICTION_EXPLANATION = "the engine's friction law, linear below v_reg: the equations with it give the same"
+# Explanation why a computed number misses the published one
 MODEL_EXPLANATION = "the source models something else, which its benchmark names"
 
 
 @result
 class SideNumber:
-    """Number that one side (equations or engine) computes for a published number, with its error and verdict."""
+    """Number computed by equations or engine to compare with a published number, with its error and verdict."""
 
     value: Annotated[float | None, "in the unit of the published number; null without an answer"]
     error: Annotated[float | None, "estimated absolute error; null where it is not known"]
@@ -40,7 +43,7 @@ class SideNumber:
 
 @result
 class PublishedNumber:
-    """One published number with its uncertainty, and the number that each side (equations, engine) computes for it."""
+    """One published number with its uncertainty, and the numbers that equations and engine compute for it."""
 
     quantity: Annotated[str, "what it is"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -64,12 +67,12 @@ class PublishedNumber:
         return judge_error(value - self.published, error + self.uncertainty + VALUE_ROUNDING * abs(value))
 
     def error_of(self, side: str) -> float | None:
-        """Return the number by one side minus the published one; None without a value."""
+        """Return the number by equations or engine (`side`) minus the published one; None without a value."""
         value = self.numbers[side].value
         return None if value is None else value - self.published
 
     def word(self, side: str, explained: bool = False) -> str:
-        """Return the verdict on the number by one side in words, with its explanation if asked."""
+        """Return in words the verdict on the number by `side`, equations or engine; explained: add the explanation."""
         number = self.numbers[side]
         why = (number.explanation or "not explained") if explained else ""
         return word_verdict(number.verdict, self.error_of(side), self.published, self.unit, why)
@@ -77,7 +80,7 @@ class PublishedNumber:
 
 @result
 class Benchmark:
-    """One benchmark: the published numbers of a scene, and those that each side computes."""
+    """One benchmark: the published numbers of a scene, and those that equations and engine compute."""
 
     name: Annotated[str, "name of the scene"]
     title: Annotated[str, "what is solved"]
@@ -90,7 +93,7 @@ class Benchmark:
     seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
 
     def __post_init__(self) -> None:
-        """Raise an error if a published number lacks that by the equations or that by Exudyn."""
+        """Raise an error if a published number has no counterpart by the equations or none by Exudyn."""
         for row in self.rows:
             require(row.numbers.keys() >= {EQUATIONS, ENGINE}, f"numbers must have {EQUATIONS} and {ENGINE}")
 
@@ -112,7 +115,7 @@ class Benchmarks:
         return {why: found.count(why) for why in (FRICTION_EXPLANATION, MODEL_EXPLANATION, "")}
 
     def iterate_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, SideNumber]]:
-        """Yield every number by equations and engine: its benchmark, published number, side, computed number."""
+        """Yield every number by equations or engine: benchmark, published number, which of the two, and the number."""
         for each in self.benchmarks:
             for row in each.rows:
                 for side in (EQUATIONS, ENGINE):
@@ -129,6 +132,7 @@ def verdict_line(table: Benchmarks) -> str:
     return word_counts_and_largest(table.counts(), off, "published number")
 
 
+# File with the table of benchmarks: its name, type, what it holds in words, and the command that writes it
 STORED = StoredFile(TABLE_FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
 
 
