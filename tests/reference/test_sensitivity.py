@@ -65,7 +65,17 @@ def test_what_has_no_derivative_is_refused_or_unknown() -> None:
     line = str(refusal(sensitivity, ONE_BODY, ["isolator.friction"], lambda scene: scene.masses, kind=TypeError))
     assert line.startswith("quantity: returns array(")
     assert "must return an Amplification" in line
-    for wrong in ((), (1.0,), (1.0, "a"), ([1.0, 2.0], 0.1), 1.0, None, (Estimate(1.0, 0.1), 2.0), ([], []), Outcome.OK):
+    for wrong in (
+        (),
+        (1.0,),
+        (1.0, "a"),
+        ([1.0, 2.0], 0.1),
+        1.0,
+        None,
+        (Estimate(1.0, 0.1), 2.0),
+        ([], []),
+        Outcome.OK,
+    ):
         assert "quantity: returns" in str(
             refusal(sensitivity, ONE_BODY, ["isolator.friction"], lambda scene, found=wrong: found, kind=TypeError)
         )
@@ -151,7 +161,12 @@ def test_every_part_of_an_error_counts() -> None:
 
 def test_errors_of_every_point_hide_a_kink() -> None:
     """A slope of 1 begins at 1; errors of the intervals around it, and of both ends and the middle of a bracket."""
-    for errors, seen in (((0, 0, 0, 0), True), ((1.1, 0, 0, 0), False), ((0.6, 0, 0, 0), True), ((0.6, 0, 0.6, 0), False)):
+    for errors, seen in (
+        ((0, 0, 0, 0), True),
+        ((1.1, 0, 0, 0), False),
+        ((0.6, 0, 0, 0), True),
+        ((0.6, 0, 0.6, 0), False),
+    ):
         rows = zip((0.0, 1.0, 2.0, 3.0), (0.0, 0.0, 1.0, 2.0), errors)
         points = [derivatives._QuantityAtValue(*row) for row in rows]
         assert (derivatives._bracket_kink(points, lambda at: points[0]._replace(at=at)) is not None) == seen, errors
