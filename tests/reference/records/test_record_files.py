@@ -138,7 +138,8 @@ NO_DOUBLE = [
     (read_csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
     (read_csv_samples, PLAIN.replace("0.01", "1e-300")),
     (read_at2_samples, {"x": at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")}),
-    (read_at2_samples, {"x": at2([1e308, 2.0])}),
+    *((read_at2_samples, {"x": at2([value, 2.0])}) for value in (1e308, -1e308)),
+    (read_csv_samples, PLAIN.replace("0.2", "-1e301")),
 ]
 
 

@@ -50,6 +50,7 @@ def test_files_of_peer_are_read_in_every_shape(shape):
     samples, reading = read(AT2[shape], "a.AT2")
     assert reading.format == "PEER .AT2"
     assert samples[:, 1].tolist() == (GRAVITY * np.array(FIVE)).tolist()
+    assert not samples.flags.writeable
     assert samples[:, 0].tolist() == (0.01 * np.arange(5)).tolist()
     assert bool(reading.notes) == (shape in ("glued by the sign", "all glued") or "trailer" in shape)
 
@@ -194,6 +195,7 @@ REFUSED = [  # name, text, options, and words of the line
     ("a.AT2", IN_G + FIELDS + " .1E-01\n .2E-01\n", {}, "line 7: 7 values: the header says NPTS = 5"),
     ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
     ("a.AT2", IN_G + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
+    ("a.AT2", IN_G + "0.0010.003-0.2 .1 .2\n", {}, "line 5: '0.0010.003-0.2': must be a number"),
     (
         "a.AT2",
         (PEER + "Accelerogram\nAcceleration in cm/sec2\n5 0.0100 NPTS, DT\n" + FIELDS),

@@ -5,7 +5,7 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, SceneError, load_family, load_scene
-from reference.records.directions import parse_direction
+from reference.records.directions import assign_axes, parse_direction
 from reference.records.motion_lists import FILE_NAME, motion_list_text
 from reference.records.pairing import SuiteError
 from reference.records.suites import list_motions
@@ -79,6 +79,9 @@ def test_angles_of_names_count_from_north_to_the_east():
     for word, angle in {**angles, "N90E": 90, "N91E": None}.items():
         direction = parse_direction(word)
         assert (None if direction is None else direction.azimuth) == angle, word
+    for apart, across in ((74, False), (75, True), (105, True), (106, False), (254, False), (255, True)):
+        told = [parse_direction(word) for word in ("000", f"{apart:03}")]
+        assert (assign_axes(told) is not None) == across, apart
 
 
 def test_files_of_networks_are_paired_by_suffix_and_by_channel(tmp_path):
