@@ -204,20 +204,20 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
     (place / "one.acc").write_text("1\n2\n3\n")
     (place / "other.acc").write_text("4\n5\n6\n")
     text = (
-        "name,x,y,z,factor,step,unit,skip,column\nfirst,two.txt,,,2,0.02,m/s^2,1,2 1\n"
-        "second,one.acc,other.acc,,1,0.01,gal,,1\n"
-        "third,one.acc,,,1,0.01,gal,,1\nfourth,GM001.AT2,,,1,,,,\n"
+        "name,x,y,z,factor,step,unit,skip,column,magnitude\nfirst,two.txt,,,2,0.02,m/s^2,1,2 1,6.75\n"
+        "second,one.acc,other.acc,,1,0.01,gal,,1,\n"
+        "third,one.acc,,,1,0.0078125,gal,,1,\nfourth,GM001.AT2,,,1.23456789,,,,,7\n"
     )
     (place / FILE_NAME).write_text(text)
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
     first, second, third, fourth = (scene.record[1, 1:].tolist() for scene in family.scenes)
     np.testing.assert_allclose([first, second], [[4.0, 3.0, 0.0], [0.02, 0.05, 0.0]])
-    assert (third, fourth) == ([0.02, 0.0, 0.0], [0.2 * GRAVITY, 0.0, 0.0])
+    assert (third, fourth) == ([0.02, 0.0, 0.0], [0.2 * GRAVITY * 1.23456789, 0.0, 0.0])
     assert family.scenes[0].record[1, 0] == 0.02
     listed = list_motions(str(place), place)
     (place / FILE_NAME).write_text(motion_list_text(listed.motions))
     assert list_motions(str(place), place) == listed, "what is written says the same"
-    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,1\n" in motion_list_text(listed.motions)
+    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,1,\n" in motion_list_text(listed.motions)
 
 
 def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
