@@ -153,6 +153,8 @@ def test_where_samples_are_from_is_said_and_changes_no_result(tmp_path):
     first, second = (load_scene(scene_file(tmp_path, f'record = "{name}.csv"')) for name in "ab")
     assert first.excitation.origin == ["x: a.csv, CSV", "a.csv: columns that are not needed: 'Vel'"]
     assert second.excitation.origin == ["b.csv, CSV"]
+    both = load_scene(scene_file(tmp_path, 'record = {x = "b.csv", y = "a.csv"}'))
+    assert both.excitation.origin == ["x: b.csv, CSV", "y: a.csv, CSV", first.excitation.origin[1]]
     assert first.digest() == second.digest()
     anew = first.with_values({"excitation.record": {"file": str(tmp_path / "b.csv")}})
     assert anew.excitation.origin == ["b.csv, CSV"]
@@ -172,7 +174,7 @@ def test_directions_of_files_are_said(tmp_path):
     assert load_scene(scene_file(tmp_path, 'record = "a.csv"')).excitation.origin == ["a.csv, CSV, x = EW, y = NS"]
 
 
-PLAIN = "dt = 0.01\n0.1\n0.2\n0.3\n"
+PLAIN = "dt = 0.01\n0.1\n0.2\n0.3\n0.4\n"
 
 
 def test_plain_texts_are_read_alone_and_by_direction(tmp_path):
@@ -183,6 +185,7 @@ def test_plain_texts_are_read_alone_and_by_direction(tmp_path):
     np.testing.assert_allclose(alone.record[:3, 1], GRAVITY * np.array([0.1, 0.2, 0.3]), rtol=1e-15)
     both = load_scene(scene_file(tmp_path, f'record = {{x = {{file = "b.csv", unit = "gal"}}, z = {table}}}'))
     np.testing.assert_allclose(both.record[0, 1:], [0.01, 0.0, 0.1 * GRAVITY], rtol=1e-15)
+    np.testing.assert_allclose(both.record[3], [0.03, 0.0, 0.0, 0.4 * GRAVITY], rtol=1e-15)
     assert both.excitation.files == "b.csv, a.acc"
     family = reference.load_family(
         scene_file(tmp_path, f'record = {{values = [{table}, {{file = "b.csv", unit = "g"}}]}}')
