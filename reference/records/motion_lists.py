@@ -117,7 +117,8 @@ def read_motion_list(folder: Path) -> MotionList | None:
         except RecordError as error:
             faults.append(f"line {number}: {error}")
     if faults:
-        more = f"; also {len(faults) - MAX_LISTED_FAULTS} more lines" if len(faults) > MAX_LISTED_FAULTS else ""
+        left = len(faults) - MAX_LISTED_FAULTS
+        more = f"; also {left} more line{'' if left == 1 else 's'}" if left > 0 else ""
         raise RecordError(f"{FILE_NAME}: {'; also '.join(faults[:MAX_LISTED_FAULTS])}{more}")
     return MotionList(tuple(motions.values()), listed=True)
 

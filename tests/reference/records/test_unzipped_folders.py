@@ -1,5 +1,7 @@
 """Folders of records as they were unzipped: what is a motion, along which directions, and what is left aside."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from chains import refusal, scene_file
@@ -8,6 +10,7 @@ from reference.problem import GRAVITY, SceneError, load_family, load_scene
 from reference.records.directions import assign_axes, parse_direction
 from reference.records.motion_lists import FILE_NAME, motion_list_text
 from reference.records.pairing import SuiteError
+from reference.records.samples import RecordError
 from reference.records.suites import list_motions
 
 AT2 = "PEER\nInvented\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= .0100 SEC\n {:.1f} 0.2 0.0\n"
@@ -300,6 +303,9 @@ def test_a_written_list_says_what_was_paired(tmp_path):
     assert text.splitlines()[:2] == ["name,x,y,z,factor", "A,A_H1.AT2,A_H2.AT2,A_UP.AT2,1"]
     after = list_motions(str(place), place)
     assert after.motions == before.motions
+    for name in ("A ", "A\n"):
+        said = str(refusal(motion_list_text, [replace(after.motions[0], name=name)], kind=RecordError))
+        assert said.endswith("lists printable names without blanks at their ends: rename the file")
     assert "as motions.csv lists them, 1 with a vertical one" in after.sentence
     (place / FILE_NAME).write_text(text.replace("B090.AT2,", "B090.AT2,A_UP.AT2"))
     upright = list_motions(str(place), place)
@@ -321,9 +327,12 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         ("name,x,factor\na,A.AT2,0\n", "motions.csv: line 2: factor = '0': must be a number up to 1e+06, not 0"),
         ("name,x,factor\na,A.AT2,two\n", "motions.csv: line 2: factor = 'two'"),
         ("name,x,column\na,A.AT2,one\n", "motions.csv: line 2: column = 'one': must be a whole number up to 10000"),
-        (
-            "name,x,y,column\na,A.AT2,A.AT2,1 2 3\n",
-            "line 2: column = '1 2 3': must be one column, or one for each of x, y",
+        *(
+            (
+                f"name,{axes},column\na{axes.count(',') * ',A.AT2'},A.AT2,{numbers}\n",
+                f"'{numbers}': must be one column, or one for {each}",
+            )
+            for axes, numbers, each in (("x,y", "1 2 3", "each of x, y"), ("x,y,z", "1 2", "each of x, y, z"))
         ),
         ("name,x,step\na,A.AT2,-\n", "motions.csv: line 2: step = '-': must be a number up to 1000, not 0"),
         ("name,x,skip\na,A.AT2,-1\n", "motions.csv: line 2: skip = '-1': must be a whole number"),
@@ -334,10 +343,14 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         ("name,x\na,A.AT2\0\n", "motions.csv: must be text in UTF-8"),
         (f"name,x\n{'a' * 2**20}", "motions.csv: larger than 1 MiB"),
         ("name,x,factor\na,B\n\nb,A.AT2,0\n", "'B': no such file in the folder; also line 4: factor = '0': must be"),
-        ("name,x\n" + "a,B\n" * 12, "line 11: 'B': no such file in the folder; also 2 more lines"),
+        *(
+            ("name,x\n" + "a,B\n" * (10 + more), f"line 11: 'B': no such file in the folder; also {more} more {lines}")
+            for more, lines in ((1, "line"), (2, "lines"))
+        ),
     ],
 )
 def test_a_wrong_list_of_motions_is_refused_with_its_line(tmp_path, text, said):
     place = make_folder(tmp_path / "suite", "A.AT2")
     (place / FILE_NAME).write_text(text)
-    assert said in str(refusal(list_motions, str(place), place, kind=SuiteError))
+    line = str(refusal(list_motions, str(place), place, kind=SuiteError))
+    assert line.endswith(said) if " more " in said else said in line
