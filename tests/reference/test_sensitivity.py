@@ -161,6 +161,10 @@ def test_every_part_of_an_error_counts() -> None:
 
 def test_errors_of_every_point_hide_a_kink() -> None:
     """A slope of 1 begins at 1; errors of the intervals around it, and of both ends and the middle of a bracket."""
+
+    def level(at: float) -> derivatives._QuantityAtValue:
+        return derivatives._QuantityAtValue(at, 0.0, 0.0)
+
     for errors, seen in (
         ((0, 0, 0, 0), True),
         ((1.1, 0, 0, 0), False),
@@ -169,7 +173,7 @@ def test_errors_of_every_point_hide_a_kink() -> None:
     ):
         rows = zip((0.0, 1.0, 2.0, 3.0), (0.0, 0.0, 1.0, 2.0), errors)
         points = [derivatives._QuantityAtValue(*row) for row in rows]
-        assert (derivatives._bracket_kink(points, lambda at: points[0]._replace(at=at)) is not None) == seen, errors
+        assert (derivatives._bracket_kink(points, level) is not None) == seen, errors
     for low, middle, high in ((0.06, 0.0, 0.0), (0.0, 0.03, 0.0), (0.0, 0.0, 0.06)):
         ends = (derivatives._QuantityAtValue(at, abs(at), error) for at, error in ((-1.0, low), (1.2, high)))
         wide = derivatives._Bracket(*ends, below=-1.0, beyond=1.0)

@@ -39,7 +39,7 @@ def test_units_are_those_of_the_quantities() -> None:
     units = {name: unit for unit, names in of.items() for name in names.split()}
     assert {name: unit for name, (_, unit) in QUANTITIES.items()} == units
     words = {"min": "smallest", "max": "largest", "share": "over", "friction": "friction", "damping": "dampers"}
-    words |= {part: part for part in "displacement residual travel drift contact support uplift stops".split()}
+    words |= {part: part for part in ("displacement", "residual", "travel", "drift", "contact", "support", "uplift")}
     for name, (meaning, _) in QUANTITIES.items():
         assert all(words.get(part, "") in meaning for part in name.split("_")), name
     assert len({meaning for meaning, _ in QUANTITIES.values()}) == len(QUANTITIES)
