@@ -262,6 +262,12 @@ M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0
             "bring the files of this motion into one unit: a line of motions.csv states one",
         ),
         (
+            "B,A_X.txt,A_Y.txt,,2,,,,\n",
+            {"A_X.txt": "in m/s2, dt = 0.02\n1\n2\n1\n", "A_Y.txt": "1\n2\n1\n"},
+            ("suite/motions.csv", "line 2, name", "B"),
+            'write "B,A_X.txt,A_Y.txt,,2,0.02,m/s2,1,0" in place of this line of motions.csv, below',
+        ),
+        (
             "B,sub/A_X.txt,,,2,0.02,,,\n",
             {"sub/A_X.txt": "0 1\n0.02 2\n0.04 1\n"},
             ("suite/motions.csv", "line 2, name", "B"),
