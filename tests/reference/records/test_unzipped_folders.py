@@ -130,6 +130,7 @@ def test_what_is_no_record_is_ignored_and_counted(tmp_path):
     [
         (("GM001", "GM002"), "'GM001.AT2', 'GM002.AT2': numbers 1, 2 are no azimuths across each other"),
         (("GM001", "GM002", "GM003", "GM091"), "numbers 1, 2, 3 are no azimuths across each other"),
+        (("A000", "A010", "A_H1"), "'A' has 3 horizontal and 0 vertical components"),
         (("EQ_1", "EQ_2", "other"), "'EQ_1.AT2', 'EQ_2.AT2', 'other.AT2': no direction at the end of the name"),
         (("A000", "B000", "B_V"), "'A' has 1 horizontal and 0 vertical components: must have 2, and 0 or 1"),
         (("A_H1", "A_H2", "A_V", "A_UP"), "'A' has 2 horizontal and 2 vertical components"),
