@@ -35,7 +35,6 @@ def test_the_error_of_the_quantity_is_over_the_step() -> None:
     assert (found.value, found.error) == pytest.approx((1.0, 3.0 * 1e-3 / (1.6e-2 * 0.5))), "of a value below zero"
 
     def uneven(scene: Scene) -> tuple[list[float], list[float]]:
-        """A line whose error is 1 below, 5 at and 3 beyond the value; a steep power without one."""
         mass = scene.total_mass
         return [mass, mass**40.0], [{-1.0: 1.0, 0.0: 5.0, 1.0: 3.0}[np.sign(mass - 2.0)], 0.0]
 

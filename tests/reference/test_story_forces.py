@@ -138,7 +138,7 @@ def test_no_moment_without_heights_and_no_supports_without_places() -> None:
         scene = reference.load_scene("fig3-I").with_values(changed)
         forces = story_forces(reference.trajectory(scene, (0.3, 1.1)))
         assert (forces.support_min, forces.support_max, forces.uplift) == (None, None, None)
-        assert (forces.moment is None) == ("bodies.1.height" in changed)
+        assert (forces.moment is None) == (forces.moment_along is None) == ("bodies.1.height" in changed)
 
 
 def test_dead_loads_follow_the_centers_of_mass() -> None:

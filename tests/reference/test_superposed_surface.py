@@ -129,12 +129,3 @@ def test_the_largest_length_is_that_of_dense_samples():
     for near, reached in ((1.0 - 1e-9, True), (2.0, False)):
         found = [phase_peaks.may_reach_bound(series, phases[m][None], near * dense[m, 0]).item() for m in range(12)]
         assert found == [reached] * 12
-
-
-def test_the_displacement_of_a_drift_is_the_integral_of_its_velocity():
-    node, weight = np.polynomial.legendre.leggauss(20)
-    for exponent in (-0.3 + 6.0j, -2.0 + 0.5j):
-        for time in (1e-6, 0.02, 0.165, 0.17, 0.5):
-            velocity = closed_form._drift_derivative(exponent, 0.5 * time * (node + 1.0), 1)
-            found = closed_form._drift_derivative(exponent, np.array([time]), 0)[0]
-            assert found == pytest.approx(0.5 * time * velocity @ weight, rel=1e-13)
