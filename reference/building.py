@@ -245,7 +245,7 @@ def _word_friction(kinds: Sequence[tuple[float, ...]]) -> str:
     dry = [kind for kind in kinds if len(kind) > 1]
     lubricated = [kind[0] for kind in kinds if len(kind) == 1]
     words = [f"lubrication: {_word_range(lubricated)} s/m"] if lubricated else []
-    if any(slow != fast and rate for slow, fast, rate in dry):
+    if any(slow != fast for slow, fast, _ in dry):
         slow, fast, rate = map(_word_range, zip(*dry))
         words.insert(0, f"friction: {slow} at rest, {fast} at high speed, rate {rate} s/m")
     elif dry:

@@ -38,7 +38,7 @@ def implausible_values(scene: Scene, building: Building) -> list[str]:
     if MAX_RADIUS < scene.radius < math.inf:
         unit = "mm" if scene.isolator.period is None else "is period in s"
         lines.append(f"the radius of the isolator is {scene.radius:.4g} m, above {MAX_RADIUS:g} m: {unit}?")
-    if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > MAX_FRICTION:
+    if (friction := scene.dry_friction.largest) > MAX_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
     lines += _implausible_limits(scene, building)
     # `describe_record` warns of a record's own peak. Here a warning is due only if `scale` makes the peak too large.
@@ -141,9 +141,9 @@ def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
 def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
     """Iterate over warnings about an implausible law of friction, positions of supports and heights of bodies."""
     law = scene.dry_friction
-    if not scene.lubricated and law.varies and law.rate < MIN_FRICTION_RATE:
+    if law.varies and law.rate < MIN_FRICTION_RATE:
         yield f"the rate of friction is {law.rate:.4g} s/m, below {MIN_FRICTION_RATE:g} s/m: s/mm?"
-    if not scene.lubricated and law.varies and law.fast < law.slow <= MAX_FRICTION:
+    if law.varies and law.fast < law.slow <= MAX_FRICTION:
         yield f"friction falls with the speed, from {law.slow:.4g} at rest to {law.fast:.4g}: slow and fast swapped?"
     if building.support_extent is not None:
         extent, size = float(building.support_extent.max()), scene.bodies[0].size
@@ -162,12 +162,12 @@ def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:
         yield f"{upper} is not above {lower}, the body below it: bodies stand in the file from the platform up"
     if building.supports is None or scene.flat or building.heights[0] >= 0.0:
         return
-    stated = [float(body.height or 0.0) for body in scene.bodies]
-    depression = stated[0] - float(building.heights[0])
+    stated = float(scene.bodies[0].height or 0.0)
+    depression = stated - float(building.heights[0])
     yield (
         f"the center of mass of {_name_body(scene, 0)} lies {-float(building.heights[0]):.3g} m below the sliding "
         "contact: height counts from the centers of the depressions. Where yours count from the contact, add "
-        f"R = {depression:.4g} m to every height: {stated[0] + depression:.4g} for {stated[0]:.4g} m above the contact"
+        f"R = {depression:.4g} m to every height: {stated + depression:.4g} for {stated:.4g} m above the contact"
     )
 
 

@@ -12,6 +12,8 @@ import pytest
 import multibody
 import reference
 import reference.problem
+from reference.problem import SceneError
+from reference.support.arguments import quote
 
 SCENE = reference.load_scene("fig3-I")
 FUNCTIONS = [
@@ -100,6 +102,8 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "grid as bool": (lambda: reference.phase_grid(True), "points = True: must be a whole number"),
     "amplitude as bool": (lambda: SCENE.with_amplitude(True), "fig3-I: amplitude = True: must be finite and greater"),
     "amplitude as text": (lambda: SCENE.with_amplitude("1"), "fig3-I: amplitude = '1': must be finite and greater"),
+    "truths as phases": (lambda: reference.trajectory(SCENE, (True, False)), "phases = (True, False): must be numbers"),
+    "complex phases": (lambda: reference.trajectory(SCENE, (0.5, 1j)), "phases = (0.5, 1j): must be numbers"),
     "masked phase": (
         lambda: reference.problem.ground_acceleration(SCENE, [np.ma.masked, 1.0], [0.0]),
         "phases: has masked entries: must be (2,)",
@@ -155,6 +159,13 @@ def test_a_wrong_value_is_one_line_with_the_rule(call: Callable[[], Any], line: 
 def test_an_object_of_another_kind_is_one_line(call: Callable[[], Any], line: str) -> None:
     with pytest.raises(TypeError, match=f"^{re.escape(line)}"):
         call()
+
+
+def test_an_error_quotes_and_lists_no_more_than_it_says() -> None:
+    assert quote("x" * 200) == f"'{'x' * 76}..."
+    said = str(SceneError("a", "k", 1, "r", [SceneError("b", "j", n, "s") for n in range(52)]))
+    assert said.startswith("a: k = 1: r; also b: j = 0: s; also b: j = 1: s; ")
+    assert said.endswith("b: j = 48: s; and 3 more")
 
 
 def test_numbers_of_other_kinds_are_numbers() -> None:

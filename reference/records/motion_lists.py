@@ -117,7 +117,8 @@ def read_motion_list(folder: Path) -> MotionList | None:
         except RecordError as error:
             faults.append(f"line {number}: {error}")
     if faults:
-        more = f"; also {len(faults) - MAX_LISTED_FAULTS} more lines" if len(faults) > MAX_LISTED_FAULTS else ""
+        left = len(faults) - MAX_LISTED_FAULTS
+        more = f"; also {left} more line{'' if left == 1 else 's'}" if left > 0 else ""
         raise RecordError(f"{FILE_NAME}: {'; also '.join(faults[:MAX_LISTED_FAULTS])}{more}")
     return MotionList(tuple(motions.values()), listed=True)
 
@@ -211,21 +212,22 @@ def motion_list_text(motions: Iterable[Motion]) -> str:
     Raises RecordError for a name that a line of the list cannot hold.
     """
     motions = list(motions)
-    stating = any(motion.options for motion in motions)
+    stating, rated = any(motion.options for motion in motions), any(motion.magnitude for motion in motions)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([*COLUMNS, *(OPTION_COLUMNS if stating else ())])
+    writer.writerow([*COLUMNS, *OPTION_COLUMNS * stating, *[MAGNITUDE_COLUMN] * rated])
     for motion in motions:
         names = {axis or "x": _name_in_list(file, motion.folder) for axis, file in motion.files.items()}
         for name in (motion.name, *names.values()):
             if not name.isprintable() or name != name.strip():
                 rule = f"{FILE_NAME} lists printable names without blanks at their ends: rename the file"
                 raise RecordError(f"{quote(name)}: {rule}")
-        row = [motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:g}"]
+        row = [motion.name, *(names.get(axis, "") for axis in AXES), f"{motion.factor:.12g}"]
         stated = next(iter(motion.options.values()), {})
         columns = [str(each["column"]) for each in motion.options.values() if "column" in each]
         columns = columns[:1] if len({*columns}) == 1 else columns
-        step = f"{stated['step']:g}" if "step" in stated else ""
+        step = f"{stated['step']:.12g}" if "step" in stated else ""
         row += [step, str(stated.get("unit", "")), str(stated.get("skip", "")), " ".join(columns)] if stating else []
+        row += ["" if motion.magnitude is None else f"{motion.magnitude:.12g}"] if rated else []
         writer.writerow(row)
     return stream.getvalue()

@@ -97,7 +97,7 @@ def check_number(name: str, value: Any, allowed: Range) -> float:
 
 def check_whole_number(name: str, value: Any, allowed: Range) -> int:
     """Return an argument's `value` as an int. Raises ValueError if it is no whole number within the range `allowed`."""
-    if not isinstance(value, Integral) or isinstance(value, bool) or as_float(value) not in allowed:
+    if not isinstance(value, Integral) or as_float(value) not in allowed:
         rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
         raise ValueError(f"{name} = {quote(value)}: {rule}")
     return int(value)

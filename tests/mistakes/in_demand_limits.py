@@ -198,7 +198,7 @@ MISTAKES = (
     Mistake("reference/plausibility.py", "building.heights[0] >= 0.0:", "building.heights[0] < 0.0:",
             "A platform below its sliding contact passes without a word.",
             (WRONG + "what_is_hardly_meant_is_one_line",)),
-    Mistake("reference/plausibility.py", "{stated[0] + depression:.4g} for", "{stated[0]:.4g} for",
+    Mistake("reference/plausibility.py", "{stated + depression:.4g} for", "{stated:.4g} for",
             "The height that is proposed is the one that was written.",
             (WRONG + "what_is_hardly_meant_is_one_line",)),
     Mistake("reference/plausibility.py", "scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)",

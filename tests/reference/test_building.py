@@ -26,14 +26,19 @@ def test_modal_damping_is_that_of_complex_modes_where_dampers_are_weak() -> None
     """A platform so heavy that it does not move is a fixed base."""
     scene = shear_building().with_values({"bodies.0.mass": 1e14, "bodies.2.damping": [3e4, 1e3]})
     scene = scene.with_values({f"bodies.{floor}.damping": [1e3 * floor, 2e3] for floor in (1, 3, 4, 5)})
+    scene = scene.with_values({f"bodies.{floor}.mass": MASS / floor for floor in (1, 2, 3, 4, 5)})
     complex_modes = np.sort(damped_modes(scene).damping_ratio[:, 2::2], axis=1)
-    np.testing.assert_allclose(np.sort(describe_building(scene).modal_damping, axis=1), complex_modes, rtol=1e-4)
+    building = describe_building(scene)
+    np.testing.assert_allclose(np.sort(building.modal_damping, axis=1), complex_modes, rtol=1e-4)
+    np.testing.assert_allclose(building.modal_mass.sum(axis=1), 1.0, rtol=1e-9)
 
 
 def test_peak_of_the_ground_is_the_resultant_of_x_and_y_over_all_phases() -> None:
-    scene = load_scene("fig3-I").with_values({"excitation.amplitudes": [[1.0, -0.4], [-0.3, 0.8], [9.0, 9.0]]})
-    start = [ground_acceleration(scene, phases, [0.0])[0, :2] for phases in phase_grid(16).reshape(-1, 2)]
-    assert describe_building(scene).ground_peak == pytest.approx(np.linalg.norm(start, axis=1).max(), rel=1e-12)
+    for second in (-1.0, 1.0):
+        amplitudes = [[1.0, 0.4 * second], [-0.3, -0.8 * second], [9.0, 9.0]]
+        scene = load_scene("fig3-I").with_values({"excitation.amplitudes": amplitudes})
+        start = [ground_acceleration(scene, phases, [0.0])[0, :2] for phases in phase_grid(16).reshape(-1, 2)]
+        assert describe_building(scene).ground_peak == pytest.approx(np.linalg.norm(start, axis=1).max(), rel=1e-12)
     pair = load_scene("synthetic-pair")
     motion = ground_acceleration(pair, (0.0, 0.0), pair.record[:, 0])[:, :2]
     assert describe_building(pair).ground_peak == np.linalg.norm(motion, axis=1).max()
@@ -50,6 +55,7 @@ def test_a_tall_chain_is_described_by_its_lowest_modes() -> None:
     floors = [{"mass": MASS, "stiffness": [STIFFNESS] * 2} for _ in range(2000)]
     building = describe_building(shear_building().with_values({"bodies": [{"mass": MASS}, *floors]}))
     assert building.fixed_base_period.shape == (2, 10)
+    assert all(line.endswith(" s and 4 more along x and y") for line in building.lines[2:4])
     first = np.sin(np.pi / (4.0 * 2000 + 2.0)) * 2.0 * np.sqrt(STIFFNESS / MASS)
     assert building.fixed_base_period[0, 0] == pytest.approx(2.0 * np.pi / first, rel=1e-10)
 
@@ -76,6 +82,8 @@ def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
     lines = word_buildings([describe_building(each) for each in (*scenes, stiffer)])
     assert lines[0].startswith("Building job 2, job 4, job 1: 6 bodies")
     assert lines[6] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
+    still = replace(describe_building(scene), ground_peak=0.0)
+    assert word_buildings([still, describe_building(scene)])[-1].endswith(": 0 to 1.41 m/s^2 = 0 to 0.144 g")
     assert lines[7].startswith("Building other: 6 bodies")
     assert len(lines) == 14
     kinds = [scene.with_values({"bodies.0.mass": mass, "name": f"{mass:g} kg"}) for mass in (100, 300, 400, 500, 600)]
@@ -92,18 +100,24 @@ def test_buildings_that_differ_in_friction_alone_have_a_line_of_it_for_each() ->
     laws = {
         "lower bound": {"slow": 0.03, "fast": 0.06, "rate": 50.0},
         "upper bound": {"slow": 0.045, "fast": 0.09, "rate": 50.0},
+        "design": 0.07,
     }
     scenes = [scene.with_values({"isolator.friction": law, "name": name}) for name, law in laws.items()]
     lines = word_buildings([describe_building(each) for each in (*scenes, scenes[0])])
-    assert lines[0].startswith("Building lower bound, upper bound: 6 bodies")
-    assert lines[5:7] == [
+    assert lines[0].startswith("Building lower bound, upper bound, design: 6 bodies")
+    assert lines[5:8] == [
         "  friction: 0.03 at rest, 0.06 at high speed, rate 50 s/m (lower bound)",
         "  friction: 0.045 at rest, 0.09 at high speed, rate 50 s/m (upper bound)",
+        "  friction: 0.07 at every speed (design)",
     ]
-    many = [scene.with_values({"isolator.friction": value}) for value in (0.05, 0.02, 0.07, 0.03)]
-    assert word_buildings([replace(describe_building(each), name="one") for each in many])[5:6] == [
-        "  friction: 0.02 to 0.07 at every speed"
-    ]
+    oil = scene.with_values({"isolator.friction": None, "isolator.lubrication": 0.5})
+    many = [oil, *(scene.with_values({"isolator.friction": value}) for value in (0.05, 0.02, 0.07))]
+    for others, said in (
+        ((), "0.02 to 0.07 at every speed; lubrication: 0.5 s/m"),
+        (scenes[:1], "0.02 to 0.07 at rest, 0.02 to 0.07 at high speed, rate 0 to 50 s/m; lubrication: 0.5 s/m"),
+    ):
+        lines = word_buildings([replace(describe_building(each), name="one") for each in (*many, *others)])
+        assert lines[5:6] == [f"  friction: {said}"]
 
 
 def test_a_building_is_said_with_what_may_be_mistyped() -> None:

@@ -206,6 +206,10 @@ def test_creep_that_coarser_samples_miss_is_in_the_error_of_a_residual() -> None
     position[[20, 95], 0, 0] += 0.01, 0.02
     residual = demands(replace(motion, position=position, accuracy=alike)).residual
     assert (residual.value, residual.error) == pytest.approx((1.0, 0.03 + 0.03))
+    first = motion.position.copy()
+    first[88, 0, 0] += 0.03  # where the last rest begins: the others are so far from it
+    residual = demands(replace(motion, position=first, accuracy=alike)).residual
+    assert (residual.value, residual.error) == pytest.approx((1.03, 0.03 + 0.03 + 0.03))
     position[:98] += 0.5  # a rest of three samples: two of five ways to take every fifth one do not see it
     late = replace(motion, position=position, stick=[(motion.time[98], motion.time[-1])], accuracy=alike)
     assert (demands(late).residual.value, demands(late).residual.error) == (1.0, 0.0)
@@ -217,6 +221,10 @@ def test_the_error_of_every_demand_is_what_the_samples_and_the_other_runs_say() 
 
     The trapezoidal rule misses a sum of d^3 over intervals d of the power: 1e-4 in a hundred, 2.5e-3 in twenty.
     """
+    spike, step = np.zeros(101), 62.0 / 100.0
+    spike[52] = 1.0  # a fifth of the samples count it five times, the others do not
+    found = demands(replace(held(1.0, 12.0, 4, Accuracy(np.zeros(2), (), (), 0.0)), friction_power=spike))
+    assert (found.friction_energy.value, found.friction_energy.error) == pytest.approx((step, 4.0 * step / 4.0))
     others = held(0.8, 14.0, 3), held(1.4, 10.0, 6)
     motion = held(1.0, 12.0, 4, Accuracy(np.array([0.7, 0.9]), others, (0.5, 0.25), 0.01))
     answer = demands(motion)

@@ -124,7 +124,7 @@ def test_what_has_no_spectrum_or_factor_is_refused_in_one_line() -> None:
         ((rising, both, [-1.0], [1.0]), f"periods (1,), target (1,): {FITTING}"),
         ((rising, both, [[1.0]], [[1.0]]), f"periods (1, 1), target (1, 1): {FITTING}"),
         ((rising, both, [], []), f"periods (0,), target (0,): {FITTING}"),
-        (([0.0, 0.0], both, [1.0], [1.0]), "rising instants"),
+        (([0.0, 1.0, 1.0], [1.0, 2.0, 3.0], [1.0], [1.0]), "rising instants"),
         ((rising, [[1.0, 0.0], [2.0, 0.0]], [1.0], [1.0]), "at rest along a direction"),
     ):
         assert rule in str(refusal(factor_for_spectrum, *given))

@@ -38,6 +38,7 @@ def test_labeled_demands_are_those_of_the_result() -> None:
     np.testing.assert_array_equal(data["drift"].sel(body=2), square["drift"].value[..., 0])
     assert np.isnan(data["drift"].sel(body=1)).all()
     assert data["friction_energy"].attrs["units"] == "J"
+    assert data["drift_error"].attrs["long_name"] == f"estimated absolute error: {data['drift'].attrs['long_name']}"
     assert reference.peak_demands(scene, [(0.3, 1.1)]).to_xarray()["status"].dims == ("phase",)
 
 

@@ -96,6 +96,11 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     assert not {"0", "π/2"} & {label.get_text() for label in small.get_xticklabels()}, "so short an axis"
     (mesh,) = replace(surface, mu=surface.mu[:6], phases=PAIRS[:6]).plot(axes=plt.figure().add_subplot()).collections
     np.testing.assert_array_equal(np.asarray(mesh.get_array()).reshape(3, 2), surface.mu[:6, 0].reshape(2, 3).T)
+    solid = replace(surface, mu=surface.mu[:6], phases=PAIRS[:6]).plot()
+    solid.figure.canvas.draw()
+    assert solid.get_xlim()[1] < 3.0 < solid.get_ylim()[1]
+    ticks = solid.get_xticklabels(), solid.get_yticklabels()
+    assert ["π/2" in {label.get_text() for label in labels} for labels in ticks] == [False, True]
     flat = surface.plot(axes=plt.figure().add_subplot())
     (mesh,) = flat.collections
     plt.close("all")

@@ -12,6 +12,7 @@ from chains import chain, refusal
 import reference
 from reference import Estimate, Estimates, Scene, SceneError, derivatives, sensitivity
 from reference.derivatives import FINITE_CHANGES, Sensitivity, describe_kink
+from reference.problem import Outcome
 
 ONE_BODY = chain(0.25, 0.08, [2.0], (), [[1.5, 0.4], [0.3, 1.2]], duration=6.0)
 
@@ -32,6 +33,14 @@ def test_the_error_of_the_quantity_is_over_the_step() -> None:
     turned = ONE_BODY.with_values({"bodies.0.yaw": -0.5})
     found = sensitivity(turned, ["bodies.0.yaw"], lambda scene: Estimate(scene.yaws[0], 1e-3))["bodies.0.yaw"]
     assert (found.value, found.error) == pytest.approx((1.0, 3.0 * 1e-3 / (1.6e-2 * 0.5))), "of a value below zero"
+
+    def uneven(scene: Scene) -> tuple[list[float], list[float]]:
+        mass = scene.total_mass
+        return [mass, mass**40.0], [{-1.0: 1.0, 0.0: 5.0, 1.0: 3.0}[np.sign(mass - 2.0)], 0.0]
+
+    found = sensitivity(ONE_BODY, ["bodies.0.mass"], uneven)["bodies.0.mass"]
+    assert found.error[0] == pytest.approx((4.0 * (1.0 + 10.0 + 3.0) / 2.0 + 14.0 / 4.0) / 3.0 / (1.6e-2 * 2.0))
+    assert found.change.error[:, 0].tolist() == [6.0, 6.0, 8.0, 8.0]
 
 
 def test_a_kink_within_the_step_shows_in_the_error() -> None:
@@ -55,7 +64,17 @@ def test_what_has_no_derivative_is_refused_or_unknown() -> None:
     line = str(refusal(sensitivity, ONE_BODY, ["isolator.friction"], lambda scene: scene.masses, kind=TypeError))
     assert line.startswith("quantity: returns array(")
     assert "must return an Amplification" in line
-    for wrong in ((), (1.0,), (1.0, "a"), ([1.0, 2.0], 0.1), 1.0, None):
+    for wrong in (
+        (),
+        (1.0,),
+        (1.0, "a"),
+        ([1.0, 2.0], 0.1),
+        1.0,
+        None,
+        (Estimate(1.0, 0.1), 2.0),
+        ([], []),
+        Outcome.OK,
+    ):
         assert "quantity: returns" in str(
             refusal(sensitivity, ONE_BODY, ["isolator.friction"], lambda scene, found=wrong: found, kind=TypeError)
         )
@@ -139,6 +158,28 @@ def test_every_part_of_an_error_counts() -> None:
     assert derivatives._Bracket(*ends, below=1.0, beyond=3.0).jump == 7.0 - 2.0 * 2.0, "the mean of both slopes"
 
 
+def test_errors_of_every_point_hide_a_kink() -> None:
+    """A slope of 1 begins at 1; errors of the intervals around it, and of both ends and the middle of a bracket."""
+
+    def level(at: float) -> derivatives._QuantityAtValue:
+        return derivatives._QuantityAtValue(at, 0.0, 0.0)
+
+    for errors, seen in (
+        ((0, 0, 0, 0), True),
+        ((1.1, 0, 0, 0), False),
+        ((0.6, 0, 0, 0), True),
+        ((0.6, 0, 0.6, 0), False),
+    ):
+        rows = zip((0.0, 1.0, 2.0, 3.0), (0.0, 0.0, 1.0, 2.0), errors)
+        points = [derivatives._QuantityAtValue(*row) for row in rows]
+        assert (derivatives._bracket_kink(points, level) is not None) == seen, errors
+    for low, middle, high in ((0.06, 0.0, 0.0), (0.0, 0.03, 0.0), (0.0, 0.0, 0.06)):
+        ends = (derivatives._QuantityAtValue(at, abs(at), error) for at, error in ((-1.0, low), (1.2, high)))
+        wide = derivatives._Bracket(*ends, below=-1.0, beyond=1.0)
+        same = derivatives._halve_bracket(wide, lambda at, e=middle: derivatives._QuantityAtValue(at, abs(at), e), 1e-4)
+        assert same == wide
+
+
 def test_a_sentence_about_a_kink_says_place_sides_and_what_is_there() -> None:
     said = describe_kink("duration", 2.0, Estimate(1.98, 0.001), (-3.0, 4.0), 0.0)
     assert said == "kink at duration = 1.98 ± 0.001 (-1 %): slope -3 below and 4 beyond it"
@@ -146,7 +187,9 @@ def test_a_sentence_about_a_kink_says_place_sides_and_what_is_there() -> None:
 
 
 def test_finite_changes_stand_beside_the_derivative() -> None:
-    found = along_friction(lambda friction: friction**2.0)
+    asked: list[float] = []
+    found = along_friction(lambda friction: asked.append(friction) or friction**2.0)
+    assert len(asked) == len({*asked}) == 1 + derivatives.RUNS_PER_KEY == 17, "three steps, twice each, and changes"
     moved = AT * (1.0 + np.array(FINITE_CHANGES))
     assert FINITE_CHANGES == (-0.05, -0.01, 0.01, 0.05)
     np.testing.assert_allclose(found.change.value, moved**2.0 - AT**2.0, rtol=1e-12)
@@ -183,13 +226,13 @@ def test_whatever_has_a_value_and_an_error_is_taken() -> None:
     ):
         assert found(quantity).value == pytest.approx(1.0)
     for quantity in (
-        lambda scene: (scene.total_mass * np.arange(3.0), np.full(3, 1e-9)),
+        lambda scene: (scene.total_mass * np.arange(3.0), np.array([1e-9, 1e-6, 1e-8])),
         lambda scene: tuple(Estimate(scene.total_mass * n, 1e-9) for n in range(3)),
         lambda scene: [Uncertain(scene.total_mass * n) for n in range(3)],
         lambda scene: Estimates(scene.total_mass * np.arange(3.0), np.full(3, 1e-9)),
     ):
         assert found(quantity).value == pytest.approx(np.arange(3.0))
-        assert "0 to 2 ± " in repr(found(quantity))
+        assert f"0 to 2 ± {found(quantity).error.max():.1g};" in repr(found(quantity))
     two = found(lambda scene: (Estimate(scene.total_mass, 0.0), Estimate(2.0 * scene.total_mass, 0.0)))
     assert two.value == pytest.approx([1.0, 2.0]), "two estimates are no pair of value and error"
 

@@ -1,6 +1,7 @@
 """Single numbers that are read off motions, each by its own closed form."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -37,6 +38,11 @@ def test_units_are_those_of_the_quantities() -> None:
     }
     units = {name: unit for unit, names in of.items() for name in names.split()}
     assert {name: unit for name, (_, unit) in QUANTITIES.items()} == units
+    words = {"min": "smallest", "max": "largest", "share": "over", "friction": "friction", "damping": "dampers"}
+    words |= {part: part for part in ("displacement", "residual", "travel", "drift", "contact", "support", "uplift")}
+    for name, (meaning, _) in QUANTITIES.items():
+        assert all(words.get(part, "") in meaning for part in name.split("_")), name
+    assert len({meaning for meaning, _ in QUANTITIES.values()}) == len(QUANTITIES)
 
 
 def test_a_drift_is_against_the_body_below() -> None:
@@ -51,18 +57,23 @@ def test_a_support_moves_with_the_turning_platform() -> None:
     center, angle, moved = np.array([0.2, -0.1]), 0.3, np.array([0.05, -0.02])
     places = {"isolator.ring": None, "isolator.supports": [[1.0, 0.5], [-1.0, 0.5], [0.0, -1.0]]}
     scene = load_scene("fig3-I").with_values(places | {"bodies.0.offset": center})
+    scene = scene.with_values({"bodies.1.damping": [3.0, 0.0]})
     place, turns = np.zeros((2, 11, len(scene.bodies), 3))
     place[5:, 0, :2], turns[5:, 0, 2] = moved, angle
     extra = {"turns": turns, "support_force": np.ones((11, 3)), "uplift": np.zeros((11, 3))}
     extra["uplift"][4, 1] = 0.01
-    answer = demands(made_up(scene, np.linspace(0.0, 1.0, 11), position=place, extra=extra))
+    motion = made_up(scene, np.linspace(0.0, 1.0, 11), position=place, extra=extra)
+    answer = demands(motion)
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     expected = max(np.linalg.norm(center + moved + turn @ (at - center) - at) for at in scene.support_places)
     assert answer.support_displacement.value == pytest.approx(expected, rel=1e-12)
     assert answer.uplift.value == 0.01
-    uplift = story_forces(made_up(scene, np.linspace(0.0, 1.0, 11), position=place, extra=extra)).uplift
+    uplift = story_forces(motion).uplift
     assert uplift is not None
     assert [each.value for each in uplift] == [0.0, 0.01, 0.0]
+    assert (answer.damping_energy, answer.energy_balance) == (None, None)
+    straight = demands(replace(motion, extra={"support_force": extra["support_force"]}))
+    assert (straight.support_displacement, straight.torsion, straight.damping_energy.value) == (None, None, 0.0)
 
 
 def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:

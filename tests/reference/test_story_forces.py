@@ -82,26 +82,29 @@ def test_forces_and_drifts_along_x_and_y_are_those_of_one_axis_each(moved: tuple
         assert [each.value for each in forces.drift_along[axis]] == pytest.approx(drift[:, axis], rel=1e-12)
 
 
-def moments(motion: Trajectory) -> np.ndarray:
+def moments(motion: Trajectory, heights: np.ndarray = HEIGHTS, lean: float = R / 2.0) -> np.ndarray:
     """Overturning moment on the supports over time, (T, 2), N m: of the floor forces, and of the displaced weight."""
-    of_floors = np.einsum("i,tia->ta", MASSES * HEIGHTS, motion.absolute_acceleration[:, :, :2])
+    of_floors = np.einsum("i,tia->ta", MASSES * heights, motion.absolute_acceleration[:, :, :2])
     drift = motion.position[:, 1:, :2] - motion.position[:, :1, :2]
     of_floors = of_floors - motion.contact_force[:, None] * (MASSES[1:, None] / MASSES.sum() * drift).sum(axis=1)
-    moment: np.ndarray = of_floors - R / 2.0 * motion.contact_force[:, None] * motion.position[:, 0, :2]
+    moment: np.ndarray = of_floors - lean * motion.contact_force[:, None] * motion.position[:, 0, :2]
     return moment
 
 
-def test_supports_of_uneven_places_balance_weight_and_moment_about_any_point() -> None:
+@pytest.mark.parametrize("flat", [False, True])
+def test_supports_of_uneven_places_balance_weight_and_moment_about_any_point(flat: bool) -> None:
     """By hand: N_k = c0 + c1 x_k + c2 y_k with their sum and both moments about the axis of the links."""
     places = np.array([[3.0, 2.0], [-3.5, 2.2], [-2.0, -2.6], [0.5, -1.5], [4.0, -0.5]])
-    isolator = {**TABLES["isolator"], "supports": places.tolist()}  # type: ignore[dict-item]
+    radius = np.inf if flat else 2.0
+    isolator = {**TABLES["isolator"], "supports": places.tolist(), "radius": radius}  # type: ignore[dict-item]
     bodies = [{**body, "offset": [0.2 * n, -0.3]} for n, body in enumerate(TABLES["bodies"])]  # type: ignore[arg-type]
     motion = reference.trajectory(
         reference.Scene.model_validate({**TABLES, "isolator": isolator, "bodies": bodies}), (0, 0)
     )
     forces = story_forces(motion)
     offsets = MASSES / MASSES.sum() @ [body["offset"] for body in bodies]
-    wanted = np.column_stack([motion.contact_force, motion.contact_force[:, None] * offsets - moments(motion)])
+    overturning = moments(motion, HEIGHTS + R, 1.0) if flat else moments(motion)
+    wanted = np.column_stack([motion.contact_force, motion.contact_force[:, None] * offsets - overturning])
     shape = np.column_stack([np.ones(len(places)), places])
     by_hand = wanted @ np.linalg.inv(shape.T @ shape) @ shape.T
     assert forces.uplift is None
@@ -135,7 +138,7 @@ def test_no_moment_without_heights_and_no_supports_without_places() -> None:
         scene = reference.load_scene("fig3-I").with_values(changed)
         forces = story_forces(reference.trajectory(scene, (0.3, 1.1)))
         assert (forces.support_min, forces.support_max, forces.uplift) == (None, None, None)
-        assert (forces.moment is None) == ("bodies.1.height" in changed)
+        assert (forces.moment is None) == (forces.moment_along is None) == ("bodies.1.height" in changed)
 
 
 def test_dead_loads_follow_the_centers_of_mass() -> None:

@@ -8,6 +8,8 @@ from chains import chain
 
 import reference
 from reference import surface
+from reference.analytical import frictionless as closed_form
+from reference.analytical import phase_peaks
 from reference.problem import GRAVITY, Outcome, Scene, load_scene, phase_grid
 from reference.problem.reductions import is_linear
 
@@ -53,10 +55,14 @@ def test_the_displacement_on_a_plane_is_that_of_a_run():
     np.testing.assert_allclose(reduced.displacement, full.displacement, rtol=1e-6)
 
 
-def test_phases_at_which_the_rim_is_reached_are_told_as_by_a_run():
-    scene = frictionless(amplitudes=[[6.0, 0.0], [0.0, 1.0]])
+@pytest.mark.parametrize(
+    ("scale", "travel", "end"),
+    [(1.0, {}, Outcome.RIM_REACHED), (0.5, {"isolator.travel": 0.125}, Outcome.TRAVEL_REACHED)],
+)
+def test_phases_at_which_the_rim_or_the_travel_is_reached_are_told_as_by_a_run(scale, travel, end):
+    scene = frictionless(amplitudes=[[6.0 * scale, 0.0], [0.0, scale]]).with_values(travel)
     reduced, full = both(scene)
-    assert set(full.status) == {Outcome.OK.value, Outcome.RIM_REACHED.value}, "some phases reach it, some do not"
+    assert set(full.status) == {Outcome.OK.value, end.value}, "some phases reach it, some do not"
     assert reduced.status.tolist() == full.status.tolist()
     np.testing.assert_array_equal(reduced.instant, full.instant)
 
@@ -91,3 +97,35 @@ def test_a_sum_that_rounding_keeps_from_the_tolerance_is_not_ok() -> None:
     missed = (found.error > 1e-10 * found.mu).any(axis=1)
     assert missed.any()
     assert list(found.status) == list(np.where(missed, "tolerance not met", "ok"))
+
+
+def test_finer_intervals_and_more_terms_find_the_same_peaks(monkeypatch):
+    """The shortest time is that of the isolator, of a link along y, or of the loading."""
+    fast = [{"masses": [1.0], "stiffness": []}, {"stiffness": [[20.0, 2e4]]}, {"periods": [0.05, 1.1]}]
+    for scene in (frictionless(duration=0.7, **changes) for changes in fast):
+        found = closed_form.frictionless_peaks(scene, PHASES[:4])
+        monkeypatch.setattr(closed_form, "INTERVALS_PER_PERIOD", 31)
+        monkeypatch.setattr(closed_form, "SERIES_TERMS", 14)
+        finer = closed_form.frictionless_peaks(scene, PHASES[:4])
+        monkeypatch.undo()
+        for number in (0, 2):
+            np.testing.assert_allclose(found[number], finer[number], rtol=2e-12)
+        assert (found[1] < 1e-9 * found[0]).all()
+
+
+def test_the_largest_length_is_that_of_dense_samples():
+    """Of two bodies on eight intervals, of series whose later terms are as large as the first."""
+    random, places = np.random.default_rng(2), np.linspace(-1.0, 1.0, 1001)
+    derivatives = [2.0**order * (random.normal(size=(8, 2, 2, 2, 2)) @ [1.0, 1.0j]) for order in range(6)]
+    series = phase_peaks.PhaseSeries.from_derivatives(derivatives, 0.5)
+    phases = random.uniform(0.0, 2.0 * np.pi, (12, 2))
+    terms = np.array([part / math.factorial(order) / 2.0**order for order, part in enumerate(derivatives)])
+    vectors = np.einsum("ptnah,mh,px->mtnax", terms, np.exp(1j * phases), places ** np.arange(6.0)[:, None]).real
+    dense = np.linalg.norm(vectors, axis=3).max(axis=(1, 3))
+    peaks, _ = phase_peaks.largest_lengths(series, phases)
+    assert (dense <= peaks + 1e-12).all()
+    np.testing.assert_allclose(peaks, dense, rtol=1e-6)
+    assert (dense <= series.envelope).all()
+    for near, reached in ((1.0 - 1e-9, True), (2.0, False)):
+        found = [phase_peaks.may_reach_bound(series, phases[m][None], near * dense[m, 0]).item() for m in range(12)]
+        assert found == [reached] * 12

@@ -42,7 +42,12 @@ def test_size_peaks_and_ends_are_those_of_the_samples():
     assert along.final_displacement == pytest.approx(cumulative_trapezoid(velocity, time)[-1], rel=1e-4)
     text = str(read)
     assert text.startswith("Record a.csv: 2000 samples, step 0.01 s, 20.04 s, times 1.5\n  a.csv, CSV\n")
-    assert f"  x: peak {along.peak:.4g} m/s^2 = {along.peak / GRAVITY:.4g} g, mean/peak" in text
+    peaks = [np.abs(column).max() / GRAVITY for column in values[:, 1:].T]
+    assert (
+        f"  x: peak {along.peak:.4g} m/s^2 = {peaks[0]:.4g} g, mean/peak {-0.01 / along.peak:+.2g}, final velocity "
+        f"{velocity[-1]:+.2g} m/s, final displacement {along.final_displacement:+.2g} m\n"
+    ) in text
+    assert read.short_lines[0].endswith(", peaks x {:.3g} g, y {:.3g} g, z {:.3g} g".format(*peaks))
 
 
 @given(st.lists(st.tuples(st.floats(1e-3, 1.0), st.floats(-5.0, 5.0)), min_size=2, max_size=20))
@@ -103,6 +108,24 @@ def test_a_line_warns_of_what_is_hardly_meant(case):
             assert line.startswith(start)
 
 
+def test_a_line_warns_from_its_limit_on():
+    """Of the final velocity, the samples, a run of them at the peak, and the steps."""
+    velocity = cumulative_trapezoid(SHAKING, TIME, initial=0.0)
+    strayed = np.abs(velocity - velocity[-1] * TIME / TIME[-1]).max()
+    for share, count in ((0.19, 0), (0.21, 1)):
+        offset = (share * strayed - velocity[-1]) / TIME[-1]
+        assert len(describe_samples("a", [], samples(SHAKING + offset)).warnings) == count
+    for length, count in ((99, 0), (100, 1)):
+        assert len(describe_samples("a", [], samples(SHAKING + 0.1)[:length]).warnings) == count
+    for run, below, count in ((3, 0.0, 0), (4, 1e-12, 1), (4, 1e-6, 0)):
+        values = SHAKING.copy()
+        values[900 : 900 + run] = [2.0] + [2.0 - below] * (run - 1)
+        assert len(describe_samples("a", [], samples(values), 1.0, "mean").warnings) == count
+    for late, count in ((0.44e-4, 0), (0.56e-4, 1)):
+        uneven = samples(SHAKING, time=TIME + np.where(np.arange(2000) % 2, late, 0.0))
+        assert len(describe_samples("a", [], uneven).warnings) == count
+
+
 def test_the_zero_line_is_taken_off_when_asked_for(tmp_path):
     drifting = SHAKING + 0.08 + 0.003 * TIME
     (tmp_path / "a.csv").write_text(csv(drifting))
@@ -130,6 +153,8 @@ def test_where_samples_are_from_is_said_and_changes_no_result(tmp_path):
     first, second = (load_scene(scene_file(tmp_path, f'record = "{name}.csv"')) for name in "ab")
     assert first.excitation.origin == ["x: a.csv, CSV", "a.csv: columns that are not needed: 'Vel'"]
     assert second.excitation.origin == ["b.csv, CSV"]
+    both = load_scene(scene_file(tmp_path, 'record = {x = "b.csv", y = "a.csv"}'))
+    assert both.excitation.origin == ["x: b.csv, CSV", "y: a.csv, CSV", first.excitation.origin[1]]
     assert first.digest() == second.digest()
     anew = first.with_values({"excitation.record": {"file": str(tmp_path / "b.csv")}})
     assert anew.excitation.origin == ["b.csv, CSV"]
@@ -149,7 +174,7 @@ def test_directions_of_files_are_said(tmp_path):
     assert load_scene(scene_file(tmp_path, 'record = "a.csv"')).excitation.origin == ["a.csv, CSV, x = EW, y = NS"]
 
 
-PLAIN = "dt = 0.01\n0.1\n0.2\n0.3\n"
+PLAIN = "dt = 0.01\n0.1\n0.2\n0.3\n0.4\n"
 
 
 def test_plain_texts_are_read_alone_and_by_direction(tmp_path):
@@ -160,6 +185,7 @@ def test_plain_texts_are_read_alone_and_by_direction(tmp_path):
     np.testing.assert_allclose(alone.record[:3, 1], GRAVITY * np.array([0.1, 0.2, 0.3]), rtol=1e-15)
     both = load_scene(scene_file(tmp_path, f'record = {{x = {{file = "b.csv", unit = "gal"}}, z = {table}}}'))
     np.testing.assert_allclose(both.record[0, 1:], [0.01, 0.0, 0.1 * GRAVITY], rtol=1e-15)
+    np.testing.assert_allclose(both.record[3], [0.03, 0.0, 0.0, 0.4 * GRAVITY], rtol=1e-15)
     assert both.excitation.files == "b.csv, a.acc"
     family = reference.load_family(
         scene_file(tmp_path, f'record = {{values = [{table}, {{file = "b.csv", unit = "g"}}]}}')

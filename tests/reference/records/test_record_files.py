@@ -2,6 +2,7 @@
 
 import runpy
 import time
+from functools import partial
 from importlib import resources
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 from reference.problem import GRAVITY
 from reference.records.formats import read_csv_samples
 from reference.records.formats.at2 import read_at2
-from reference.records.samples import RecordError, join_directions
+from reference.records.samples import RecordError, join_directions, make_samples
 
 finite = st.floats(-1e3, 1e3)
 PLAIN = "time [s],ax [g]\n0,0.1\n0.01,0.2\n"
@@ -138,7 +139,9 @@ NO_DOUBLE = [
     (read_csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
     (read_csv_samples, PLAIN.replace("0.01", "1e-300")),
     (read_at2_samples, {"x": at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")}),
-    (read_at2_samples, {"x": at2([1e308, 2.0])}),
+    *((read_at2_samples, {"x": at2([value, 2.0])}) for value in (1e308, -1e308)),
+    (read_csv_samples, PLAIN.replace("0.2", "-1e301")),
+    (partial(make_samples, [0.0, 1.0]), [-1e301, 0.0]),
 ]
 
 

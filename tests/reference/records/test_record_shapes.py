@@ -34,6 +34,7 @@ AT2 = {  # texts of five values at 0.01 s
     "trailer behind the last value": IN_G + FIELDS + "*** End Data ***\n",
     "trailer of two lines": IN_G + FIELDS + "\n*** End Data ***\nchecked by somebody\n",
     "a title behind the sizes": IN_G + "*** Begin data ***\n" + FIELDS,
+    "a long header": "x\n" * 15 + IN_G + FIELDS,
     "unit in words": PEER + "  Acceleration in g\n5 0.0100 NPTS, DT\n" + FIELDS,
     "unit in brackets": PEER + "Acceleration (g)\n5 0.0100 NPTS, DT\n" + FIELDS,
     "carriage returns": (IN_G + FIELDS).replace("\n", "\r\n"),
@@ -50,6 +51,7 @@ def test_files_of_peer_are_read_in_every_shape(shape):
     samples, reading = read(AT2[shape], "a.AT2")
     assert reading.format == "PEER .AT2"
     assert samples[:, 1].tolist() == (GRAVITY * np.array(FIVE)).tolist()
+    assert not samples.flags.writeable
     assert samples[:, 0].tolist() == (0.01 * np.arange(5)).tolist()
     assert bool(reading.notes) == (shape in ("glued by the sign", "all glued") or "trailer" in shape)
 
@@ -190,10 +192,12 @@ REFUSED = [  # name, text, options, and words of the line
     ("a.AT2", IN_G + FIELDS.replace(".2000000E-01", "*****"), {}, "line 5: '*****': a Fortran field"),
     ("a.AT2", (IN_G + FIELDS).replace(".0100 SEC", ".0 SEC"), {}, "line 4: DT = .0 s: must be greater than 0"),
     ("a.AT2", (IN_G + FIELDS).replace("= 5,", "= x,"), {}, "line 4: NPTS = 'x': must be a whole number"),
+    ("a.AT2", IN_G.replace("NP", "UNITS OF M/S2\nNP") + FIELDS, {}, "line 4: the header names no unit that is known"),
     ("a.AT2", IN_G + "x " + FIELDS, {}, "line 5: 'x': must be a number"),
     ("a.AT2", IN_G + FIELDS + " .1E-01\n .2E-01\n", {}, "line 7: 7 values: the header says NPTS = 5"),
     ("a.AT2", IN_G + FIELDS[:42] + "\nend\n", {}, "'end': must be a number"),
     ("a.AT2", IN_G + ".1E-02-101 .2\n", {}, "line 5: '.1E-02-101': must be a number"),
+    ("a.AT2", IN_G + "0.0010.003-0.2 .1 .2\n", {}, "line 5: '0.0010.003-0.2': must be a number"),
     (
         "a.AT2",
         (PEER + "Accelerogram\nAcceleration in cm/sec2\n5 0.0100 NPTS, DT\n" + FIELDS),

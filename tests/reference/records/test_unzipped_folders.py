@@ -1,13 +1,16 @@
 """Folders of records as they were unzipped: what is a motion, along which directions, and what is left aside."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, SceneError, load_family, load_scene
-from reference.records.directions import parse_direction
+from reference.records.directions import assign_axes, parse_direction
 from reference.records.motion_lists import FILE_NAME, motion_list_text
 from reference.records.pairing import SuiteError
+from reference.records.samples import RecordError
 from reference.records.suites import list_motions
 
 AT2 = "PEER\nInvented\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= .0100 SEC\n {:.1f} 0.2 0.0\n"
@@ -79,6 +82,9 @@ def test_angles_of_names_count_from_north_to_the_east():
     for word, angle in {**angles, "N90E": 90, "N91E": None}.items():
         direction = parse_direction(word)
         assert (None if direction is None else direction.azimuth) == angle, word
+    for apart, across in ((74, False), (75, True), (105, True), (106, False), (254, False), (255, True)):
+        told = [parse_direction(word) for word in ("000", f"{apart:03}")]
+        assert (assign_axes(told) is not None) == across, apart
 
 
 def test_files_of_networks_are_paired_by_suffix_and_by_channel(tmp_path):
@@ -124,6 +130,7 @@ def test_what_is_no_record_is_ignored_and_counted(tmp_path):
     [
         (("GM001", "GM002"), "'GM001.AT2', 'GM002.AT2': numbers 1, 2 are no azimuths across each other"),
         (("GM001", "GM002", "GM003", "GM091"), "numbers 1, 2, 3 are no azimuths across each other"),
+        (("A000", "A010", "A_H1"), "'A' has 3 horizontal and 0 vertical components"),
         (("EQ_1", "EQ_2", "other"), "'EQ_1.AT2', 'EQ_2.AT2', 'other.AT2': no direction at the end of the name"),
         (("A000", "B000", "B_V"), "'A' has 1 horizontal and 0 vertical components: must have 2, and 0 or 1"),
         (("A_H1", "A_H2", "A_V", "A_UP"), "'A' has 2 horizontal and 2 vertical components"),
@@ -201,20 +208,20 @@ def test_a_list_of_motions_states_what_plain_texts_do_not(tmp_path):
     (place / "one.acc").write_text("1\n2\n3\n")
     (place / "other.acc").write_text("4\n5\n6\n")
     text = (
-        "name,x,y,z,factor,step,unit,skip,column\nfirst,two.txt,,,2,0.02,m/s^2,1,2 1\n"
-        "second,one.acc,other.acc,,1,0.01,gal,,1\n"
-        "third,one.acc,,,1,0.01,gal,,1\nfourth,GM001.AT2,,,1,,,,\n"
+        "name,x,y,z,factor,step,unit,skip,column,magnitude\nfirst,two.txt,,,2,0.02,m/s^2,1,2 1,6.75\n"
+        "second,one.acc,other.acc,,1,0.01,gal,,1,\n"
+        "third,one.acc,,,1,0.0078125,gal,,1,\nfourth,GM001.AT2,,,1.23456789,,,,,7\n"
     )
     (place / FILE_NAME).write_text(text)
     family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
     first, second, third, fourth = (scene.record[1, 1:].tolist() for scene in family.scenes)
     np.testing.assert_allclose([first, second], [[4.0, 3.0, 0.0], [0.02, 0.05, 0.0]])
-    assert (third, fourth) == ([0.02, 0.0, 0.0], [0.2 * GRAVITY, 0.0, 0.0])
+    assert (third, fourth) == ([0.02, 0.0, 0.0], [0.2 * GRAVITY * 1.23456789, 0.0, 0.0])
     assert family.scenes[0].record[1, 0] == 0.02
     listed = list_motions(str(place), place)
     (place / FILE_NAME).write_text(motion_list_text(listed.motions))
     assert list_motions(str(place), place) == listed, "what is written says the same"
-    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,1\n" in motion_list_text(listed.motions)
+    assert "\nsecond,one.acc,other.acc,,1,0.01,gal,,1,\n" in motion_list_text(listed.motions)
 
 
 def test_plain_texts_of_one_motion_are_proposed_in_one_line(tmp_path):
@@ -254,6 +261,12 @@ M_S2 = "A\nB\nACCELERATION IN UNITS OF M/S2\nNPTS= 3, DT= .01 SEC\n1.0\n2.0\n1.0
             {"A_H1.AT2": M_S2, "A_H2.AT2": M_S2.replace("M/S2", "G")},
             ("suite/motions.csv", "line 2, name", "B"),
             "bring the files of this motion into one unit: a line of motions.csv states one",
+        ),
+        (
+            "B,A_X.txt,A_Y.txt,,2,,,,\n",
+            {"A_X.txt": "in m/s2, dt = 0.02\n1\n2\n1\n", "A_Y.txt": "1\n2\n1\n"},
+            ("suite/motions.csv", "line 2, name", "B"),
+            'write "B,A_X.txt,A_Y.txt,,2,0.02,m/s2,1,0" in place of this line of motions.csv, below',
         ),
         (
             "B,sub/A_X.txt,,,2,0.02,,,\n",
@@ -297,6 +310,9 @@ def test_a_written_list_says_what_was_paired(tmp_path):
     assert text.splitlines()[:2] == ["name,x,y,z,factor", "A,A_H1.AT2,A_H2.AT2,A_UP.AT2,1"]
     after = list_motions(str(place), place)
     assert after.motions == before.motions
+    for name in ("A ", "A\n"):
+        said = str(refusal(motion_list_text, [replace(after.motions[0], name=name)], kind=RecordError))
+        assert said.endswith("lists printable names without blanks at their ends: rename the file")
     assert "as motions.csv lists them, 1 with a vertical one" in after.sentence
     (place / FILE_NAME).write_text(text.replace("B090.AT2,", "B090.AT2,A_UP.AT2"))
     upright = list_motions(str(place), place)
@@ -318,9 +334,12 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         ("name,x,factor\na,A.AT2,0\n", "motions.csv: line 2: factor = '0': must be a number up to 1e+06, not 0"),
         ("name,x,factor\na,A.AT2,two\n", "motions.csv: line 2: factor = 'two'"),
         ("name,x,column\na,A.AT2,one\n", "motions.csv: line 2: column = 'one': must be a whole number up to 10000"),
-        (
-            "name,x,y,column\na,A.AT2,A.AT2,1 2 3\n",
-            "line 2: column = '1 2 3': must be one column, or one for each of x, y",
+        *(
+            (
+                f"name,{axes},column\na{axes.count(',') * ',A.AT2'},A.AT2,{numbers}\n",
+                f"'{numbers}': must be one column, or one for {each}",
+            )
+            for axes, numbers, each in (("x,y", "1 2 3", "each of x, y"), ("x,y,z", "1 2", "each of x, y, z"))
         ),
         ("name,x,step\na,A.AT2,-\n", "motions.csv: line 2: step = '-': must be a number up to 1000, not 0"),
         ("name,x,skip\na,A.AT2,-1\n", "motions.csv: line 2: skip = '-1': must be a whole number"),
@@ -331,10 +350,14 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         ("name,x\na,A.AT2\0\n", "motions.csv: must be text in UTF-8"),
         (f"name,x\n{'a' * 2**20}", "motions.csv: larger than 1 MiB"),
         ("name,x,factor\na,B\n\nb,A.AT2,0\n", "'B': no such file in the folder; also line 4: factor = '0': must be"),
-        ("name,x\n" + "a,B\n" * 12, "line 11: 'B': no such file in the folder; also 2 more lines"),
+        *(
+            ("name,x\n" + "a,B\n" * (10 + more), f"line 11: 'B': no such file in the folder; also {more} more {lines}")
+            for more, lines in ((1, "line"), (2, "lines"))
+        ),
     ],
 )
 def test_a_wrong_list_of_motions_is_refused_with_its_line(tmp_path, text, said):
     place = make_folder(tmp_path / "suite", "A.AT2")
     (place / FILE_NAME).write_text(text)
-    assert said in str(refusal(list_motions, str(place), place, kind=SuiteError))
+    line = str(refusal(list_motions, str(place), place, kind=SuiteError))
+    assert line.endswith(said) if " more " in said else said in line
