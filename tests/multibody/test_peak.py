@@ -108,7 +108,8 @@ def test_two_instants_of_one_corner_are_part_of_its_error() -> None:
     """The slip speed passes 1 at 0.504 by the samples before the corner, and at 0.512 by those behind it."""
     time = np.arange(0.44, 0.58, 0.02)
     slip = 1.0 + np.where(time < 0.51, time - 0.504, 3.0 * (time - 0.512))
-    value, error, instant = _read_corner(time, np.where(time < 0.51, 1.0, 0.9), slip[:, None], 3, 1.0, [3])
+    slips = np.column_stack([2.0 + time, slip])  # of another contact, too
+    value, error, instant = _read_corner(time, np.where(time < 0.51, 1.0, 0.9), slips, 3, 1.0, [3])
     assert (value, instant) == pytest.approx((0.95, 0.508))
     assert error == pytest.approx(0.5 * 0.1 + 0.5 * 0.008 * 0.1 / 0.02)
 
@@ -127,8 +128,16 @@ def test_a_rise_over_short_steps_is_not_taken_for_a_slope() -> None:
 def test_samples_are_read_on_to_an_impact_behind_them() -> None:
     """Unless it is far behind them, or they do not resolve the motion."""
     growing, alternating = np.exp(2.0 * TIME), 1.0 + 0.1 * np.cos(np.pi * np.arange(len(TIME)))
-    for size, instant, on in ((growing, 0.993, True), (growing, 1.1, False), (alternating, 0.993, False)):
+    for size, instant, on in (
+        (growing, 0.993, True),
+        (growing, 1.1, False),
+        (alternating, 0.993, False),
+        (2.0 - alternating, 0.993, False),
+        (growing, 0.993, None),
+    ):
         peaks = read(size)
+        if on is None:  # behind a kink of the loading
+            peaks._knots, peaks._near = TIME[-2:-1], 1e-9
         before = float(peaks.value[0])
         peaks.read_until(instant)
         if on:
