@@ -332,7 +332,9 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     np.testing.assert_array_equal(found["turns"][3], angles)
     np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])
     motion.time = np.arange(5)
-    steep = SimpleNamespace(coordinates=np.where(np.arange(12) == 3, 0.5 * np.arange(5)[:, None], 0.0), time=motion.time)
+    steep = SimpleNamespace(
+        coordinates=np.where(np.arange(12) == 3, 0.5 * np.arange(5)[:, None], 0.0), time=motion.time
+    )
     model.depressions, model.critical_tilt = Mock(**{"is_near_rest.return_value": False}), 1.9
     model.depressions.rows_beyond_rim.return_value = np.zeros(5, bool)  # as of a plane
     assert _find_end_of_validity(steep, model) == (Outcome.OVERTURNED, 4), "beyond 90 degrees"

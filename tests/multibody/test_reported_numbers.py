@@ -16,6 +16,7 @@ from multibody.integration.candidate import Candidate
 from multibody.integration.constant_step import EngineMotion
 from multibody.integration.engine_run import Budget
 from multibody.integration.estimate import (
+    _error_of_starting_links,
     compliance_error,
     contact_lag,
     contact_noise_error,
@@ -23,7 +24,7 @@ from multibody.integration.estimate import (
     rounding_error,
 )
 from multibody.integration.peak import PeakReader
-from multibody.integration.step_control import StepControl
+from multibody.integration.step_control import StepControl, gap_rate_at_end
 from multibody.integration.termination import find_termination, find_travel_end
 from multibody.integration.time_scales import largest_step, list_brief_motions
 from multibody.models.assembly import assemble
@@ -246,6 +247,47 @@ def test_a_softer_contact_shows_what_rounding_leaves() -> None:
         np.testing.assert_allclose(rounding_error(stiff, level, soft, softer, safety), expected)
 
 
+def test_stiff_links_that_swing_at_the_start_are_an_error() -> None:
+    """What a peak within four response times of the contact exceeds the first sample by, up to twice of it."""
+    [peaks] = peaks_of((3.0, 4.0, 4.1, 3.0))
+    peaks.first_sample, peaks.instant[:] = np.full(4, 2.0), (3.9e-3, 1e-3, 1e-3, 4.1e-3)
+    level, model = replace(LEVELS[0], penetration=1e-6), cast("Any", SimpleNamespace(depressions="some"))
+    np.testing.assert_array_equal(_error_of_starting_links(peaks, level, model), [1.0, 2.0, 0.0, 0.0])
+    assert not _error_of_starting_links(peaks, level, MODEL).any(), "of bodies that do not turn"
+
+
+def test_steps_grow_until_the_slip_speed_asks_for_smaller_ones() -> None:
+    """Of the slowest loaded contact: down to what its acceleration asks for, or up to the corner; 32 to 256 steps."""
+    model: Any = SimpleNamespace(corner=0.01, bodies=np.array([[0, 1, 2]]))
+    control = StepControl(model, replace(LEVELS[0], step=0.1, slip_change=0.07))  # 0.2 at this acceleration
+    for before, slip, gap, count in (
+        (0.5015, 0.4995, -1.0, 149),
+        (0.5015, 0.4995, 1.0, 256),  # unloaded
+        (0.4, 0.4995, -1.0, 256),
+        (0.9, 0.4995, -1.0, 32),
+        (0.00395, 0.00405, -1.0, 59),
+    ):
+        contact = np.array([[gap, slow, 0.0, 0.0, gap, 2.0, 0.0, 0.0] for slow in (9.0, before, slip)])
+        motion: Any = SimpleNamespace(time=np.array([0.0, 0.7, 0.8]), contact=contact, accelerations=np.zeros((3, 8)))
+        motion.accelerations[-1] = [0.0, 0.14, 0.0, 9.0, 9.0, 9.0, 9.0, 9.0]
+        assert control.count_largest_steps(motion) == count
+    assert StepControl(cast("Any", SimpleNamespace(corner=math.inf)), LEVELS[0]).count_largest_steps(motion) == 256
+    time, gaps = np.cumsum(np.arange(8.0)), np.random.default_rng(1).normal(size=(8, 2))
+    for rows, back in ((8, 4), (6, 4), (5, 4), (4, 2), (3, 2)):  # an even number of steps
+        motion = SimpleNamespace(time=time[:rows], gap=gaps[:rows])
+        slope = (gaps[rows - 1] - gaps[rows - 1 - back]) / (time[rows - 1] - time[rows - 1 - back])
+        np.testing.assert_allclose(gap_rate_at_end(motion), slope)
+    assert not gap_rate_at_end(cast("Any", SimpleNamespace(time=time[:2], gap=gaps[:2]))).any()
+
+
+def test_forces_round_as_the_square_of_the_farthest_place() -> None:
+    places = {"isolator.ring": None, "isolator.supports": [[5.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]}
+    for values, farthest in (({"bodies.1.height": 7.0}, 7.0), (places, 5.0)):
+        scene = load_scene("fig3-I").with_values(values)
+        found = assemble(scene, "spatial", 1e-3).rounding
+        assert found == pytest.approx(1e-15 * (farthest / scene.radius) ** 2)
+
+
 def test_noise_of_the_contact_is_an_error_along_the_vertical() -> None:
     """
     Half of a force's rounding, which adds to a peak as to its vertical component. On a plane a part of what Newton's
@@ -301,7 +343,9 @@ def test_an_answer_is_judged_by_all_bodies_and_any_rounding() -> None:
         assert answer_with((4e-3, 4e-3), level).is_limited_by_rounding(1e-3) == limited
     soft: Any = SimpleNamespace(outcome=Outcome.OK, peaks=peaks_of((1.01, 2.001))[0])
     asked_of: list[Any] = []
-    pair: Any = SimpleNamespace(run_level=lambda *given, **more: (asked_of.append((*given, more)), soft)[1], model=MODEL)
+    pair: Any = SimpleNamespace(
+        run_level=lambda *given, **more: (asked_of.append((*given, more)), soft)[1], model=MODEL
+    )
     level = replace(LEVELS[0], rounding_moment=0.1 * LEVELS[0].penetration)
     shared = replace(answer_with((0.0, 0.0), level), shares_contact=True, rounding=np.array([0.03, 0.03]))
     shared.run.stop, budget = 0.7, Budget(1.0)

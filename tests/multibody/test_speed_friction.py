@@ -92,6 +92,21 @@ def test_a_platform_approaches_the_center_as_in_the_last_step() -> None:
     assert not heat.begin(1.45), "between two steps"
 
 
+@pytest.mark.parametrize("name", ["constant", "rising", "lubricated", "yielding"])
+def test_an_impact_has_the_friction_of_its_scene(name: str) -> None:
+    """Springs transmit none, as they are soft beside contacts."""
+    rising = {"slow": 0.03, "fast": 0.1, "rate": 20.0}
+    frictions: Any = {"constant": 0.07, "rising": rising, "yielding": {"slow": 0.1, "yield_displacement": 1e-3}}
+    scene = load_scene("fig4-viscous" if name == "lubricated" else "fig3-I").with_values({"isolator.supports": 3})
+    if name != "lubricated":
+        scene = scene.with_values({"isolator.friction": frictions[name]})
+    model, speed = assemble(scene, "spatial", V_REG), 0.4
+    law, slip = model.impact, speed / model.units.velocity
+    expected = {"constant": 0.07, "rising": 0.1 - 0.07 * np.exp(-8.0), "yielding": 0.0}
+    found = law.friction.at(slip) * min(slip / law.corner, 1.0)
+    assert found == pytest.approx(expected.get(name, scene.friction_coefficient * speed))
+
+
 @pytest.mark.parametrize(
     ("slow", "fast", "duration", "halvings"), [(0.03, 0.1, 0.2, 3), (0.1, 0.03, 0.08, 2)], ids=["rising", "falling"]
 )

@@ -16,6 +16,7 @@ import reference
 from multibody import surface
 from multibody.integration import refine
 from multibody.integration.constant_step import EngineSolver
+from multibody.integration.engine_run import EngineRun, begin_run
 from multibody.integration.level import plan_levels
 from multibody.integration.one_run import PhasePair
 from multibody.models import engine
@@ -197,6 +198,26 @@ def test_a_refusal_depends_on_the_model_alone(monkeypatch: pytest.MonkeyPatch) -
         point = multibody.amplification(frame(20.0), [(0.1, 0.2)], **options)
         assert (point.status[0], point.instant[0]) == (Outcome.STEP_LIMIT, 0.0)
         assert np.isnan(point.mu).all()
+
+
+def test_a_run_is_refused_by_the_longest_steps_that_it_may_take(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four times those of level 0, unless it goes to the end; nothing is assembled for a pair that has too little."""
+    asked: list[float] = []
+
+    def limited(pair: PhasePair, level: Any, budget: Any, *rest: Any, **more: Any) -> EngineRun:
+        asked.append(budget.steps_left)
+        return begin_run(pair.model).terminate(Outcome.STEP_LIMIT, 0.0)
+
+    monkeypatch.setattr(PhasePair, "run_level", limited)
+    scene = load_scene("synthetic-pair")  # 5.1e3 steps of level 0
+    for work, full, runs in ((1200.0, False, 0), (1400.0, False, 2), (5000.0, True, 0), (5300.0, True, 2)):
+        asked.clear()
+        status = multibody.amplification(scene, [PHASE], max_work=work, full=full).status
+        assert (status[0], asked) == (Outcome.STEP_LIMIT, [work] * runs)
+        assert (multibody.refusal(scene, max_work=work, full=full) == "") == bool(runs)
+    asked.clear()
+    multibody.trajectory(scene, PHASE, max_work=5000.0)
+    assert asked == [], "a motion that is kept goes to its end"
 
 
 @pytest.mark.parametrize("scene", [load_scene("fig3-I"), frame(60.0, 20, 0.02)], ids=["fig3-I", "20 stiff floors"])
