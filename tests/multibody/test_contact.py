@@ -48,7 +48,7 @@ def test_a_moving_platform_starts_pressed_by_all_that_accelerates_it() -> None:
 
 @pytest.mark.parametrize("flat", [False, True])
 def test_a_settled_contact_opens_as_its_gap_does(flat: bool) -> None:
-    """Along the normal, on a plane the vertical; the gap makes up for the damper, and along the surface nothing changes."""
+    """Along the normal, on a plane the vertical, and nothing changes across it; the gap makes up for the damper."""
     model = assemble(one_body(np.inf if flat else 0.25), "translational", 1e-3)
     place = np.array([50.0, -20.0, 0.0] if flat else [0.3, -0.2, 0.1])
     normal = np.array([0.0, 0.0, 1.0]) - (0.0 if flat else place)

@@ -22,6 +22,7 @@ from multibody.integration.chunk import (
     smallest_loaded_slip,
     vector_lengths,
 )
+from multibody.integration.constant_step import EngineMotion
 from multibody.integration.engine_run import Budget, EngineRun, record_steps
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _choose_early_stop, _compute_work_until, _confirms_early_stop
@@ -34,6 +35,7 @@ from reference.measures.demand_reader import largest_displacement
 from reference.problem import Outcome, Scene, load_scene
 
 TOLERANCE = 3e-3
+LEVEL = multibody.levels(load_scene("fig3-I"))[0]
 
 
 def random_scene(seed: int, longest: float) -> tuple[Scene, Any, float]:
@@ -188,6 +190,33 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
     ahead = EngineRun(PeakReader(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
     ahead.peaks.value[:] = 0.8, peak
     assert look_ahead._comes_near_largest(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
+
+
+def test_neither_heat_nor_a_dense_record_is_looked_over() -> None:
+    """Two steps fit into the shortest interval; what heat has lowered does not come back."""
+    for heat, knots, asks in (
+        (None, [], True),
+        (None, [0.0, 0.2, 9.0], True),
+        (None, [0.0, 0.1, 9.0], False),
+        (1, [], False),
+    ):
+        friction = SimpleNamespace(law=SimpleNamespace(heat=heat))
+        model: Any = SimpleNamespace(friction=friction, ground=SimpleNamespace(knots=np.array(knots)))
+        assert look_ahead.can_look_ahead(model, replace(LEVEL, step=0.1)) == asks
+        ahead = [replace(LEVEL, step=0.1).coarsen(), replace(LEVEL, step=0.1)]
+        assert [look_ahead.level_of_longest_steps(model, ahead[1], whole) for whole in (False, True)] == [
+            ahead[not asks], ahead[1]
+        ]  # fmt: skip
+
+
+def test_what_a_run_has_reached_is_not_forgotten() -> None:
+    run = EngineRun(PeakReader(1, math.inf), math.inf)
+    model: Any = SimpleNamespace(warping_displacement=None, bodies=np.array([[0, 1, 2]]), allows_liftoff=False)
+    for gap, upward in ((-3e-7, 2.0), (1e-8, -5.0), (-5e-7, 1.0)):
+        column = np.array([[0.0, 0.0, upward]] * 2)
+        motion = EngineMotion(np.arange(2.0), *np.zeros((2, 2, 3)), column, np.full((2, 4), gap), np.empty((2, 0)))
+        record_steps(run, motion, np.ones((2, 1)), model, replace(LEVEL, penetration=1e-6))
+    assert (run.min_load, run.has_opened, run.max_vertical) == (pytest.approx(-0.01), True, 5.0)
 
 
 def test_an_early_stop_is_confirmed_by_peaks_and_displacement() -> None:

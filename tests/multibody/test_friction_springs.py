@@ -189,7 +189,7 @@ def test_a_slide_begins_beyond_its_limit_and_ends_with_its_speed(find: Any, valu
 
 
 def test_of_three_supports_the_first_that_slides_or_stops_counts() -> None:
-    """Beyond its limit by 1e-4 of yield, less as the square of the speed that ends slides; its spring grows, or rests."""
+    """Beyond its limit by 1e-4 of yield, less as the square of the speed that ends slides; unless it only creeps."""
     scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **{"isolator.supports": 3})
     model, time = assemble(scene, "spatial", 1e-3), np.array([0.0, 0.1, 0.4, 0.5])
     springs = model.springs
