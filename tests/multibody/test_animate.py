@@ -179,7 +179,9 @@ def test_the_help_says_what_a_speed_is(capsys: pytest.CaptureFixture[str]) -> No
 
 def test_the_fastest_film_has_two_frames() -> None:
     settings = FilmSettings(speed=500.0)
-    assert settings == FilmSettings(5.0, 500.0, 25, (1200, 480)), "as the command line takes them"
+    stated = animate._parse_arguments(["fig3-I", *PHASES])
+    assert (stated.stretch, stated.speed, stated.rate, stated.size) == (5.0, 1.0, 25, (1200, 480))
+    assert (stated.out, stated.model, stated.regularization) == (Path("run.gif"), "translational", 1e-3)
     animate.check_film_options(load_scene("fig3-I"), Path("run.gif"), settings)
     assert animate.count_frames(20.0, settings) == 2
 
@@ -272,7 +274,8 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
     draw_film(scene, motion, "spatial", FilmSettings(stretch=3.0, speed=0.5, rate=5), 3)
     [figure] = made
     assert figure.get_suptitle() == (
-        f"{escape_for_matplotlib(scene.title)}: spatial model of the engine\ndisplacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"
+        f"{escape_for_matplotlib(scene.title)}: spatial model of the engine\n"
+        "displacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"
     )
     labels = [(panel.get_title(), panel.get_xlabel(), panel.get_ylabel()) for panel in figure.axes]
     assert labels == [("from above", "x [m]", "y [m]"), ("along y", "x [m]", "z"), ("along x", "y [m]", "z")]

@@ -42,7 +42,7 @@ def test_a_moving_platform_starts_pressed_by_all_that_accelerates_it() -> None:
     plate, height = np.array([2.0, -1.0, 0.5]), np.sqrt(0.25**2 - 0.1**2 - 0.05**2)
     start = model.start(State(np.array([place]), np.array([speed])), plate, penetration)
     normal, upward = np.array([-0.1, 0.05, height]) / 0.25, np.dot(place, speed) / height
-    pressed = (normal @ (plate + [0.0, 0.0, GRAVITY]) + (0.25 + upward**2) / 0.25) / GRAVITY
+    pressed = (normal @ plate + normal[2] * GRAVITY + (0.25 + upward**2) / 0.25) / GRAVITY
     assert [-start.contact[0] / penetration, start.load[0]] == pytest.approx([pressed] * 2)
 
 

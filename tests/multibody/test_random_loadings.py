@@ -10,7 +10,6 @@ from random_truths import LIKE_FOR_LIKE, beyond_and_ratios, case_of
 import multibody
 import reference
 from multibody.integration.level import soften_for_small_peaks
-from multibody.integration.one_run import PhasePair
 from reference.problem import Outcome, load_scene
 
 WEAKEST, STRONGEST = 1e-15, 1e3  # m/s^2
@@ -52,20 +51,6 @@ def assert_not_contradicted(case: Case, max_work: float = MAX_WORK) -> Outcome |
 def test_a_loading_that_rounding_drowns_has_an_error_that_covers(weak: tuple[Any, ...]) -> None:
     scene, size, *law_and_tolerance = weak
     assert assert_not_contradicted(Case(scene.with_amplitude(size), (0.3, 1.1), *law_and_tolerance)) == BEYOND
-
-
-def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
-    """1e-11 m/s^2 is less than what a contact force rounds to."""
-    runs, run_level = [], PhasePair.run_level
-
-    def noted(*given: Any, **more: Any) -> Any:
-        runs.append(run_level(*given, **more))
-        return runs[-1]
-
-    monkeypatch.setattr(PhasePair, "run_level", noted)
-    weak = load_scene("fig3-I").with_values({"duration": 0.5}).with_amplitude(1e-11)
-    assert multibody.amplification(weak, [(0.3, 1.1)]).status[0] == BEYOND
-    assert len(runs) <= 3, "two levels, and the compliance of the second"
 
 
 def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
