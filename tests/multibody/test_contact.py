@@ -60,21 +60,6 @@ def test_a_settled_contact_opens_as_its_gap_does(flat: bool) -> None:
     np.testing.assert_allclose(settled.contact, [1.0 + 2e-3 * excess, 1.0, 1.0, 1.0])
 
 
-def test_a_settled_restart_with_a_smaller_step_does_not_ring() -> None:
-    penetration, coarse = 1e-6, 0.0123
-    model = assemble(one_body(), "translational", 1e-3)
-    model.set_contact(penetration)
-    state = model.start(State(np.array([[0.05, 0.0]]), np.array([[0.3, 0.4]])), np.zeros(3), penetration)
-    engine, jitter = EngineSolver(model, 1e-8, 1e-9), []
-    with silence_engine():
-        sliding = engine.run(state, 0.0, coarse, 40)
-        rate = (sliding.gap[-1] - sliding.gap[-5]) / (sliding.time[-1] - sliding.time[-5])
-        for begin in (sliding.state_at(-1), model.settle(sliding.state_at(-1), rate, penetration)):
-            motion = engine.run(begin, float(sliding.time[-1]), coarse / 4.0, 12)
-            jitter.append(np.abs(np.diff(motion.accelerations[:, 2], 2)).max())
-    assert jitter[1] < 0.1 * jitter[0]
-
-
 def test_a_held_platform_creeps_as_v_reg_says(within: Callable[[float, float], None]) -> None:
     push, mu, v_reg = 0.5, 0.1, 1e-3
     scene = one_body(friction=mu, duration=0.3, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=[CONSTANT, CONSTANT])

@@ -285,7 +285,7 @@ def test_forces_round_as_the_square_of_the_farthest_place() -> None:
     for values, farthest in (({"bodies.1.height": 7.0}, 7.0), (places, 5.0)):
         scene = load_scene("fig3-I").with_values(values)
         found = assemble(scene, "spatial", 1e-3).rounding
-        assert found == pytest.approx(1e-15 * (farthest / scene.radius) ** 2)
+        assert found == pytest.approx(1e-15 * (farthest / scene.radius) ** 2, abs=0.0)
 
 
 def test_noise_of_the_contact_is_an_error_along_the_vertical() -> None:
