@@ -187,7 +187,8 @@ def single_run(
         built = assemble(scene, model, regularization, contact_force=True)
         point = PhasePair(scene, built, pair, _check_initial(scene, initial))
         if level is not None:
-            run = point.run_level(*check_levels([level]), Budget(MAX_STEPS), keep=True)
+            [level] = check_levels([level])
+            run = point.run_level(level, Budget(MAX_STEPS), keep=True)
         else:
             allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
             count = round(scene.duration / check_number("step", step, allowed))

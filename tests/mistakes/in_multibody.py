@@ -441,7 +441,7 @@ MISTAKES = (
     Mistake(INTEGRATION + "look_ahead.py", ".min(initial=math.inf)) >= 2.0", ".max(initial=math.inf)) >= 2.0",
             "A record with a dense part is looked over.", (TESTS + "test_early_end.py::test_neither_heat_nor_a_dense_record_is_looked_over",)),
     Mistake(INTEGRATION + "engine_run.py", "run.min_load = min(run.min_load, -gap", "run.min_load = min(1e9, -gap",
-            "The smallest load is the last.", (TESTS + "test_early_end.py::test_what_a_run_has_reached_is_not_forgotten",)),
+            "The smallest load is the last.", (TESTS + "test_early_end.py::test_a_run_keeps_the_largest_values_and_the_smallest_load_of_all_its_parts",)),
     Mistake("multibody/README.md", "stiffness of one bearing in N/m", "stiffness of all bearings in N/m",
             "The stiffness of a bearing is called that of all.", (PARTS + "test_contacts_press_damp_and_rub_as_their_law_says",)),
     Mistake("multibody/film.py", "rise = np.zeros(101) if scene.flat else", "rise = np.zeros(101) if False else",

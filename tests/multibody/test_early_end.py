@@ -22,7 +22,6 @@ from multibody.integration.chunk import (
     smallest_loaded_slip,
     vector_lengths,
 )
-from multibody.integration.constant_step import EngineMotion
 from multibody.integration.engine_run import Budget, EngineRun, record_steps
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _choose_early_stop, _compute_work_until, _confirms_early_stop
@@ -207,16 +206,6 @@ def test_neither_heat_nor_a_dense_record_is_looked_over() -> None:
         assert [look_ahead.level_of_longest_steps(model, ahead[1], whole) for whole in (False, True)] == [
             ahead[not asks], ahead[1]
         ]  # fmt: skip
-
-
-def test_what_a_run_has_reached_is_not_forgotten() -> None:
-    run = EngineRun(PeakReader(1, math.inf), math.inf)
-    model: Any = SimpleNamespace(warping_displacement=None, bodies=np.array([[0, 1, 2]]), allows_liftoff=False)
-    for gap, upward in ((-3e-7, 2.0), (1e-8, -5.0), (-5e-7, 1.0)):
-        column = np.array([[0.0, 0.0, upward]] * 2)
-        motion = EngineMotion(np.arange(2.0), *np.zeros((2, 2, 3)), column, np.full((2, 4), gap), np.empty((2, 0)))
-        record_steps(run, motion, np.ones((2, 1)), model, replace(LEVEL, penetration=1e-6))
-    assert (run.min_load, run.has_opened, run.max_vertical) == (pytest.approx(-0.01), True, 5.0)
 
 
 def test_an_early_stop_is_confirmed_by_peaks_and_displacement() -> None:

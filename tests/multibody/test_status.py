@@ -183,6 +183,8 @@ def test_a_refusal_says_what_is_needed_and_what_helps() -> None:
     on_bars = scene.with_values(bars)
     softened, stiff = (multibody.refusal(on_bars, max_work=100.0, softened=soft) for soft in (True, False))
     assert softened == multibody.refusal(on_bars.softened(), max_work=100.0) != stiff
+    buckled = multibody.refusal(on_bars.with_values({"bodies.1.bars.bending_stiffness": 1e-3}), softened=True)
+    assert re.match(r"refused before any step: .*buckl", buckled)
     for duration in (1.55, 1.57):
         refused = multibody.refusal(scene.with_values({"duration": duration}), max_work=100.0)
         assert (refused != "") == (duration > 1.563)
