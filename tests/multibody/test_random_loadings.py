@@ -1,5 +1,6 @@
 """Stated errors of the engine hold for random scenes and whatever loading, and none is called ok that misses."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -56,6 +57,10 @@ def test_a_loading_that_rounding_drowns_has_an_error_that_covers(weak: tuple[Any
 def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
     levels = multibody.levels(load_scene("fig3-I"), tolerance=1e-3)
     assert [soften_for_small_peaks(level, 0.2, 1e-3) for level in levels] == levels
+    for change, limited in ((0.029, False), (0.031, True)):  # of the force over the peak: beyond 0.03 contacts follow
+        level = replace(levels[3], force_change=change * 1e-6, softest=1e-7, strength=1e-7)
+        found = soften_for_small_peaks(level, 1e-6, 1e-3)
+        assert (found.penetration == max(level.penetration, 1e-7), found.strength) == (limited, 1e-7)
     softer = soften_for_small_peaks(levels[3], 1e-6, 1e-3)
     assert softer.rounding == pytest.approx(0.25 * 1e-3 * 1e-6)
     assert softer.residual == pytest.approx(softer.rounding)
