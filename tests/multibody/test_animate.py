@@ -86,6 +86,7 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
 def test_a_film_that_cannot_be_written_is_one_line(words: list[str], capsys: Any) -> None:
     assert main([*words[:-1], str(Path(words[-1]).with_name(f"{'x' * 300}.gif"))]) == 3
     said = capsys.readouterr().err
+    assert said.startswith("command line: --out = ")
     assert ("could not be written: [Errno 36]" in said, said.count("\n")) == (True, 1)
 
 
@@ -167,7 +168,7 @@ def test_reduced_heights_of_a_tall_frame_are_named() -> None:
     scene = load_scene("fig3-I").with_values({"bodies.1.height": 40.0})
     motion: Any = SimpleNamespace(time=np.array([0.0, 1.0]), position=np.zeros((2, 2, 3)), extra={})
     factor = arrange_boxes(scene)[2]
-    assert factor < 0.5
+    assert factor == pytest.approx(1.2 * 2.0 / (40.0 - scene.bodies[0].height)), "1.2 widths of the widest box"
     assert film_module.make_drawing(scene, motion, 1.0, 2).scales.endswith(f", heights x {factor:.2g}")
 
 
@@ -175,6 +176,12 @@ def test_the_help_says_what_a_speed_is(capsys: pytest.CaptureFixture[str]) -> No
     with pytest.raises(SystemExit):
         main(["--help"])
     assert "seconds of motion per second of film" in " ".join(capsys.readouterr().out.split())
+    page = " ".join((Path(animate.__file__).parent / "README.md").read_text(encoding="utf-8").split())
+    assert "The film shows the boxes from above and from two sides, the supports on their ring" in page
+    options = (
+        "sets the size in pixels, `--rate 10` the frames per second, `--speed 2` the seconds of motion per second."
+    )
+    assert f"`--size 800 400` {options}" in page
 
 
 def test_the_fastest_film_has_two_frames() -> None:

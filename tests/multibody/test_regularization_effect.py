@@ -1,5 +1,7 @@
 """What regularization does to a surface of the engine is estimated from a second v_reg, if so asked."""
 
+from inspect import signature
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -77,6 +79,11 @@ def test_both_speeds_have_all_that_is_asked_for(monkeypatch: pytest.MonkeyPatch)
         scene, (0.0, 0.0), "spatial", 2e-3, 1e-2, full=True, levels=levels, max_work=5e4, softened=True,
         regularization_effect=True,
     )  # fmt: skip
+    page = (Path(multibody.__file__).parent / "README.md").read_text(encoding="utf-8")
+    damping = signature(multibody.floor_spectra).parameters["damping"].default
+    assert "v_reg in m/s, below which dry friction is linear" in page
+    assert "computes\n  every point with a tenth of v_reg" in page
+    assert f"`floor_spectra(trajectory, periods=None, damping={damping})`" in page
     soft, limits = scene.softened(), (1e-2, levels, 5e4)
     assert asked == [(soft, "spatial", v_reg, True, *limits) for v_reg in (2e-3, pytest.approx(2e-4))]
     assert (found.cost, found.scene_name, found.regularization_effect.tolist()) == (8.0, scene.name, [-0.5, -0.5])

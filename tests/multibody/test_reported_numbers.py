@@ -226,7 +226,7 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
     """Unless one body shows that levels have not converged: then none is known to better than itself."""
     [peaks] = peaks_of((1.0, 2.0))
     run: Any = SimpleNamespace(peaks=peaks)
-    for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.31, (1.004, 2.004))):
+    for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.295, (0.301, 7e-3)), (0.31, (1.004, 2.004))):
         parts = np.array([shown, 1e-3]), np.full(2, 2e-3), np.zeros(2)
         answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)

@@ -51,7 +51,10 @@ def test_a_run_at_a_constant_step_has_the_tolerances_asked_for(
     asked: list[Any] = []
     monkeypatch.setattr(EngineSolver, "run", lambda solver, *_: asked.append(solver.settings.timeIntegration))
     assert multibody.single_run(SCENE, PHASE, step=1e-3, newton=2e-4, **limits).status == Outcome.SOLVER_FAILED
-    [found] = asked
+    pair = PhasePair(SCENE, assembly.assemble(SCENE, "translational", 1e-3), np.array(PHASE))
+    pair.run_level(multibody.levels(SCENE)[0], Budget(1e5), residual=4e-7)
+    found, *_, at_level = asked
+    assert at_level.newton.absoluteTolerance == 4e-7
     tolerances = found.newton.relativeTolerance, found.newton.absoluteTolerance, found.discontinuous.iterationTolerance
     assert tolerances == pytest.approx((2e-4, limits.get("residual", 2e-7), limits.get("discontinuous", 2e-4)))
 

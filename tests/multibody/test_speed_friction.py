@@ -14,6 +14,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.step_control import StepControl
 from multibody.models.assembly import assemble
 from multibody.models.speed_friction import _compute_rate_of_length
+from multibody.models.state import EngineState
 from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, DryFriction, State, load_scene
 from reference.problem.friction import Heat
@@ -90,6 +91,17 @@ def test_a_platform_approaches_the_center_as_in_the_last_step() -> None:
     heat.step_to(1.5, power, 0.25)
     assert heat.distance(1.7) == pytest.approx(0.15)
     assert not heat.begin(1.45), "between two steps"
+
+
+def test_the_coefficient_is_that_of_speed_and_load_at_the_end_of_a_step() -> None:
+    """By the rates of the step before; no speed is negative."""
+    law = {"slow": 0.03, "fast": 0.1, "rate": 20.0, "load_exponent": -0.3}
+    model = assemble(load_scene("fig3-I").with_values({"isolator.friction": law}), "translational", V_REG)
+    rates = {"slip_rate": np.array([-0.5]), "load": np.array([1.3]), "load_rate": np.array([0.4])}
+    state, friction = EngineState(np.zeros(8), np.zeros(8), np.array([-1.0, 0.02, 0.0, 0.0]), **rates), model.friction
+    friction.begin(model.mbs, state, 0.7)
+    found = friction._coefficients_without_heat(0.01) + friction._coefficients_without_heat(0.1)
+    assert found == pytest.approx([friction.law.coefficient_at(0.015, 1.304), friction.law.coefficient_at(0.0, 1.34)])
 
 
 @pytest.mark.parametrize("name", ["constant", "rising", "lubricated", "yielding"])

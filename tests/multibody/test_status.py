@@ -147,6 +147,7 @@ def test_a_tolerance_out_of_reach_gives_the_error_reached() -> None:
         ({"phase": PHASE, "step": 1e-3, "level": multibody.levels(load_scene("fig3-I"))[0]}, "exactly one"),
         ({"phase": PHASE, "step": 0.0}, "step"),
         ({"phase": PHASE, "step": 20.1}, "step"),
+        ({"phase": PHASE, "step": 1.9e-6}, "from 2e-06 to 20 s"),
         ({"phase": PHASE, "step": 1e-3, "integrator": "Euler"}, "integrator"),
         ({"phase": PHASE, "step": 1e-3, "penetration": -1.0}, "penetration"),
     ],
