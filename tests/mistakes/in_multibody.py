@@ -476,5 +476,9 @@ MISTAKES = (
     Mistake(INTEGRATION + "level.py", "force_change > MAX_NEGLIGIBLE_FORCE_CHANGE * smallest", "force_change > smallest",
             "A contact does not follow a force that changes by a part of the peak.",
             (RANDOM + "test_only_a_small_peak_asks_for_a_softer_contact",)),
+    Mistake(MODELS + "plane.py", "TRIANGLE_EXTENT_OVER_TRAVEL = 2.0", "TRIANGLE_EXTENT_OVER_TRAVEL = 0.5",
+            "A platform slides off the plane's edge.", (NUMBERS + "test_a_plane_is_as_wide_as_a_platform_may_move",)),
+    Mistake(MODELS + "friction_springs.py", "SLIDE_END_SPEED_RATIO = 0.1", "SLIDE_END_SPEED_RATIO = 0.2",
+            "Slides end at twice the speed.", (YIELDING + "test_of_three_supports_the_first_that_slides_or_stops_counts",)),
 )
 # fmt: on

@@ -193,6 +193,7 @@ def test_of_three_supports_the_first_that_slides_or_stops_counts() -> None:
     scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **{"isolator.supports": 3})
     model, time = assemble(scene, "spatial", 1e-3), np.array([0.0, 0.1, 0.4, 0.5])
     springs = model.springs
+    assert springs.slide_end * model.units.velocity == pytest.approx(0.1 * math.sqrt(0.1 * GRAVITY * 1e-3))
     end, left, load = 0.5 * springs.slide_end, 0.25e-4 * springs.displacement, 1.0 + 0.1 * np.arange(12.0).reshape(4, 3)
     limit, state = springs.displacement * load, EngineState(*np.zeros((3, 30)), sliding=(False, True, False))
     early, late, falls, steady = [-3.0, -1.0, 2.0, 3.0], [-2.0, -2.0, -1.0, 3.0], [9.0, 4.0, 3.0, 3.0], [9.0] * 4

@@ -31,7 +31,7 @@ from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import fastest_bar_frequency
-from multibody.models.plane import _largest_distance_possible
+from multibody.models.plane import _largest_distance_possible, set_plane_extent
 from multibody.models.spatial import _critical_tilt
 from multibody.models.units import units_of
 from multibody.motion import _measure_attitude
@@ -152,6 +152,15 @@ def test_a_plane_is_as_wide_as_a_platform_may_move() -> None:
     end, load = BRIEF.duration / units.time, 2.0 * BRIEF.largest_acceleration / units.acceleration
     expected = 7.0 + 3.0 * end + load * end**2
     assert _largest_distance_possible(BRIEF, units, coordinates, velocities) == pytest.approx(expected)
+    made: list[Any] = []
+    system: Any = SimpleNamespace(
+        SetObjectParameter=lambda *given: made.append(np.array([given[2][k] for k in range(3)]))
+    )
+    for distance in (1.0, 1e6):
+        set_plane_extent(system, "contact", distance, 0.3)
+        ahead = np.roll(made[-1], 1, axis=0) - made[-1]  # along the three edges of the triangle
+        nearest = np.abs(np.cross(made[-1], ahead)[:, 2]).min() / np.linalg.norm(ahead, axis=1).max()
+        assert (nearest >= max(distance, 1e3), made[-1][:, 2].tolist()) == (True, [0.3] * 3)
 
 
 def test_a_motion_ends_with_what_comes_first() -> None:

@@ -234,6 +234,8 @@ def test_levels_on_real_bearings_begin_with_a_full_run_where_the_trial_rattles(r
 def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
     done = refined(lambda *at: replace(real_from_level_1(*at), impacts=int(finer_on_bearings(*at))), 2)
     assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3), "no level before it has the same springs"
+    loaded = refined(lambda *_: result(1.0, warping_load=0.02)).answer
+    assert loaded.floor == LEVELS[1].error_floor, "open supports share no load"
 
 
 def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
