@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from multibody.defaults import DEFAULT_NEWTON_TOLERANCE, DEFAULT_PENETRATION, DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silence_engine
 from multibody.integration.engine_run import Budget, EngineRun
-from multibody.integration.level import Level
+from multibody.integration.level import Level, check_levels
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import MAX_WORK, WORK_RANGE, refine
@@ -27,6 +27,7 @@ from reference.support.arguments import Range, check_choice, check_number
 MAX_STEPS = 1e7
 PENETRATION_RANGE = Range(1e-14, 0.1, "of rho")  # allowed penetration of the contact under the weight
 NEWTON_RANGE = Range(1e-14, 1.0)  # allowed relative tolerance of the forces in Newton's iteration
+RESIDUAL_RANGE = Range(0.0, 1.0, "of the weight")  # allowed absolute tolerance of the forces
 
 
 @require_scene
@@ -179,15 +180,18 @@ def single_run(
     check_choice("integrator", integrator, INTEGRATORS)
     penetration = check_number("penetration", penetration, PENETRATION_RANGE)
     newton = check_number("newton", newton, NEWTON_RANGE)
+    residual = 1e-3 * newton if residual is None else check_number("residual", residual, RESIDUAL_RANGE)
+    if discontinuous is not None:
+        discontinuous = check_number("discontinuous", discontinuous, NEWTON_RANGE)
     with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
         point = PhasePair(scene, built, pair, _check_initial(scene, initial))
         if level is not None:
+            [level] = check_levels([level])
             run = point.run_level(level, Budget(MAX_STEPS), keep=True)
         else:
             allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
             count = round(scene.duration / check_number("step", step, allowed))
-            residual = 1e-3 * newton if residual is None else residual
             run = point.run_constant_step(count, penetration, newton, residual, integrator, discontinuous)
     motion = _make_trajectory(point, run, run.outcome, run.instant * built.units.time)
     return replace(motion, law=describe_law(scene, regularization))

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.constant_step import silence_engine
-from multibody.integration.level import Level
+from multibody.integration.level import Level, check_levels
 from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK_RANGE, Refinement, refine
 from multibody.models.assembly import assemble, choose_model
@@ -105,6 +105,7 @@ def amplification(
     pairs, leading = flat_phases(phases)
     tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     max_work = check_number("max_work", max_work, WORK_RANGE)
+    levels = None if levels is None else check_levels(levels)
     clock = time.process_time()
     ground = ground_peak(scene, pairs)
     with silence_engine():

@@ -3,6 +3,7 @@
 import inspect
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -45,6 +46,7 @@ def test_a_wrong_object_is_one_line_that_says_what_to_pass(
         function()
 
 
+LEVEL = multibody.levels(SCENE)[0]
 SHORT, START = SCENE.with_values({"isolator.travel": 0.1}), reference.State(np.full((2, 2), 0.08), np.zeros((2, 2)))
 TOO_FAR = "initial: the platform must start within isolator.travel = 0.1 m"
 LOOP: list[Any] = []
@@ -85,6 +87,27 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: multibody.single_run(SCENE, (0.0, 0.0), step=1e-3, newton=2.0),
         "newton = 2.0: must be finite and positive, from 1e-14 to 1",
     ),
+    "residual": (
+        lambda: multibody.single_run(SCENE, (0.0, 0.0), step=1e-3, residual=True),
+        "residual = True: must be finite, from 0 to 1 of the weight",
+    ),
+    "iteration over contacts": (
+        lambda: multibody.single_run(SCENE, (0.0, 0.0), step=1e-3, discontinuous=-1.0),
+        "discontinuous = -1.0: must be finite and positive, from 1e-14 to 1",
+    ),
+    "no levels": (
+        lambda: multibody.amplification(SCENE, (0.0, 0.0), levels=[]),
+        "levels = []: must be levels of accuracy, as multibody.levels lists them",
+    ),
+    "no level": (lambda: multibody.single_run(SCENE, (0.0, 0.0), level=3), "levels = [3]: must be levels of accuracy"),
+    "one level of two": (lambda: multibody.amplification(SCENE, (0.0, 0.0), levels=[LEVEL, 1]), "levels = [Level("),
+    **{
+        f"level of no {key}": (
+            lambda key=key: multibody.single_run(SCENE, (0.0, 0.0), level=replace(LEVEL, **{key: 0.0})),
+            f"levels: {key} = 0.0: must be finite and positive",
+        )
+        for key in ("step", "slip_change", "penetration", "newton")
+    },
     "regularization": (
         lambda: multibody.trajectory(SCENE, (0.0, 0.0), regularization=2e6),
         "regularization = 2000000.0: must be finite and positive, from 1e-12 to 1e+06 m/s",

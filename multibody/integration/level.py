@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.constant_step import silence_engine
@@ -23,7 +24,10 @@ from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Scene
 from reference.problem.ranges import TOLERANCE_RANGE
 from reference.problem.scene import require_scene
-from reference.support.arguments import check_number
+from reference.support.arguments import Range, check_number, quote
+
+# Admissible numbers of a level that a caller states.
+LEVEL_RANGE = Range(1e-100, 1e6)
 
 # Largest number of levels of accuracy that a phase pair goes through.
 MAX_LEVELS = 8
@@ -241,6 +245,17 @@ def levels(
     tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
     with silence_engine():
         return plan_levels(scene, assemble(scene, model, regularization), tolerance)
+
+
+def check_levels(levels: Any) -> list[Level]:
+    """Return a caller's levels. Raises ValueError, one line, if they are none, or have numbers that no run can take."""
+    given = levels if isinstance(levels, (list, tuple)) else []
+    if not given or not all(isinstance(level, Level) for level in given):
+        raise ValueError(f"levels = {quote(levels)}: must be levels of accuracy, as multibody.levels lists them")
+    for level in given:
+        for name in ("step", "slip_change", "penetration", "newton"):
+            check_number(f"levels: {name}", getattr(level, name), LEVEL_RANGE)
+    return [*given]
 
 
 def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:

@@ -19,6 +19,7 @@ from multibody import film as film_module
 from multibody.animate import main
 from multibody.film import FilmSettings, arrange_boxes, choose_magnification, draw_film
 from reference.problem import ADVICE, Outcome, load_scene
+from reference.support.drawing import escape_for_matplotlib
 
 SHORT = """
 title = "short"
@@ -85,6 +86,7 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
 def test_a_film_that_cannot_be_written_is_one_line(words: list[str], capsys: Any) -> None:
     assert main([*words[:-1], str(Path(words[-1]).with_name(f"{'x' * 300}.gif"))]) == 3
     said = capsys.readouterr().err
+    assert said.startswith("command line: --out = ")
     assert ("could not be written: [Errno 36]" in said, said.count("\n")) == (True, 1)
 
 
@@ -127,7 +129,9 @@ NAMED = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen
          "give 0.33 to 5e+02"),
         (["fig3-I", "--speed", "501"], "give 0.33 to 5e+02"),
         (["fig3-I", "--speed", "1e-320"], "--speed: 9.99989e-321: a film of 20 s"),
+        (["fig3-I", "--speed", "-1"], "--speed: -1.0: must be finite and greater than 0"),
         (["fig3-I", "--stretch", "1e300"], "--stretch"),
+        (["fig3-I", "--stretch", "0"], "--stretch: 0.0: must be greater than 0 and at most 1e+06"),
         (["fig3-I", "--rate", "30"], "--rate: 30: must be 1, 2, 4, 5, 10, 20, 25 or 50 per second"),
         (["fig3-I", "--size", "500", "10"], "--size: 500 10: must be 320 to 4000 pixels each"),
         (["fig3-I", "--out", "/dev/null/run.gif"], "--out"),
@@ -164,7 +168,7 @@ def test_reduced_heights_of_a_tall_frame_are_named() -> None:
     scene = load_scene("fig3-I").with_values({"bodies.1.height": 40.0})
     motion: Any = SimpleNamespace(time=np.array([0.0, 1.0]), position=np.zeros((2, 2, 3)), extra={})
     factor = arrange_boxes(scene)[2]
-    assert factor < 0.5
+    assert factor == pytest.approx(1.2 * 2.0 / (40.0 - scene.bodies[0].height)), "1.2 widths of the widest box"
     assert film_module.make_drawing(scene, motion, 1.0, 2).scales.endswith(f", heights x {factor:.2g}")
 
 
@@ -172,6 +176,45 @@ def test_the_help_says_what_a_speed_is(capsys: pytest.CaptureFixture[str]) -> No
     with pytest.raises(SystemExit):
         main(["--help"])
     assert "seconds of motion per second of film" in " ".join(capsys.readouterr().out.split())
+    page = " ".join((Path(animate.__file__).parent / "README.md").read_text(encoding="utf-8").split())
+    assert "The film shows the boxes from above and from two sides, the supports on their ring" in page
+    options = (
+        "sets the size in pixels, `--rate 10` the frames per second, `--speed 2` the seconds of motion per second."
+    )
+    assert f"`--size 800 400` {options}" in page
+
+
+def test_the_fastest_film_has_two_frames() -> None:
+    settings = FilmSettings(speed=500.0)
+    stated = animate._parse_arguments(["fig3-I", *PHASES])
+    assert (stated.stretch, stated.speed, stated.rate, stated.size) == (5.0, 1.0, 25, (1200, 480))
+    assert (stated.out, stated.model, stated.regularization) == (Path("run.gif"), "translational", 1e-3)
+    animate.check_film_options(load_scene("fig3-I"), Path("run.gif"), settings)
+    assert animate.count_frames(20.0, settings) == 2
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_scene_without_supports_is_drawn_on_four_and_a_plane_without_a_curve(words: list[str], flat: bool) -> None:
+    """At the corners of a square on a ring of 1 m, on spheres of 5 cm."""
+    scene = load_scene(words[0]).with_values({"isolator.period": None, "isolator.radius": np.inf if flat else 0.25})
+    position = np.zeros((2, 2, 3))
+    position[1, 0], position[1, 1] = [0.01, -0.02, 0.0], [0.03, 0.0, 0.0]
+    motion: Any = SimpleNamespace(time=np.array([0.0, 1.0]), position=position, extra={})
+    drawn, factor = film_module.make_drawing(scene, motion, 4.0, 2), 1e4 if flat else 50.0
+    assert drawn.scales == f"displacements x 4, contact paths x {factor:g}"
+    corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) / np.sqrt(2.0)
+    np.testing.assert_allclose(drawn.supports, corners)
+    moved = [0.0, 0.0] if flat else -factor * 0.05 / 0.25 * position[1, 0, :2]
+    np.testing.assert_allclose(drawn.paths[1], corners + moved)
+    ends = [[-0.03, 0.0], [0.03, 0.0]] if flat else np.outer([1.0, 1.0], [0.0, 0.25 - np.sqrt(0.25**2 - 0.0625**2)])
+    ends = np.array(ends) + (0.0 if flat else 0.0625) * np.array([[-1.0, 0.0], [1.0, 0.0]])
+    np.testing.assert_allclose(drawn.swing_curve[[0, -1]], 4.0 * ends, atol=1e-15)
+
+
+def test_six_bodies_are_named_and_neighbors_have_other_colors() -> None:
+    colors, names = zip(*film_module._colors_and_names(8))
+    assert names == ("platform", *(f"body {number}" for number in range(2, 7)), "_", "_")
+    assert len(set(colors)) == 8
 
 
 def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -> None:
@@ -179,6 +222,8 @@ def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -
     for scene in (load_scene(words[0]), load_scene("fig3-I").with_values({"bodies.1.height": 0.2})):
         heights, sizes, factor = arrange_boxes(scene)
         assert (heights.tolist(), sizes.tolist(), factor) == ([0.0, 1.0], [[2.0, 2.0, 0.2]] * 2, 1.0)
+    wide = load_scene("fig3-I").with_values({"isolator.ring": 3.0, "bodies.0.size": None})
+    assert arrange_boxes(wide)[1][0, :2].tolist() == [6.0, 6.0]
     [height], [size], factor = arrange_boxes(scene.with_values({"bodies": [{"mass": 1.0}]}))
     assert (height, size.tolist(), factor) == (0.0, [2.0, 2.0, 0.2], 1.0)
 
@@ -224,6 +269,7 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
         return canvas_of(figure)
 
     def gif(pictures: Iterator[Any], *rest: Any) -> bytes:
+        assert made[0].texts[-1].get_text() == "t = 0.10 s", "the colors are those of the middle"
         for _ in pictures:
             above, *sides = made[0].axes
             masts = [np.array(side.lines[-1].get_data()) for side in sides]
@@ -234,13 +280,23 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(film_module, "_encode_gif", gif)
     draw_film(scene, motion, "spatial", FilmSettings(stretch=3.0, speed=0.5, rate=5), 3)
     [figure] = made
-    assert figure.get_suptitle().endswith(
-        ": spatial model of the engine\ndisplacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"
+    assert figure.get_suptitle() == (
+        f"{escape_for_matplotlib(scene.title)}: spatial model of the engine\n"
+        "displacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"
     )
     labels = [(panel.get_title(), panel.get_xlabel(), panel.get_ylabel()) for panel in figure.axes]
     assert labels == [("from above", "x [m]", "y [m]"), ("along y", "x [m]", "z"), ("along x", "y [m]", "z")]
     names = {"platform", "body 2", "support", "path of the contact point", "swing of the center"}
     assert {text.get_text() for text in figure.legends[0].texts} == names
+    assert len({text.get_window_extent().y0 for text in figure.legends[0].texts}) == 1, "in one row"
+    drawn = film_module.make_drawing(scene, motion, 3.0, 3)
+    top, highest = drawn.corners[:, 0, :, 2].min(), drawn.corners[..., 2].max()
+    for panel, alpha in zip(figure.axes, (0.1, 0.35, 0.35)):
+        assert [each.get_facecolor()[3] for each in panel.patches if each.get_label() in names] == [alpha] * 2
+    for side in figure.axes[1:]:
+        low = top - 0.15 * 2.0 * drawn.half_width
+        assert side.get_ylim() == pytest.approx((low, highest + 0.05 * drawn.half_width))
+        assert side.lines[0].get_ydata() == pytest.approx([low, top])
     assert [(drawn, clock) for drawn, clock, _ in shown] == [(1, "t = 0.00 s"), (2, "t = 0.10 s"), (3, "t = 0.20 s")]
     for part, (_, _, masts) in zip((0.0, 2.0 / 3.0, 1.0), shown):  # between samples in proportion
         heights = [part * 0.003, 0.7 + part * 0.006]

@@ -36,19 +36,28 @@ def test_the_weight_presses_the_contact_in(within: Callable[[float, float], None
     assert motion.coordinates[-1, 2] == pytest.approx(0.0, abs=1e-6 * penetration)
 
 
-def test_a_settled_restart_with_a_smaller_step_does_not_ring() -> None:
-    penetration, coarse = 1e-6, 0.0123
-    model = assemble(one_body(), "translational", 1e-3)
-    model.set_contact(penetration)
-    state = model.start(State(np.array([[0.05, 0.0]]), np.array([[0.3, 0.4]])), np.zeros(3), penetration)
-    engine, jitter = EngineSolver(model, 1e-8, 1e-9), []
-    with silence_engine():
-        sliding = engine.run(state, 0.0, coarse, 40)
-        rate = (sliding.gap[-1] - sliding.gap[-5]) / (sliding.time[-1] - sliding.time[-5])
-        for begin in (sliding.state_at(-1), model.settle(sliding.state_at(-1), rate, penetration)):
-            motion = engine.run(begin, float(sliding.time[-1]), coarse / 4.0, 12)
-            jitter.append(np.abs(np.diff(motion.accelerations[:, 2], 2)).max())
-    assert jitter[1] < 0.1 * jitter[0]
+def test_a_moving_platform_starts_pressed_by_all_that_accelerates_it() -> None:
+    """Weight, centripetal force and the plate, each along the normal (-x, -y, h) / rho."""
+    model, penetration, place, speed = assemble(one_body(), "translational", 1e-3), 1e-6, [0.1, -0.05], [0.3, 0.4]
+    plate, height = np.array([2.0, -1.0, 0.5]), np.sqrt(0.25**2 - 0.1**2 - 0.05**2)
+    start = model.start(State(np.array([place]), np.array([speed])), plate, penetration)
+    normal, upward = np.array([-0.1, 0.05, height]) / 0.25, np.dot(place, speed) / height
+    pressed = (normal @ plate + normal[2] * GRAVITY + (0.25 + upward**2) / 0.25) / GRAVITY
+    assert [-start.contact[0] / penetration, start.load[0]] == pytest.approx([pressed] * 2)
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_settled_contact_opens_as_its_gap_does(flat: bool) -> None:
+    """Along the normal, on a plane the vertical, and nothing changes across it; the gap makes up for the damper."""
+    model = assemble(one_body(np.inf if flat else 0.25), "translational", 1e-3)
+    place = np.array([50.0, -20.0, 0.0] if flat else [0.3, -0.2, 0.1])
+    normal = np.array([0.0, 0.0, 1.0]) - (0.0 if flat else place)
+    normal /= np.linalg.norm(normal)
+    state = EngineState(np.append(place, np.zeros(3)), np.array([0.1, 0.2, -0.3, 0.0, 0.0, 0.0]), np.ones(4))
+    settled, excess = model.settle(state, np.array([0.02]), 1e-6), normal @ state.velocities[:3] - 0.02
+    np.testing.assert_allclose((settled.velocities - state.velocities)[:3], -excess * normal, atol=1e-15)
+    np.testing.assert_allclose((settled.coordinates - state.coordinates)[:3], 2e-3 * excess * normal, atol=1e-14)
+    np.testing.assert_allclose(settled.contact, [1.0 + 2e-3 * excess, 1.0, 1.0, 1.0])
 
 
 def test_a_held_platform_creeps_as_v_reg_says(within: Callable[[float, float], None]) -> None:

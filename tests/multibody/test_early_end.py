@@ -34,6 +34,7 @@ from reference.measures.demand_reader import largest_displacement
 from reference.problem import Outcome, Scene, load_scene
 
 TOLERANCE = 3e-3
+LEVEL = multibody.levels(load_scene("fig3-I"))[0]
 
 
 def random_scene(seed: int, longest: float) -> tuple[Scene, Any, float]:
@@ -188,6 +189,42 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
     ahead = EngineRun(PeakReader(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
     ahead.peaks.value[:] = 0.8, peak
     assert look_ahead._comes_near_largest(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
+
+
+def test_a_look_ahead_begins_a_period_behind_the_last_large_value(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the pendulum, 2 pi, and while no contact has opened; one that runs out of work ends the run where it began."""
+    quiet: list[bool] = []
+
+    def ended(integration: Integration, run: EngineRun, at: Checkpoint, pause: Any) -> Checkpoint:
+        if quiet:
+            run.terminate(Outcome.STEP_LIMIT, 11.0)
+            return replace(at, time=11.0)
+        run.last_large_at = 1.5
+        for instant, run.has_opened in ((7.77, False), (7.79, False), (99.0, True), (0.0, False)):
+            quiet.append(pause(instant))
+        return replace(at, time=9.0)
+
+    monkeypatch.setattr(look_ahead, "continue_run", ended)
+    scene = load_scene("fig3-I")
+    run = PhasePair(scene, assemble(scene, "translational", 1e-3), np.zeros(2)).run_level(LEVEL, Budget(1e6))
+    assert (quiet, run.outcome, run.instant) == ([False, True, False, False], Outcome.STEP_LIMIT, 9.0)
+
+
+def test_neither_heat_nor_a_dense_record_is_looked_over() -> None:
+    """Two steps fit into the shortest interval; what heat has lowered does not come back."""
+    for heat, knots, asks in (
+        (None, [], True),
+        (None, [0.0, 0.2, 9.0], True),
+        (None, [0.0, 0.1, 9.0], False),
+        (1, [], False),
+    ):
+        friction = SimpleNamespace(law=SimpleNamespace(heat=heat))
+        model: Any = SimpleNamespace(friction=friction, ground=SimpleNamespace(knots=np.array(knots)))
+        assert look_ahead.can_look_ahead(model, replace(LEVEL, step=0.1)) == asks
+        ahead = [replace(LEVEL, step=0.1).coarsen(), replace(LEVEL, step=0.1)]
+        assert [look_ahead.level_of_longest_steps(model, ahead[1], whole) for whole in (False, True)] == [
+            ahead[not asks], ahead[1]
+        ]  # fmt: skip
 
 
 def test_an_early_stop_is_confirmed_by_peaks_and_displacement() -> None:

@@ -188,6 +188,44 @@ def test_a_slide_begins_beyond_its_limit_and_ends_with_its_speed(find: Any, valu
     assert found is None or (found.contact, found.slides) == (2, find is _find_slide_start)
 
 
+def test_of_three_supports_the_first_that_slides_or_stops_counts() -> None:
+    """Beyond its limit by 1e-4 of yield, less as the square of the speed that ends slides; unless it only creeps."""
+    scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **{"isolator.supports": 3})
+    model, time = assemble(scene, "spatial", 1e-3), np.array([0.0, 0.1, 0.4, 0.5])
+    springs = model.springs
+    assert springs.slide_end * model.units.velocity == pytest.approx(0.1 * math.sqrt(0.1 * GRAVITY * 1e-3))
+    end, left, load = 0.5 * springs.slide_end, 0.25e-4 * springs.displacement, 1.0 + 0.1 * np.arange(12.0).reshape(4, 3)
+    limit, state = springs.displacement * load, EngineState(*np.zeros((3, 30)), sliding=(False, True, False))
+    early, late, falls, steady = [-3.0, -1.0, 2.0, 3.0], [-2.0, -2.0, -1.0, 3.0], [9.0, 4.0, 3.0, 3.0], [9.0] * 4
+    slide, rate = ContactChange(1, 2, 1.0 / 3.0, True, limit[1]), 3.0 * left / 0.3
+    for excess, slip, begin, expected in (
+        ([late, early], steady, 0.9 * rate, slide),
+        ([late, early], falls, 0.9 * rate, ContactChange(1, 1, 0.8, False)),
+        ([early, late], falls, 0.9 * rate, slide._replace(contact=0)),
+        ([[-2.0] * 4, early], steady, 1.1 * rate, ContactChange(2, 2, 0.0, False, limit[2])),
+        ([[-2.0] * 4] * 2, steady, 0.0, None),
+    ):
+        coordinates = np.zeros((4, 30))
+        stretched = limit + left * np.column_stack([excess[0], [9.0] * 4, excess[1]])
+        coordinates[:, springs.turns[:, 1]] = -stretched / springs.depressions.radius
+        slips = end * np.column_stack([np.zeros(4), slip, np.zeros(4)])
+        motion = SimpleNamespace(time=time, coordinates=coordinates, velocities=coordinates, slip=slips, load=load)
+        found = springs.find_sliding_change(motion, state, end, begin)
+        assert (found is None) == (expected is None)
+        if expected is not None:
+            assert found[:4] == (*expected[:2], pytest.approx(expected.step_share), expected.slides)
+            np.testing.assert_equal(found.limits, expected.limits)
+    springs.begin(state)
+    springs.set_slide_end(end)
+    laws = [
+        [springs.mbs.GetObjectParameter(contact, name) for contact in springs.contacts]
+        for name in ("dynamicFriction", "frictionProportionalZone")
+    ]
+    np.testing.assert_allclose(laws, [[1e5, 0.1, 1e5], [0.25 * end] * 3])
+    fast = replace(state, velocities=np.ones(30), coordinates=0.01 * np.ones(30), accelerations=np.zeros(30))
+    assert springs.state_at_rest(fast).sliding == (False, False, False)
+
+
 def test_steps_follow_the_spring_that_turns_most_and_the_slowest_slide() -> None:
     """By the change of elongation over that of yield, and 0.3 of a change of velocity over the slip, or its end."""
     scene = _yielding("fig3-I", {"slow": 0.1, "yield_displacement": 1e-3}, **{"isolator.supports": 3})

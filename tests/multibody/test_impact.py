@@ -77,6 +77,10 @@ def test_a_platform_that_moves_along_a_normal_opens_its_contact_by_as_much(under
         moved = coordinates + np.append(1e-6 * normal, np.zeros(7))
         opened = place.clearance(np.array([coordinates, moved]))[:, number]
         assert opened[1] - opened[0] == pytest.approx(1e-6, rel=1e-4)
+    ways = coordinates + 1e-6 * np.stack([np.eye(10), -np.eye(10)])  # of the platform and of each sphere
+    ahead, behind = (place.clearance(each) for each in ways)
+    rates = replace(block(), depressions=place).gap_rates(coordinates)
+    np.testing.assert_allclose(rates, (ahead - behind).T / 2e-6, atol=1e-6)
 
 
 def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
@@ -273,12 +277,18 @@ def test_flights_begin_and_end_when_free_fall_says() -> None:
 
 
 @pytest.mark.parametrize("number", [0, 1])
-def test_a_platform_tilted_by_its_contacts_lands_at_once(number: int) -> None:
+def test_a_platform_tilted_by_its_contacts_lands_at_once(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Uneven loads press rigid spheres in by nothing: a platform that does not turn lands as often as a ball."""
     values = {"isolator.friction": 0.05, "excitation.amplitudes": [[3.0, 0.0], [0.0, 2.1], [15.0, 0.0]]}
     scene = bouncing(0.8, duration=0.6).with_values(values)
     landings = [end for _, end in flights(0.8, 0.6) if end < 0.6]
+    read, read_until = [], PeakReader.read_until
+    monkeypatch.setattr(
+        PeakReader, "read_until", lambda peaks, instant: (read.append(instant), read_until(peaks, instant))[1]
+    )
     assert one_level(scene, (0.0, 0.0), number, 6e4).impacts == len(landings) == 2
+    early = np.abs(np.subtract.outer(landings, np.array(read) * math.sqrt(scene.radius / GRAVITY)))
+    assert early.min(axis=1).max() < 5e-3, "peaks are read up to every landing"
 
 
 def test_the_largest_value_behind_an_impact_converges() -> None:
@@ -332,6 +342,12 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     np.testing.assert_array_equal(found["turns"][3], angles)
     np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])
     motion.time = np.arange(5)
+    steep = SimpleNamespace(
+        coordinates=np.where(np.arange(12) == 3, 0.5 * np.arange(5)[:, None], 0.0), time=motion.time
+    )
+    model.depressions, model.critical_tilt = Mock(**{"is_near_rest.return_value": False}), 1.9
+    model.depressions.rows_beyond_rim.return_value = np.zeros(5, bool)  # as of a plane
+    assert _find_end_of_validity(steep, model) == (Outcome.OVERTURNED, 4), "beyond 90 degrees"
     for beyond, near, limit, expected in (
         (3, False, 0.4, (Outcome.OVERTURNED, 3)), (3, False, 0.6, (Outcome.RIM_REACHED, 3)),
         (5, False, 0.4, (Outcome.OK, 4)), (3, True, 0.4, (Outcome.OK, 4)),

@@ -1,15 +1,18 @@
 """Stiffness, damping, friction and mass of contacts, supports, spheres and links, by the engine's own forces."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scenes_at_hand import forces_of_engine, forces_of_links
 
+import multibody
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, Scene, load_scene
 
+README = (Path(multibody.__file__).parent / "README.md").read_text(encoding="utf-8")
 V_REG, PENETRATION, COMPLIANCE, HEIGHT, RADIUS = 1e-3, 1e-4, 3e-3, 0.7, 0.13
 ONE = {"bodies": [{"mass": 3.0, "height": HEIGHT, "size": [2.0, 1.5, 0.3]}], "excitation.scale": 1e-12}
 ON_THREE = {**ONE, "isolator.supports": 3, "isolator.ring": 0.8, "isolator.sphere_radius": RADIUS}
@@ -37,6 +40,7 @@ def test_contacts_press_damp_and_rub_as_their_law_says(name: str, model: str) ->
     penetration, ratio = PENETRATION, 1.0
     if turns and "bearings" in name:
         penetration, ratio = 3.0 * GRAVITY / (3.0 * 2e5) / unit.length, 0.3
+        assert "`isolator.support_stiffness` states the vertical stiffness of one bearing in N/m." in README
 
     def force(speed: list[float], deeper: float = 0.0) -> Any:
         """Force and moment about the center of mass, of a platform displaced down and with a speed in SI units."""

@@ -7,7 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from multibody.integration.peak import PeakReader, _alternating_part, _list_smooth_stretches, _read_corner
+from multibody.integration.peak import (
+    PeakReader,
+    _alternating_part,
+    _find_step_jumps,
+    _list_smooth_stretches,
+    _read_corner,
+)
 from multibody.integration.step_control import KINK_STEP_RATIO, StepControl
 
 TIME = np.arange(0.0, 1.0, 0.02)
@@ -108,7 +114,8 @@ def test_two_instants_of_one_corner_are_part_of_its_error() -> None:
     """The slip speed passes 1 at 0.504 by the samples before the corner, and at 0.512 by those behind it."""
     time = np.arange(0.44, 0.58, 0.02)
     slip = 1.0 + np.where(time < 0.51, time - 0.504, 3.0 * (time - 0.512))
-    value, error, instant = _read_corner(time, np.where(time < 0.51, 1.0, 0.9), slip[:, None], 3, 1.0, [3])
+    slips = np.column_stack([2.0 + time, slip])  # of another contact, too
+    value, error, instant = _read_corner(time, np.where(time < 0.51, 1.0, 0.9), slips, 3, 1.0, [3])
     assert (value, instant) == pytest.approx((0.95, 0.508))
     assert error == pytest.approx(0.5 * 0.1 + 0.5 * 0.008 * 0.1 / 0.02)
 
@@ -122,18 +129,28 @@ def test_a_rise_over_short_steps_is_not_taken_for_a_slope() -> None:
     peaks.add(time, size[:, None], np.ones((len(time), 1)))
     assert peaks.value[0] == pytest.approx(size.max(), abs=1e-9)
     assert peaks.sampling_error[0] < 1e-3
+    jumps = [_find_step_jumps(np.array([0.0, 1.0, 1.0 + step, 2.0 + step])).tolist() for step in (19.0, 21.0)]
+    assert jumps == [[], [1, 2]]
 
 
 def test_samples_are_read_on_to_an_impact_behind_them() -> None:
     """Unless it is far behind them, or they do not resolve the motion."""
     growing, alternating = np.exp(2.0 * TIME), 1.0 + 0.1 * np.cos(np.pi * np.arange(len(TIME)))
-    for size, instant, on in ((growing, 0.993, True), (growing, 1.1, False), (alternating, 0.993, False)):
+    for size, instant, on in (
+        (growing, 1.009, True),
+        (growing, 1.011, False),
+        (alternating, 0.993, False),
+        (2.0 - alternating, 0.993, False),
+        (growing, 0.993, None),
+    ):
         peaks = read(size)
+        if on is None:  # behind a kink of the loading
+            peaks._knots, peaks._near = TIME[-2:-1], 1e-9
         before = float(peaks.value[0])
         peaks.read_until(instant)
         if on:
             assert peaks.instant[0] == instant
-            assert abs(peaks.value[0] - np.exp(2.0 * instant)) <= peaks.sampling_error[0] < 1e-2
+            assert abs(peaks.value[0] - np.exp(2.0 * instant)) <= peaks.sampling_error[0] < 2e-2
         else:
             assert peaks.value[0] == before
 
@@ -158,7 +175,7 @@ def test_samples_that_alternate_have_half_of_their_spread() -> None:
 
 def test_what_a_longer_last_step_misses_counts_in_full() -> None:
     """Of five samples on a cubic but for the last; among equal steps its share of an alternation counts, 1/16."""
-    for time, share in (([0.0, 1.0, 2.0, 3.0, 4.0], 1.0 / 16.0), ([0.0, 1.0, 2.0, 3.0, 7.0], 1.0)):
+    for time, share in (([0.0, 1.0, 2.0, 3.0, 4.0], 1.0 / 16.0), ([0.0, 1.0, 2.0, 3.0, 4.6], 1.0)):
         at = np.array(time)
         size = 1.0 + 0.5 * at - 0.1 * at**2 + 0.02 * at**3 + [0.0, 0.0, 0.0, 0.0, 0.3]
         assert _alternating_part(at, size) == pytest.approx(0.3 * share)

@@ -78,6 +78,21 @@ def test_steps_end_at_every_knot_passed(time, step, count, expected):
     assert found == (pytest.approx(expected[0]), expected[1])
 
 
+def test_an_instant_near_a_knot_is_the_knot() -> None:
+    """Within a millionth of the shortest interval: a run from there begins behind it, and a step ends before it."""
+    samples = [[0.0, 1.0, 0.0, 0.0], [0.1, 2.0, 0.0, 0.0], [0.15, 4.0, 0.0, 0.0], [0.3, 1.0, 0.0, 0.0]]
+    record = {"excitation": {"record": "uneven.csv", "samples": samples}, "duration": 0.3}
+    model = assemble(EXAMPLE.with_values(record), "translational", 1e-3)
+    ground, unit = model.ground, model.units.time
+    assert ground.near == pytest.approx(1e-6 * 0.05 / unit)
+    for share in (-0.5, 0.5):
+        instant = 0.15 / unit + share * ground.near
+        ground.begin(instant)
+        assert ground._origin.Evaluate() == pytest.approx(0.15 / unit)
+        ground.before_step(model.mbs, instant)
+        assert ground._origin.Evaluate() == pytest.approx(0.1 / unit)
+
+
 @pytest.mark.parametrize("parts", [8, 11, 15, 29])
 def test_knots_do_not_make_the_chunks_behind_them_short(parts: int) -> None:
     """Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off."""

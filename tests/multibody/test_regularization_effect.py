@@ -1,11 +1,17 @@
 """What regularization does to a surface of the engine is estimated from a second v_reg, if so asked."""
 
+from inspect import signature
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from scenes_at_hand import one_body
 
 import multibody
 import reference
+from multibody import surface
 
 # 98 % of the friction at rest: the set-valued law holds the platform, the regularized one lets it creep
 HELD = one_body(
@@ -52,3 +58,32 @@ def test_the_effect_is_unknown_without_an_answer():
     refused = multibody.amplification(HELD, [(0.0, 0.0)], max_work=10.0, regularization_effect=True)
     assert np.isnan(refused.regularization_effect).all()
     assert "changes by up to" not in refused.law
+
+
+def test_both_speeds_have_all_that_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The softened scene, the model and every limit; of two runs of 3 s and 5 s the cost is the sum."""
+    asked: list[Any] = []
+
+    def noted(*given: Any) -> Any:
+        def answer(pairs: Any, ground: Any, *limits: Any) -> Any:
+            asked.append((*given, *limits))
+            return (*np.full((2, 1, 2), 1.0 / len(asked)), np.array(["ok"]), np.array([np.nan]), np.array([0.1]))
+
+        return SimpleNamespace(answer=answer)
+
+    monkeypatch.setattr(surface, "_reduce_model", noted)
+    monkeypatch.setattr(surface, "time", SimpleNamespace(process_time=iter([0.0, 3.0, 10.0, 15.0]).__next__))
+    bars = {"bodies.1.period": None, "bodies.1.bars": {"count": 4, "bending_stiffness": 0.8, "length": 1.0}}
+    scene, levels = reference.load_scene("synthetic-pair").with_values(bars), multibody.levels(HELD)
+    found = multibody.amplification(
+        scene, (0.0, 0.0), "spatial", 2e-3, 1e-2, full=True, levels=levels, max_work=5e4, softened=True,
+        regularization_effect=True,
+    )  # fmt: skip
+    page = (Path(multibody.__file__).parent / "README.md").read_text(encoding="utf-8")
+    damping = signature(multibody.floor_spectra).parameters["damping"].default
+    assert "v_reg in m/s, below which dry friction is linear" in page
+    assert "computes\n  every point with a tenth of v_reg" in page
+    assert f"`floor_spectra(trajectory, periods=None, damping={damping})`" in page
+    soft, limits = scene.softened(), (1e-2, levels, 5e4)
+    assert asked == [(soft, "spatial", v_reg, True, *limits) for v_reg in (2e-3, pytest.approx(2e-4))]
+    assert (found.cost, found.scene_name, found.regularization_effect.tolist()) == (8.0, scene.name, [-0.5, -0.5])

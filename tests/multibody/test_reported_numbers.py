@@ -16,6 +16,7 @@ from multibody.integration.candidate import Candidate
 from multibody.integration.constant_step import EngineMotion
 from multibody.integration.engine_run import Budget
 from multibody.integration.estimate import (
+    _error_of_starting_links,
     compliance_error,
     contact_lag,
     contact_noise_error,
@@ -23,14 +24,14 @@ from multibody.integration.estimate import (
     rounding_error,
 )
 from multibody.integration.peak import PeakReader
-from multibody.integration.step_control import StepControl
+from multibody.integration.step_control import StepControl, gap_rate_at_end
 from multibody.integration.termination import find_termination, find_travel_end
 from multibody.integration.time_scales import largest_step, list_brief_motions
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import fastest_bar_frequency
-from multibody.models.plane import _largest_distance_possible
+from multibody.models.plane import _largest_distance_possible, set_plane_extent
 from multibody.models.spatial import _critical_tilt
 from multibody.models.units import units_of
 from multibody.motion import _measure_attitude
@@ -151,10 +152,19 @@ def test_a_plane_is_as_wide_as_a_platform_may_move() -> None:
     end, load = BRIEF.duration / units.time, 2.0 * BRIEF.largest_acceleration / units.acceleration
     expected = 7.0 + 3.0 * end + load * end**2
     assert _largest_distance_possible(BRIEF, units, coordinates, velocities) == pytest.approx(expected)
+    made: list[Any] = []
+    system: Any = SimpleNamespace(
+        SetObjectParameter=lambda *given: made.append(np.array([given[2][k] for k in range(3)]))
+    )
+    for distance in (1.0, 1e6):
+        set_plane_extent(system, "contact", distance, 0.3)
+        ahead = np.roll(made[-1], 1, axis=0) - made[-1]  # along the three edges of the triangle
+        nearest = np.abs(np.cross(made[-1], ahead)[:, 2]).min() / np.linalg.norm(ahead, axis=1).max()
+        assert (nearest >= max(distance, 1e3), made[-1][:, 2].tolist()) == (True, [0.3] * 3)
 
 
 def test_a_motion_ends_with_what_comes_first() -> None:
-    """It passes its travel of 0.5 between the rows 3 and 4; the contact opens before that or not."""
+    """It passes its travel of 0.5 between the rows 3 and 4; the contact opens before that, at the rim, or not."""
     time, ends = np.arange(7.0), {2: (Outcome.CONTACT_LOST, 2), 4: (Outcome.TRAVEL_REACHED, 3)}
     coordinates, velocities = np.zeros((2, 7, 3))
     coordinates[:, 0], velocities[:, 0] = 0.15 * time, 0.15
@@ -163,6 +173,8 @@ def test_a_motion_ends_with_what_comes_first() -> None:
         contact = np.where(time >= lost, 1.0, -1.0)[:, None] * [1.0, 0.0, 0.0, 0.0]
         motion: Any = SimpleNamespace(time=time, coordinates=coordinates, velocities=velocities, contact=contact)
         assert find_termination(motion, model) == (outcome, row, pytest.approx(min(lost, 0.5 / 0.15)))
+    motion.coordinates[2:, 2], motion.contact[2:, 0] = 1.0, 1.0
+    assert find_termination(motion, model) == (Outcome.RIM_REACHED, 2, 2.0)
 
 
 def peaks_of(*values: Any) -> list[PeakReader]:
@@ -223,7 +235,7 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
     """Unless one body shows that levels have not converged: then none is known to better than itself."""
     [peaks] = peaks_of((1.0, 2.0))
     run: Any = SimpleNamespace(peaks=peaks)
-    for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.31, (1.004, 2.004))):
+    for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.295, (0.301, 7e-3)), (0.31, (1.004, 2.004))):
         parts = np.array([shown, 1e-3]), np.full(2, 2e-3), np.zeros(2)
         answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)
@@ -242,6 +254,47 @@ def test_a_softer_contact_shows_what_rounding_leaves() -> None:
         stiff, soft = peaks_of((1.0, 2.0), np.array([1.0, 2.0]) + [1.0, -1.0] * np.array(change))
         softer = replace(level, penetration=ratio * level.penetration)
         np.testing.assert_allclose(rounding_error(stiff, level, soft, softer, safety), expected)
+
+
+def test_stiff_links_that_swing_at_the_start_are_an_error() -> None:
+    """What a peak within four response times of the contact exceeds the first sample by, up to twice of it."""
+    [peaks] = peaks_of((3.0, 4.0, 4.1, 3.0))
+    peaks.first_sample, peaks.instant[:] = np.full(4, 2.0), (3.9e-3, 1e-3, 1e-3, 4.1e-3)
+    level, model = replace(LEVELS[0], penetration=1e-6), cast("Any", SimpleNamespace(depressions="some"))
+    np.testing.assert_array_equal(_error_of_starting_links(peaks, level, model), [1.0, 2.0, 0.0, 0.0])
+    assert not _error_of_starting_links(peaks, level, MODEL).any(), "of bodies that do not turn"
+
+
+def test_steps_grow_until_the_slip_speed_asks_for_smaller_ones() -> None:
+    """Of the slowest loaded contact: down to what its acceleration asks for, or up to the corner; 32 to 256 steps."""
+    model: Any = SimpleNamespace(corner=0.01, bodies=np.array([[0, 1, 2]]))
+    control = StepControl(model, replace(LEVELS[0], step=0.1, slip_change=0.07))  # 0.2 at this acceleration
+    for before, slip, gap, count in (
+        (0.5015, 0.4995, -1.0, 149),
+        (0.5015, 0.4995, 1.0, 256),  # unloaded
+        (0.4, 0.4995, -1.0, 256),
+        (0.9, 0.4995, -1.0, 32),
+        (0.00395, 0.00405, -1.0, 59),
+    ):
+        contact = np.array([[gap, slow, 0.0, 0.0, gap, 2.0, 0.0, 0.0] for slow in (9.0, before, slip)])
+        motion: Any = SimpleNamespace(time=np.array([0.0, 0.7, 0.8]), contact=contact, accelerations=np.zeros((3, 8)))
+        motion.accelerations[-1] = [0.0, 0.14, 0.0, 9.0, 9.0, 9.0, 9.0, 9.0]
+        assert control.count_largest_steps(motion) == count
+    assert StepControl(cast("Any", SimpleNamespace(corner=math.inf)), LEVELS[0]).count_largest_steps(motion) == 256
+    time, gaps = np.cumsum(np.arange(8.0)), np.random.default_rng(1).normal(size=(8, 2))
+    for rows, back in ((8, 4), (6, 4), (5, 4), (4, 2), (3, 2)):  # an even number of steps
+        motion = SimpleNamespace(time=time[:rows], gap=gaps[:rows])
+        slope = (gaps[rows - 1] - gaps[rows - 1 - back]) / (time[rows - 1] - time[rows - 1 - back])
+        np.testing.assert_allclose(gap_rate_at_end(motion), slope)
+    assert not gap_rate_at_end(cast("Any", SimpleNamespace(time=time[:2], gap=gaps[:2]))).any()
+
+
+def test_forces_round_as_the_square_of_the_farthest_place() -> None:
+    places = {"isolator.ring": None, "isolator.supports": [[5.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]}
+    for values, farthest in (({"bodies.1.height": 7.0}, 7.0), (places, 5.0)):
+        scene = load_scene("fig3-I").with_values(values)
+        found = assemble(scene, "spatial", 1e-3).rounding
+        assert found == pytest.approx(1e-15 * (farthest / scene.radius) ** 2, abs=0.0)
 
 
 def test_noise_of_the_contact_is_an_error_along_the_vertical() -> None:
@@ -292,14 +345,22 @@ def test_an_answer_is_judged_by_all_bodies_and_any_rounding() -> None:
     for confirmed, tolerance, meets in ((True, 4e-3, True), (True, 3.9e-3, False), (False, 1.0, False)):
         asked = replace(answer, confirmed=confirmed)
         assert (asked.meets(tolerance), asked.may_meet(tolerance)) == (meets, meets)
+    rounded = replace(answer, rounding=np.array([0.0, 5e-3]))
+    assert (rounded.meets(4e-3), rounded.may_meet(4e-3)) == (False, True), "a softer contact may show that less rounds"
     for rounding, limited in ((0.9e-3, False), (1.5e-3, True), (2.5e-3, True)):
         level = replace(LEVELS[0], rounding_moment=rounding * LEVELS[0].penetration)
         assert answer_with((4e-3, 4e-3), level).is_limited_by_rounding(1e-3) == limited
     soft: Any = SimpleNamespace(outcome=Outcome.OK, peaks=peaks_of((1.01, 2.001))[0])
-    pair: Any = SimpleNamespace(run_level=lambda *_, **given: soft, model=MODEL)
+    asked_of: list[Any] = []
+    pair: Any = SimpleNamespace(
+        run_level=lambda *given, **more: (asked_of.append((*given, more)), soft)[1], model=MODEL
+    )
     level = replace(LEVELS[0], rounding_moment=0.1 * LEVELS[0].penetration)
     shared = replace(answer_with((0.0, 0.0), level), shares_contact=True, rounding=np.array([0.03, 0.03]))
-    whole = shared.add_compliance_error(pair, Budget(1.0), keep=False)
+    shared.run.stop, budget = 0.7, Budget(1.0)
+    whole = shared.add_compliance_error(pair, budget, keep=True)
+    softer = replace(level, penetration=4.0 * level.penetration)
+    assert asked_of == [(softer, budget, 0.7, {"keep": True, "residual": level.residual})]
     np.testing.assert_allclose(whole.rounding, [0.03, 0.004])
     assert (shared.is_complete, whole.is_complete, [run for run, _ in whole.coarser]) == (False, True, [soft])
 
@@ -356,10 +417,28 @@ def test_a_link_without_bars_twists_as_if_it_stood_on_the_supports(places: dict[
 @pytest.mark.parametrize("offset", [[0.03, -0.05], [-0.1, 0.0]], ids=str)
 def test_a_stiff_link_carries_an_eccentric_weight_at_rest(offset: list[float]) -> None:
     """On the body above nothing is left but its weight, whose moment about its center of mass is zero."""
-    scene = load_scene("fig3-I").with_values({"bodies.1.offset": offset, "isolator.supports": 3})
-    _, moments, _ = forces_of_links(scene, np.zeros(12), np.zeros(12))
-    below, above = np.abs(moments[:, :2]).max(axis=1)
-    assert above < 1e-6 < below
+    top = {"mass": 0.7, "height": 2.1, "size": [1.1, 0.9, 0.2], "period": [1.0, 0.8], "offset": [0.2, 0.07]}
+    for more in ([], [top]):
+        bodies = [body.model_dump(exclude_none=True) for body in load_scene("fig3-I").bodies]
+        bodies[1]["offset"] = offset
+        scene = load_scene("fig3-I").with_values({"bodies": [*bodies, *more], "isolator.supports": 3})
+        _, moments, _ = forces_of_links(scene, *np.zeros((2, 12 + 6 * len(more))))
+        below, *above = np.abs(moments[:, :2]).max(axis=1)
+        assert max(above) < 1e-6 < below
+
+
+def test_each_link_twists_as_its_own_bars() -> None:
+    """On the ring of 1 m, or as far apart as stated, by shear and by the torsion of each over its length."""
+    bars = {"count": 3, "bending_stiffness": 0.8, "length": 0.9, "spread": 0.6, "torsional_stiffness": 2.0}
+    top = {"mass": 0.7, "height": 2.1, "size": [1.1, 0.9, 0.2], "bars": bars}
+    bodies = [body.model_dump(exclude_none=True) for body in load_scene("fig3-I").bodies]
+    scene, twisted = load_scene("fig3-I").with_values({"bodies": [*bodies, top]}), np.zeros(18)
+    twisted[11] = twisted[17] = 1e-4
+    for link, expected in ((0, scene.stiffness[0].mean()), (1, 0.36 * scene.stiffness[1].mean() + 3 * 2.0 / 0.9)):
+        moved = np.where(np.arange(18) < 6 * (link + 1), 0.0, twisted)
+        _, moments, model = forces_of_links(scene, moved, np.zeros(18))
+        found = moments[link, 2] * model.units.force * model.units.length
+        assert found == pytest.approx(1e-4 * expected, rel=1e-4)
 
 
 def test_a_tower_tips_where_its_center_is_above_its_edge() -> None:

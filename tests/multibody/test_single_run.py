@@ -44,6 +44,21 @@ def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
         assert run.position[0, 0, 2] == pytest.approx(-1e-3 * scene.radius * 4.0 / GRAVITY, rel=1e-6)
 
 
+@pytest.mark.parametrize("limits", [{}, {"residual": 3e-7, "discontinuous": 0.2}], ids=["usual", "stated"])
+def test_a_run_at_a_constant_step_has_the_tolerances_asked_for(
+    limits: dict[str, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(EngineSolver, "run", lambda solver, *_: asked.append(solver.settings.timeIntegration))
+    assert multibody.single_run(SCENE, PHASE, step=1e-3, newton=2e-4, **limits).status == Outcome.SOLVER_FAILED
+    pair = PhasePair(SCENE, assembly.assemble(SCENE, "translational", 1e-3), np.array(PHASE))
+    pair.run_level(multibody.levels(SCENE)[0], Budget(1e5), residual=4e-7)
+    found, *_, at_level = asked
+    assert at_level.newton.absoluteTolerance == 4e-7
+    tolerances = found.newton.relativeTolerance, found.newton.absoluteTolerance, found.discontinuous.iterationTolerance
+    assert tolerances == pytest.approx((2e-4, limits.get("residual", 2e-7), limits.get("discontinuous", 2e-4)))
+
+
 def test_a_run_that_cannot_end_takes_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(EngineSolver, "run", lambda *given: pytest.fail("a step was spent"))
     run = multibody.single_run(SCENE, PHASE, level=replace(multibody.levels(SCENE)[0], step=1e-9))

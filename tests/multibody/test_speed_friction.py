@@ -1,5 +1,8 @@
 """Friction that depends on the velocity in the engine: closed forms and order; test_like_for_like.py has more."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from scenes_at_hand import one_body
@@ -8,8 +11,10 @@ import multibody
 import reference
 from multibody.integration.constant_step import silence_engine
 from multibody.integration.one_run import PhasePair
+from multibody.integration.step_control import StepControl
 from multibody.models.assembly import assemble
 from multibody.models.speed_friction import _compute_rate_of_length
+from multibody.models.state import EngineState
 from multibody.models.surface_heat import SurfaceHeat
 from reference.problem import GRAVITY, DryFriction, State, load_scene
 from reference.problem.friction import Heat
@@ -62,11 +67,56 @@ def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
     table = {"isolator.friction": {"slow": law.slow, "fast": law.fast, "rate": law.rate}}
     scene = load_scene("fig3-I").with_values({**table, "bodies.1.mass": 3.0})
     model = assemble(scene, "translational", V_REG)
-    slip, unit = np.array([[0.02], [0.1], [0.3 * V_REG]]), model.units.velocity
-    slope = (law.at(slip[:, 0] + 1e-6) - law.at(slip[:, 0] - 1e-6)) / 2e-6 * unit
-    np.testing.assert_allclose(
-        model.friction.friction_feedback_rate(slip / unit), 4.0 * slope * [1.0, 1.0, 0.3], rtol=1e-6
-    )
+    slip, unit = np.array([0.02, 0.1, 0.3 * V_REG]), model.units.velocity
+    rate = 4.0 * (law.at(slip + 1e-6) - law.at(slip - 1e-6)) / 2e-6 * unit * [1.0, 1.0, 0.3]
+    for others in ([], [0.15, 0.15, 0.15]):  # of the contact with the largest rate
+        slips = np.column_stack([*([others] if others else []), slip]) / unit
+        np.testing.assert_allclose(model.friction.friction_feedback_rate(slips), rate, rtol=1e-6)
+    calm: Any = SimpleNamespace(slip=slip[:, None] / unit, time=np.zeros(3), accelerations=np.zeros((3, 8)))
+    calm.contact = -np.ones((3, 4))
+    for change, bound in ((0.1, 0.2), (0.28, 0.3)):  # steps of 0.3 over the rate are the longest
+        level = SimpleNamespace(slip_change=change)
+        ratio = StepControl(model, level).step_ratio(calm, calm, calm, 0.7, calm)  # type: ignore[arg-type]
+        np.testing.assert_allclose(ratio, 0.7 / bound * rate, rtol=1e-6)
+
+
+def test_a_platform_approaches_the_center_as_in_the_last_step() -> None:
+    """And heat that ran ahead of a step that is repeated is forgotten."""
+    heat, power = SurfaceHeat(Heat(15.0, 0.3, 0.6), 2, 4.0, 0.8, 2.0), np.array([5.0, 2.0])
+    assert (heat.begin(0.0), heat.distance(0.3)) == (False, 0.0)
+    for time, way in ((1.0, 0.5), (1.4, 0.3), (2.0, 0.9)):
+        heat.step_to(time, power, way)
+    assert heat.begin(1.4)
+    assert heat.distance(1.6) == 0.3
+    heat.step_to(1.5, power, 0.25)
+    assert heat.distance(1.7) == pytest.approx(0.15)
+    assert not heat.begin(1.45), "between two steps"
+
+
+def test_the_coefficient_is_that_of_speed_and_load_at_the_end_of_a_step() -> None:
+    """By the rates of the step before; no speed is negative."""
+    law = {"slow": 0.03, "fast": 0.1, "rate": 20.0, "load_exponent": -0.3}
+    model = assemble(load_scene("fig3-I").with_values({"isolator.friction": law}), "translational", V_REG)
+    rates = {"slip_rate": np.array([-0.5]), "load": np.array([1.3]), "load_rate": np.array([0.4])}
+    state, friction = EngineState(np.zeros(8), np.zeros(8), np.array([-1.0, 0.02, 0.0, 0.0]), **rates), model.friction
+    friction.begin(model.mbs, state, 0.7)
+    found = friction._coefficients_without_heat(0.01) + friction._coefficients_without_heat(0.1)
+    assert found == pytest.approx([friction.law.coefficient_at(0.015, 1.304), friction.law.coefficient_at(0.0, 1.34)])
+
+
+@pytest.mark.parametrize("name", ["constant", "rising", "lubricated", "yielding"])
+def test_an_impact_has_the_friction_of_its_scene(name: str) -> None:
+    """Springs transmit none, as they are soft beside contacts."""
+    rising = {"slow": 0.03, "fast": 0.1, "rate": 20.0}
+    frictions: Any = {"constant": 0.07, "rising": rising, "yielding": {"slow": 0.1, "yield_displacement": 1e-3}}
+    scene = load_scene("fig4-viscous" if name == "lubricated" else "fig3-I").with_values({"isolator.supports": 3})
+    if name != "lubricated":
+        scene = scene.with_values({"isolator.friction": frictions[name]})
+    model, speed = assemble(scene, "spatial", V_REG), 0.4
+    law, slip = model.impact, speed / model.units.velocity
+    expected = {"constant": 0.07, "rising": 0.1 - 0.07 * np.exp(-8.0), "yielding": 0.0}
+    found = law.friction.at(slip) * min(slip / law.corner, 1.0)
+    assert found == pytest.approx(expected.get(name, scene.friction_coefficient * speed))
 
 
 @pytest.mark.parametrize(

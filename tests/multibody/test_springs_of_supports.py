@@ -18,10 +18,10 @@ from multibody.integration.level import (
     PHYSICAL_WARPING_COMPLIANCE,
     Level,
 )
-from multibody.integration.level_runs import MAX_WORK_SHARE_OF_TRIAL
+from multibody.integration.level_runs import MAX_WORK_SHARE_OF_TRIAL, LevelRuns
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
-from multibody.integration.refine import refine
+from multibody.integration.refine import _AnswerSearch, refine
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from reference.problem import Outcome, load_scene
 
@@ -121,6 +121,12 @@ def finer_on_bearings(number: int, springs: float) -> bool:
     return number > 0 and springs == REAL
 
 
+def rounding_to(of_level_0: float) -> list[Level]:
+    """Levels whose contact forces round to such a share of the weight, and four times as much at each."""
+    return [replace(level, rounding_moment=1e-6 * of_level_0) for level in LEVELS]
+
+
+HALVED = (1.0, 1.01, 1.015, 1.0175, 1.01875, 1.0194)  # from level to level by half of the change before
 OK, BEYOND, RIM = Outcome.OK, Outcome.TOLERANCE_NOT_MET, Outcome.RIM_REACHED
 FAILED, LIMIT = Outcome.SOLVER_FAILED, Outcome.STEP_LIMIT
 NOTHING = (math.nan, math.nan)
@@ -173,6 +179,21 @@ PATHS: dict[str, tuple[Any, ...]] = {
     "supports opened by a misfit may give way by more":
         (lambda _, springs: result(1.0, opens=springs == STIFF, warping_load=1e-6 / springs), {},
          "0s 0r 1c", OK, 1.0, level_error(1) + 0.25e-10),
+    "a load of open supports that asks for real bearings has no part of its own":
+        (lambda *_: result(1.0, warping_load=0.02), {}, "0s 0r 1r", OK, 1.0, level_error(1)),
+    "motions that differ count one after another":
+        (lambda number, _: result((1.0, 2.0, 3.0, 3.0, 6.0, 12.0)[number], opens=False, impacts=7), {},
+         "0s 1s 2s 3s 4s 5s", BEYOND, 12.0, 12.0),
+    "where rounding takes over the level before is the answer":
+        (lambda number, _: result(HALVED[number], opens=False), {"of": rounding_to(1e-4)},
+         "0s 1s 2s 3s", BEYOND, 1.015, 1.25 * 0.005 * (1.0 + 5e-4) + 1e-6 * 1.015 + 1.6e-3),
+    "where a contact that stays rounds no level follows":
+        (lambda number, _: result(HALVED[number], opens=False), {"of": rounding_to(1.5e-3), "stiffenings": 1},
+         "0s 1s 2s 2~", BEYOND, 1.015, 1.25 * 0.005 * (1.0 + 5e-4) + (2e-6 + 5e-5) * 1.015),
+    "an answer without a softer contact is no best one":
+        (lambda number, springs: result(HALVED[number] + 0.03 * (springs == SOFTER), opens=False),
+         {"of": rounding_to(3.75e-4), "stiffenings": 1, "levels": 3},
+         "0s 1s 2s 2~", BEYOND, 1.01, 1.5 * 0.01 * (1.0 + 1e-3) + 1e-6 * 1.01 + 1.5e-3),
 }  # fmt: skip
 
 
@@ -213,6 +234,8 @@ def test_levels_on_real_bearings_begin_with_a_full_run_where_the_trial_rattles(r
 def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
     done = refined(lambda *at: replace(real_from_level_1(*at), impacts=int(finer_on_bearings(*at))), 2)
     assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3), "no level before it has the same springs"
+    loaded = refined(lambda *_: result(1.0, warping_load=0.02)).answer
+    assert loaded.floor == LEVELS[1].error_floor, "open supports share no load"
 
 
 def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
@@ -232,11 +255,11 @@ def test_supports_opened_on_softer_springs_get_real_bearings(refined: Any, softe
     assert re.findall(r"\d", done.asked) == [*"01", *"1234"], "levels 0 and 1 differ: more follow"
 
 
-@pytest.mark.parametrize("load", [1e-5, 1e-3])
+@pytest.mark.parametrize("load", [9e-7, 1e-5, 1e-3])
 def test_load_that_warping_takes_is_an_error_of_all_numbers(refined: Any, load: float) -> None:
     """Of supports that stay closed on real bearings, as one opened on softer springs."""
     done = refined(lambda number, springs: result(1.0, opens=springs > REAL, warping_load=load))
-    assert done.asked == "0s 1c 1r"
+    assert done.asked == ("0s 1s" if load < 1e-6 else "0s 1c 1r"), "no smaller error than 1e-6 has been verified"
     np.testing.assert_allclose(done.answer.errors, [each * (level_error(1) + 0.25 * load) for each in (1.0, 2.0)])
     assert done.answer.floor == max(load, LEVELS[1].error_floor)
 
@@ -254,6 +277,7 @@ def test_a_softer_contact_without_an_answer_leaves_the_error_open(refined: Any) 
     done = refined(runs, 3, stiffenings=1)
     assert (done.asked, done.answer.outcome) == ("0s 1s 2s 2~", BEYOND)
     np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [1.01, 0.015 * 1.001 + 1.01e-6])
+    assert done.answer.floor == LEVELS[2].error_floor
     assert [run.peaks.value[0] for run, _ in done.answer.coarser] == [1.01], "the level before, without the softer run"
 
 
@@ -271,3 +295,40 @@ def test_warping_counts_while_all_supports_are_closed_and_have_settled() -> None
         motion: Any = SimpleNamespace(time=np.array(time), coordinates=np.array(warped)[:, None], gap=gap)
         _record_warping(run, motion, model, level)
         assert (run.warping_load, run.last_open_at) == (pytest.approx(load), last_open)
+
+
+def test_a_stop_that_later_runs_do_not_confirm_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until a run to the end says anew when nothing more comes: 20 steps of level 0 behind its last large value."""
+    found = iter([(1.0, 1.0), (1.2, 1.0), (1.2, 3.0), (1.2, 3.0)])  # peak, and instant of the last large value
+    stops: list[float] = []
+
+    def run_level(pair: PhasePair, level: Level, budget: Budget, stop: float = math.inf, **more: Any) -> EngineRun:
+        stops.append(stop)
+        peak, last = next(found)
+        return replace(result(peak, opens=False, last_large_at=last, max_displacement=0.1), stop=stop)
+
+    monkeypatch.setattr(PhasePair, "run_level", run_level)
+    model: Any = SimpleNamespace(**{**vars(MODEL), "warping_displacement": None, "rim": 1.0, "travel": math.inf})
+    runs = LevelRuns(PhasePair(SCENE, model, np.zeros(2)), TOLERANCE, Budget(1e9), [*LEVELS], False, False)
+    peaks = [runs.run_next_level().peaks.value[0] for _ in range(3)]
+    assert (peaks, stops) == ([1.0, 1.2, 1.2], [math.inf, first := 1.0 + 20.0 * LEVELS[0].step, math.inf, first + 2.0])
+
+
+@pytest.mark.parametrize("changes", [{}, {"soften": False}, {"outcome": Outcome.RIM_REACHED}, {"turns": True}], ids=str)
+def test_the_smallest_peak_softens_the_contact_unless_a_platform_turns(changes: dict[str, Any]) -> None:
+    model: Any = SimpleNamespace(**{**vars(MODEL), "depressions": "some" if changes.get("turns") else None})
+    pair, run = PhasePair(SCENE, model, np.zeros(2)), result(1e-6, outcome=changes.get("outcome", OK), opens=False)
+    rough = [replace(level, rounding_moment=1e-15) for level in LEVELS]
+    runs = LevelRuns(pair, TOLERANCE, Budget(1e9), [*rough], changes.get("soften", True), False, [run])
+    runs._adapt_levels(run)
+    softer = [level.penetration > before.penetration for level, before in zip(runs.levels, rough)]
+    assert softer == [False, *[not changes] * (len(rough) - 1)]
+
+
+def test_motions_of_the_best_answer_and_of_the_last_two_runs_are_kept() -> None:
+    runs: list[Any] = [result(1.0, chunks=[number]) for number in range(6)]
+    best = SimpleNamespace(run=runs[1], coarser=((runs[0], 1.5), (runs[3], 1.0)))
+    for held, kept in ((best, [0, 1, 3, 4, 5]), (None, [4, 5])):
+        search: Any = SimpleNamespace(best=held, runs=SimpleNamespace(runs=runs))
+        _AnswerSearch._forget_motions(search)
+        assert [run.chunks[0] for run in runs if run.chunks] == kept

@@ -16,6 +16,7 @@ import reference
 from multibody import surface
 from multibody.integration import refine
 from multibody.integration.constant_step import EngineSolver
+from multibody.integration.engine_run import EngineRun, begin_run
 from multibody.integration.level import plan_levels
 from multibody.integration.one_run import PhasePair
 from multibody.models import engine
@@ -146,6 +147,7 @@ def test_a_tolerance_out_of_reach_gives_the_error_reached() -> None:
         ({"phase": PHASE, "step": 1e-3, "level": multibody.levels(load_scene("fig3-I"))[0]}, "exactly one"),
         ({"phase": PHASE, "step": 0.0}, "step"),
         ({"phase": PHASE, "step": 20.1}, "step"),
+        ({"phase": PHASE, "step": 1.9e-6}, "from 2e-06 to 20 s"),
         ({"phase": PHASE, "step": 1e-3, "integrator": "Euler"}, "integrator"),
         ({"phase": PHASE, "step": 1e-3, "penetration": -1.0}, "penetration"),
     ],
@@ -182,25 +184,37 @@ def test_a_refusal_says_what_is_needed_and_what_helps() -> None:
     on_bars = scene.with_values(bars)
     softened, stiff = (multibody.refusal(on_bars, max_work=100.0, softened=soft) for soft in (True, False))
     assert softened == multibody.refusal(on_bars.softened(), max_work=100.0) != stiff
+    buckled = multibody.refusal(on_bars.with_values({"bodies.1.bars.bending_stiffness": 1e-3}), softened=True)
+    assert re.match(r"refused before any step: .*buckl", buckled)
     for duration in (1.55, 1.57):
         refused = multibody.refusal(scene.with_values({"duration": duration}), max_work=100.0)
         assert (refused != "") == (duration > 1.563)
 
 
-def test_a_refusal_depends_on_the_model_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """40 coordinates: six of each of six bodies, and one of each of four supports that share the load."""
-    monkeypatch.setattr(EngineSolver, "run", lambda *given: pytest.fail("a step was spent"))
-    for tolerance in (1e-5, 1e-3, 1e-1):
-        options: dict[str, Any] = {"model": "spatial", "tolerance": tolerance, "max_work": 5e3}
-        refused = multibody.refusal(frame(20.0), **options)
-        assert all(said in refused for said in ("40 coordinates", "a looser tolerance does not help"))
-        point = multibody.amplification(frame(20.0), [(0.1, 0.2)], **options)
-        assert (point.status[0], point.instant[0]) == (Outcome.STEP_LIMIT, 0.0)
-        assert np.isnan(point.mu).all()
+def test_a_run_is_refused_by_the_longest_steps_that_it_may_take(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four times those of level 0, unless it goes to the end; nothing is assembled for a pair that has too little."""
+    asked: list[float] = []
+
+    def limited(pair: PhasePair, level: Any, budget: Any, *rest: Any, **more: Any) -> EngineRun:
+        asked.append(budget.steps_left)
+        return begin_run(pair.model).terminate(Outcome.STEP_LIMIT, 0.0)
+
+    monkeypatch.setattr(PhasePair, "run_level", limited)
+    scene = load_scene("synthetic-pair")  # 5.1e3 steps of level 0
+    for work, full, runs in ((1200.0, False, 0), (1400.0, False, 2), (5000.0, True, 0), (5300.0, True, 2)):
+        asked.clear()
+        status = multibody.amplification(scene, [PHASE], max_work=work, full=full).status
+        assert (status[0], asked) == (Outcome.STEP_LIMIT, [work] * runs)
+        assert (multibody.refusal(scene, max_work=work, full=full) == "") == bool(runs)
+    asked.clear()
+    multibody.trajectory(scene, PHASE, max_work=5000.0)
+    assert asked == [], "a motion that is kept goes to its end"
 
 
 @pytest.mark.parametrize("scene", [load_scene("fig3-I"), frame(60.0, 20, 0.02)], ids=["fig3-I", "20 stiff floors"])
 def test_what_is_tried_is_not_refused(scene: Scene) -> None:
+    """Of two bodies with six coordinates each, and four supports that share the load with one each."""
+    assert "(16 coordinates" in multibody.refusal(load_scene("fig3-I"), "spatial", max_work=10.0)
     assert [multibody.refusal(scene, model) for model in ("translational", "spatial")] == ["", ""]
 
 
