@@ -144,6 +144,104 @@ def test_the_film_shows_the_platform_from_above_with_y_upwards(visit: Visit) -> 
         np.testing.assert_allclose(place - middle, np.stack([x * radius, y * radius], axis=1), atol=0.1)
 
 
+def test_the_second_body_has_its_own_surfaces(visit: Visit) -> None:
+    """All that a body could borrow from the first is made another one; the second model has two phases per axis."""
+    page = visit.page
+    told = page.evaluate("""() => {
+        const scene = sceneNow(), [total, surfaces] = scene.pairs, model = scene.models[total.second], seen = [];
+        const two = value => [[value, value], [value, value]];
+        const tell = (...changes) => { change(Object.assign({}, ...changes)); seen.push(shown); };
+        Object.assign(model, { phases: 2, mu: [1, 9].map(two), error: [0.1, 0.3].map(two), completed: [null, null] });
+        model.error[1][1][1] = null;
+        total.uncertainty = [0.01, 0.07].map(two);
+        surfaces.contours = [[], [[[1, 2], [3, 4]]]];
+        scene.worst[total.first] = [[0, 0, 1, total.first], [Math.PI / 2, Math.PI, 8.25, total.first]];
+        total.user = true;
+        chooseScene(0, 2);
+        const opened = [state.pair, state.place];
+        total.user = false;
+        scene.places[1].motions = scene.places[1].motions.filter(motion => motion.model !== surfaces.second);
+        chooseScene(0, 2);
+        opened.push(state.pair, state.place);
+        tell({ pair: total.key, cursor: [Math.PI, Math.PI] });
+        const readout = part("readout").textContent;
+        tell({ grid: "second" });
+        model.completed[1] = { through: "exact", certificate: "", reason: "", difference: false, mu: scene.models.exact.mu[1] };
+        tell({ grid: "own" });
+        model.completed[1].difference = true;
+        tell();
+        tell({ pair: surfaces.key });
+        return { opened, readout, name: canvases[1].closest("figure").querySelector("b").textContent, shown: seen.map(
+            panels => panels.map(({ rows, sheet, points, lines, notes }) => ({ rows, sheet, points, lines, notes }))) };
+    }""")  # fmt: skip
+    assert told["opened"] == ["total", 1, "translational", 0], "the largest difference of the body, by both models"
+    assert told["readout"].startswith("(180°, 180°): small equations, as integrated 3, ")
+    assert told["readout"].endswith(" 9 (error unknown), difference +200\u00a0% ± 7")
+    assert told["name"] == "μ2, translational engine, as integrated"
+    points, coarse, apart, completed, surfaces = told["shown"]
+    assert points[0]["rows"][0] == pytest.approx([5.0, 5.0 + 1.0, 5.0, 5.0 - 1.0]), "4 + cos alpha1 + sin alpha2"
+    assert points[0]["notes"][-1] == "largest over all phases: 8.25 at (90°, 180°)\u00a0▿"
+    assert [points[1]["points"][0][key] for key in ("z", "error")] == [9.0, 0.3]
+    assert [points[2]["points"][0][key] for key in ("z", "error")] == pytest.approx([80.0, 7.0])
+    assert (len(coarse[0]["points"]), coarse[0]["notes"][0]) == (4, "2 × 2 of 4 × 4 phases")
+    assert [[panel["sheet"] for panel in panels] for panels in (points, coarse, apart, completed)] == [
+        [True, False, False], [False, False, False], [True, True, False], [True, True, True]
+    ]  # fmt: skip
+    assert surfaces[2]["lines"] == [[[1, 2], [3, 4]]]
+    page.evaluate("state.cursor = [0, 0]")
+    page.locator("canvas.surface").first.focus()
+    for key in ("ArrowUp", "ArrowLeft"):
+        page.keyboard.press(key)
+    assert page.evaluate("state.cursor") == pytest.approx([1.5 * np.pi, 0.5 * np.pi])
+    box = page.locator("canvas.surface").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 100.0, box["y"] + 100.0)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 130.0, box["y"] + 140.0)
+    page.mouse.up()
+    assert page.evaluate("[camera.azimuth, camera.elevation]") == pytest.approx([-0.65 - 0.2, 0.5 + 0.2])
+
+
+def test_the_second_body_has_its_own_motion(visit: Visit) -> None:
+    """Every column of the motion begins at zero and ends at a number of its own."""
+    told = visit.page.evaluate("""() => {
+        const columns = [1, 11, 12, 13, 14, 1, 2, 3, 4, 21, 22], scene = sceneNow();
+        const blocks = { time: [0, 1], position: [1, 4], acceleration: [5, 4], isolator_force: [9, 2] };
+        const about = { model: "spatial", status: "ok", stick: [], start: 0, count: 2, blocks, exponents: columns.map(() => 0) };
+        about.spectra = [1, 2].map(body => ["x", "y"].map((_, i) => [10 * body + i]));
+        const motion = motionOf(Int32Array.from(columns.flatMap(end => [0, end])), { motions: [about] }, "spatial");
+        state.body = 2;
+        const ends = motionFigures(scene, ["spatial"], [motion]).map(figure => [figure.textContent, figure.querySelector(".plot").spec]);
+        const middles = [], kept = CanvasRenderingContext2D.prototype.fillRect;
+        CanvasRenderingContext2D.prototype.fillRect = (x, y, width) => { middles.push(x + width / 2); };
+        startFilm(scene, ["spatial"], [motion]);
+        for (film.time of [0, 1]) film.draw();
+        CanvasRenderingContext2D.prototype.fillRect = kept;
+        const one = { displacement: [0.2, 0.03], base_shear: [4, 0.1] }, other = { displacement: [0.25, 0.021], base_shear: [3, 0.1] };
+        const rows = (...demands) => demandsTable(scene, { motions: demands.map((each, k) => ({ model: ["exact", "spatial"][k], demands: each })) }, ["exact", "spatial"])
+            .flatMap(holder => [...holder.querySelectorAll("tbody tr")].map(row => [...row.cells].map(cell => cell.textContent)));
+        return { ends: ends.map(([title, { series }]) => [title.replace("save as SVG", ""), ...series.map(({ x, y }) => [x.at(-1), y.at(-1)])]),
+            middles: middles.slice(-4), rows: rows(one, other), half: rows(null, other) };
+    }""")  # fmt: skip
+    ends = {title: last for title, last in (each for each in told["ends"] if len(each) == 2)}
+    assert {title: ends[title] for title in list(ends)[:5]} == {
+        "displacement of the body 2 in x": [1, 13000],
+        "displacement of the body 2 in y": [1, 14000],
+        "absolute acceleration of the body 2": [1, 5],
+        "loop of the isolator in x": [11000, 21],
+        "loop of the isolator in y": [12000, 22],
+    }
+    spectra = [last[1] for title, last in ends.items() if title.startswith("floor spectrum of the body 2 in ")]
+    assert spectra == [20, 21]
+    platform, above, moved, moved_above = told["middles"]
+    assert (moved_above - above) / (moved - platform) == pytest.approx(13.0 / 11.0)
+    assert told["rows"] == [
+        ["largest displacement of the isolator, mm", "200 ± 30", "250 ± 20", "+25\u00a0%, within the errors"],
+        ["base shear, N", "4 ± 0.1", "3 ± 0.1", "−25\u00a0%"],
+    ]
+    assert [row[1:3] for row in told["half"]] == [["none", "250 ± 20"], ["none", "3 ± 0.1"]]
+
+
 def test_the_bars_of_rest_stand_beside_the_number_of_their_model(visit: Visit) -> None:
     """The known motions rest from 2 s to 3 s."""
     figure = visit.page.locator("figure", has=visit.page.locator("svg[aria-label^='rest of the platform']"))
