@@ -48,7 +48,7 @@ def large(time: Any = INSTANTS, values: Any = SWING) -> dict[str, dict[str, Any]
 
 HOSTILE = {
     "a plate that never stops": (pair(x=0.1 * np.arange(2500.0)), X, "x must repeat itself"),
-    "a plate that creeps back": (pair(x=SAW), X, "x must be faster than 2 mm/s to either side"),
+    "a plate that creeps back": (pair(x=SAW), X, "2 mm/s to either side in every cycle, or in none: not in cycle 1"),
     "a constant base": (pair(y=np.full(2500, 3.0)), Y, "y must move"),
     "two samples": (pair(TIME[:2], PLATE[:2], BASE[:2]), X, "t must be one column of 500"),
     "repeated times": (pair(np.repeat(TIME[::2], 2)), X, "t must rise in even steps"),
