@@ -11,6 +11,7 @@ from axe_playwright_python.sync_playwright import Axe
 from browsers import CHROMIUM, DESKTOP, LAPTOP, OVERLAPS, PHONE, Scheme, Visit, opened, unfolded, until
 from fake_models import fake_hierarchy, known_motions, silenced
 from known_analyses import analyses_are
+from places import HELPERS
 from playwright.sync_api import Browser
 from runs import quick_figures
 
@@ -18,6 +19,7 @@ import comparison.run
 from reference.problem import example_scenes
 
 SVG = "{http://www.w3.org/2000/svg}"
+PROBES = (HELPERS / "page_probes.js").read_text(encoding="utf-8")
 SERIOUS = ("serious", "critical")
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
@@ -26,7 +28,7 @@ pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this ma
 @pytest.fixture
 def visit(browser: Browser, finished: Path) -> Iterator[Visit]:
     """The page as it opens. Whatever a test does to it, it complains of nothing and asks no network for anything."""
-    visit = opened(browser, finished / "index.html", LAPTOP)
+    visit = opened(browser, finished / "index.html", LAPTOP, first=PROBES)
     yield visit
     visit.page.close()
     assert visit.complaints == []
@@ -40,39 +42,18 @@ def test_ticks_tell_as_many_digits_as_their_distance_asks_for(visit: Visit) -> N
         (0.0, 100.0, ["0", "50", "100"]),
     ):
         assert [text for _, text in visit.page.evaluate(f"ticksOf({{}}, [{low}, {high}], 3)")] == texts
-    ranges = visit.page.evaluate(
-        "[[3, 3], [-2, 1, 4, null]].map(values => [true, false].map(log => rangeOf({ log }, values)))"
-    )
-    assert ranges == [
-        [[1.5, 6.0], pytest.approx([2.67, 3.33])],
-        [pytest.approx([4**-0.06, 4**1.06]), pytest.approx([-2.3, 4.3])],
-    ]
-
-
-def test_a_line_has_a_gap_where_nothing_is_known(visit: Visit) -> None:
-    """Each part begins with a move."""
-    spec = "{x: {}, y: {}, series: [{x: [0, 1, 2, 3, 4], y: [1, 2, null, 3, 4]}]}"
-    drawn = f"(box => {{ drawPlot(box, {spec}); return box.querySelector('g path').getAttribute('d'); }})"
-    path = visit.page.evaluate(f"{drawn}(document.createElement('div'))")
-    assert (path.count("M"), path.count("L")) == (2, 2)
+    assert visit.page.evaluate("probe.ranges()") == [
+        [[1.5, 6.0], pytest.approx([2.67, 3.33])], [pytest.approx([4**-0.06, 4**1.06]), pytest.approx([-2.3, 4.3])]
+    ]  # fmt: skip
 
 
 def test_a_plot_with_logarithms_has_marks_bands_and_bars_where_they_belong(visit: Visit) -> None:
-    told = visit.page.evaluate("""() => {
-        const box = document.createElement("div"), x = [1, 2, 3], y = [10, -1, 30], low = [-5, 1, 20], high = [20, 2, 40];
-        const one = { name: "a", x, y, low, high, marks: 1, color: 0, titles: ["p", "q", "r"] };
-        drawPlot(box, { x: { title: "v_reg, m/s" }, y: { log: true, range: [1, 100] }, legend: false,
-            series: [one, { ...one, low: [5, 1, 20], band: true, marks: false }] });
-        const all = name => [...box.querySelectorAll(name)], area = all("polygon.area")[0].getAttribute("points").split(" ");
-        return { titles: all("polygon.mark title").map(each => each.textContent), legends: all(".legend").length, text: box.innerHTML,
-            path: all("g path")[0].getAttribute("d"), around: area.map(point => point.split(",")[0]), dy: all("tspan[dy]").map(each => each.getAttribute("dy")) };
-    }""")  # fmt: skip
-    assert (told["titles"], told["legends"], told["path"].count("M")) == (["p", "r"], 0, 2), "-1 has no logarithm"
+    told = visit.page.evaluate("probe.plotWithLogarithms()")
+    assert (told["titles"], told["legends"], told["path"].count("M")) == (["p", "s"], 0, 2), "-1 has no logarithm"
     assert told["around"] == told["around"][::-1], "there along the top, and back"
-    assert told["dy"] == ["3", "-3"], "down to the index, and up again"
+    assert told["shifts"] == ["3", "-3"], "down to the index, and up again"
     assert "NaN" not in told["text"]
-    corner = "nearestVertex({ rows: [[1, 2], [3, 4]], range: [0, 4] }, (a, b) => [100 * a, 100 * b, 0], 100 * turn, 100 * turn)"
-    assert visit.page.evaluate(corner) == pytest.approx([2.0 * np.pi] * 2), "the square is closed"
+    assert visit.page.evaluate("probe.corner()") == pytest.approx([2.0 * np.pi] * 2), "the square is closed"
 
 
 @pytest.mark.parametrize("width", [PHONE, DESKTOP])
@@ -106,15 +87,6 @@ def test_a_button_shows_the_bars_of_the_mean_or_of_the_largest(visit: Visit) -> 
         visit.page.get_by_role("button", name=name).click()
         assert visit.page.locator(f"[data-waterfall={shown}]:visible").count() == 4, "two bodies of two scenes"
         assert visit.page.locator(f"[data-waterfall={hidden}]:visible").count() == 0
-
-
-def test_a_spatial_model_on_few_phases_is_drawn_as_points(visit: Visit) -> None:
-    visit.page.locator("[data-part=pair]").select_option("total")
-    assert visit.page.evaluate("shown.map(panel => panel.sheet)") == [True, False, False]
-    visit.page.locator("canvas.surface").nth(1).focus()
-    for key in ("ArrowRight", "ArrowLeft"):
-        visit.page.keyboard.press(key)
-    assert visit.page.locator("[data-part=readout]").inner_text().count("±") == 2, "points have their errors"
 
 
 def test_a_click_shows_the_nearest_motion_and_its_distance(visit: Visit) -> None:
@@ -170,40 +142,13 @@ def test_the_film_shows_the_platform_from_above_with_y_upwards(visit: Visit) -> 
 
 
 def test_the_second_body_has_its_own_surfaces(visit: Visit) -> None:
-    """All that a body could borrow from the first is made another one; the second model has two phases per axis."""
     page = visit.page
-    told = page.evaluate("""() => {
-        const scene = sceneNow(), [total, surfaces] = scene.pairs, model = scene.models[total.second], seen = [];
-        const two = value => [[value, value], [value, value]];
-        const tell = (...changes) => { change(Object.assign({}, ...changes)); seen.push(shown); };
-        Object.assign(model, { phases: 2, mu: [1, 9].map(two), error: [0.1, 0.3].map(two), completed: [null, null] });
-        model.error[1] = [[0.3, 0.4], [0.5, null]];
-        total.uncertainty = [0.01, 0.07].map(two);
-        surfaces.contours = [[], [[[1, 2], [3, 4]]]];
-        scene.worst[total.first] = [[0, 0, 1, total.first], [Math.PI / 2, Math.PI, 8.25, total.first]];
-        total.user = true;
-        chooseScene(0, 2);
-        const opened = [state.pair, state.place];
-        total.user = false;
-        scene.places[1].motions = scene.places[1].motions.filter(motion => motion.model !== surfaces.second);
-        chooseScene(0, 2);
-        opened.push(state.pair, state.place);
-        tell({ pair: total.key, cursor: [Math.PI, Math.PI] });
-        const readout = part("readout").textContent;
-        tell({ grid: "second" });
-        model.completed[1] = { through: "exact", certificate: "", reason: "", difference: false, mu: scene.models.exact.mu[1] };
-        tell({ grid: "own" });
-        model.completed[1].difference = true;
-        tell();
-        tell({ pair: surfaces.key });
-        return { opened, readout, name: canvases[1].closest("figure").querySelector("b").textContent, shown: seen.map(
-            panels => panels.map(({ rows, sheet, points, lines, notes }) => ({ rows, sheet, points, lines, notes }))) };
-    }""")  # fmt: skip
+    told = page.evaluate("probe.surfacesOfSecondBody()")
     assert told["opened"] == ["total", 1, "translational", 0], "the largest difference of the body, by both models"
     assert told["readout"].startswith("(180°, 180°): small equations, as integrated 3, ")
     assert told["readout"].endswith(" 9 (error unknown), difference +200\u00a0% ± 7")
     assert told["name"] == "μ2, translational engine, as integrated"
-    points, coarse, apart, completed, surfaces = told["shown"]
+    points, coarse, apart, completed, surfaces = told["seen"]
     assert points[0]["rows"][0] == pytest.approx([5.0, 5.0 + 1.0, 5.0, 5.0 - 1.0]), "4 + cos alpha1 + sin alpha2"
     assert points[0]["notes"][-1] == "largest over all phases: 8.25 at (90°, 180°)\u00a0▿"
     assert [(point["z"], point["error"]) for point in points[1]["points"]] == [(9, 0.3), (9, 0.4), (9, 0.5), (9, None)]
@@ -231,46 +176,13 @@ def test_the_second_body_has_its_own_surfaces(visit: Visit) -> None:
     page.mouse.move(box["x"] + 100.0, box["y"] + 10.0)
     page.mouse.up()
     assert page.evaluate("[camera.azimuth, camera.elevation]") == pytest.approx([-0.85 - np.pi / 8.0, 0.1])
-    notes = page.evaluate("""async () => {
-        const { motions } = sceneNow().places[state.place], [first, second] = [pairNow().first, pairNow().second];
-        Object.assign(motions.find(({ model }) => model === first), { status: "rim reached" });
-        Object.assign(motions.find(({ model }) => model === second), { count: 0, status: "solver failed", error_message: "it broke" });
-        await showMotions();
-        return [...part("plots").querySelectorAll(".note")].map(note => note.textContent);
-    }""")  # fmt: skip
+    notes = page.evaluate("probe.notesOfMotions()")
     assert notes == ["small equations, as integrated ended early: rim reached", "translational engine: it broke"]
 
 
 def test_the_second_body_has_its_own_motion(visit: Visit) -> None:
-    """Every column of the motion begins at zero and ends at a number of its own."""
-    told = visit.page.evaluate("""() => {
-        const columns = [1, 11, 12, 13, -14, 1, 2, 3, 4, 21, 22], scene = sceneNow();
-        const blocks = { time: [0, 1], position: [1, 4], acceleration: [5, 4], isolator_force: [9, 2] };
-        const about = { model: "spatial", status: "ok", stick: [], start: 0, count: 2, blocks, exponents: columns.map(() => 0) };
-        about.spectra = [1, 2].map(body => ["x", "y"].map((_, i) => [10 * body + i]));
-        const motion = motionOf(Int32Array.from(columns.flatMap(end => [0, end])), { motions: [about] }, "spatial");
-        state.body = 2;
-        const ends = motionFigures(scene, ["spatial"], [motion]).map(figure => [figure.textContent, figure.querySelector(".plot").spec]);
-        const middles = [], texts = [], { fillRect, fillText } = CanvasRenderingContext2D.prototype;
-        CanvasRenderingContext2D.prototype.fillRect = (x, y, width) => { middles.push(x + width / 2); };
-        CanvasRenderingContext2D.prototype.fillText = text => texts.push(text);
-        startFilm(scene, ["spatial"], [motion]);
-        for (film.time of [0, 1]) film.draw();
-        Object.assign(CanvasRenderingContext2D.prototype, { fillRect, fillText });
-        const frames = [];
-        requestAnimationFrame = tick => frames.push(tick);
-        film.time = scene.duration;
-        setPlaying(true, scene.duration);
-        frames[0](film.last + 500);
-        const played = film.time;
-        setPlaying(false);
-        const one = { displacement: [0.2, 0.03], base_shear: [4, 0.1] }, other = { displacement: [0.25, 0.021], travel_share: [0.5, 0], base_shear: [3, 0.1] };
-        const rows = (...demands) => demandsTable(scene, { motions: demands.map((each, k) => ({ model: ["exact", "spatial"][k], demands: each })) }, ["exact", "spatial"])
-            .flatMap(holder => [...holder.querySelectorAll("tbody tr")].map(row => [...row.cells].map(cell => cell.textContent)));
-        return { ends: ends.map(([title, { series }]) => [title.replace("save as SVG", ""), ...series.map(({ x, y }) => [x.at(-1), y.at(-1)])]),
-            middles: middles.slice(-4), said: texts.at(-1), played, rows: rows(one, other), half: rows(null, other) };
-    }""")  # fmt: skip
-    ends = {title: last for title, last in (each for each in told["ends"] if len(each) == 2)}
+    told = visit.page.evaluate("probe.motionOfSecondBody()")
+    ends = {each[0]: each[1] for each in told["last"] if len(each) == 2}
     assert {title: ends[title] for title in list(ends)[:5]} == {
         "displacement of the body 2 in x": [1, 13000],
         "displacement of the body 2 in y": [1, -14000],
@@ -278,30 +190,19 @@ def test_the_second_body_has_its_own_motion(visit: Visit) -> None:
         "loop of the isolator in x": [11000, 21],
         "loop of the isolator in y": [12000, 22],
     }
-    spectra = [last[1] for title, last in ends.items() if title.startswith("floor spectrum of the body 2 in ")]
-    assert spectra == [20, 21]
+    assert [last[1] for title, last in ends.items() if title.startswith("floor spectrum of the body 2 in")] == [20, 21]
     platform, above, moved, moved_above = told["middles"]
     assert (moved_above - above) / (moved - platform) == pytest.approx(13.0 / 11.0)
+    assert told["colors"][0] == told["colors"][1], "that of the second model"
     assert told["said"] == "horizontal: 14000 mm to either side"
     assert told["played"] == pytest.approx(0.5), "from the begin, as fast as the motion"
-    assert told["rows"] == [
+    both, half = visit.page.evaluate("probe.demands()")
+    assert both == [
         ["largest displacement of the isolator, mm", "200 ± 30", "250 ± 20", "+25\u00a0%, within the errors"],
         ["largest displacement, share of the travel", "none", "0.5", ""],
         ["base shear, N", "4 ± 0.1", "3 ± 0.1", "−25\u00a0%"],
     ]
-    assert [row[1:3] for row in told["half"]] == [["none", "250 ± 20"], ["none", "0.5"], ["none", "3 ± 0.1"]]
-
-
-def test_the_bars_of_rest_stand_beside_the_number_of_their_model(visit: Visit) -> None:
-    """The known motions rest from 2 s to 3 s."""
-    figure = visit.page.locator("figure", has=visit.page.locator("svg[aria-label^='rest of the platform']"))
-    bars, names = figure.locator("g path"), ("1st", "2nd")
-    assert bars.count() == len(names)
-    for number, name in enumerate(names):
-        bar, text = bars.nth(number).bounding_box(), figure.get_by_text(name, exact=True).bounding_box()
-        assert bar
-        assert text
-        assert abs(bar["y"] + 0.5 * bar["height"] - text["y"] - 0.5 * text["height"]) < 4.0
+    assert [row[1:3] for row in half] == [["none", "250 ± 20"], ["none", "0.5"], ["none", "3 ± 0.1"]]
 
 
 def test_cells_without_a_number_stand_beside_the_numbers_of_a_sorted_table(visit: Visit) -> None:

@@ -63,8 +63,9 @@ def test_nothing_reaches_beyond_the_paper_or_is_cut(browser: Browser, finished: 
 def test_paper_is_light_and_unfolded_and_has_every_surface_sharp(browser: Browser, finished: Path) -> None:
     page = opened(browser, finished / "index.html", LAPTOP, "dark").page
     page.evaluate("change({ body: 2, pair: 'like-for-like' })")
-    sentences = page.evaluate("""study.scenes.flatMap((scene, number) => [1, 2].map(body =>
-        scene.pairs.find(pair => pair.key === (number === 0 && body === 2 ? "like-for-like" : "translational")).sentence))""")
+    pairs = [["translational", "like-for-like"], ["translational"] * 2]
+    told = "study.scenes[{}].pairs.find(pair => pair.key === '{}').sentence"
+    sentences = [page.evaluate(told.format(scene, key)) for scene, keys in enumerate(pairs) for key in keys]
     as_printed(page)
     heads = page.locator(".sheet h3").evaluate_all("list => list.map(each => each.textContent)")
     assert all(letters(said) in letters(head) for said, head in zip(sentences, heads, strict=True)), "the pair shown"
