@@ -207,6 +207,7 @@ def test_every_form_of_answer_is_read(form: str) -> None:
         ("misshapen", "ValueError: the engine's mu has shape (3,), asked: (4, 2)"),
         ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
         ("nothing_at_all", "TypeError: the engine's mu is None"),
+        ("three_parts", "TypeError: the engine returned a tuple of 3: give mu, (mu, error) or an object"),
         ("complex_numbers", "TypeError: the engine's mu has complex128 in place of real numbers"),
         ("truths", "TypeError: the engine's mu has bool in place of real numbers"),
         ("exits", "RuntimeError: the engine asked the process to end: exit code 0"),
@@ -233,8 +234,8 @@ def test_values_that_are_none_are_never_ok(monkeypatch: pytest.MonkeyPatch) -> N
     nothing = amplification(SCENE, PHASES, engine={"function": "user_engines:zeros"})
     assert (list(nothing.status), nothing.mu.any(), nothing.error.any()) == (["ok", "ok"], False, False)
     assert PHASES[1].tolist() == [1.0, 2.0], "an engine has phases of its own to change"
-    spent = iter([1.0, 8.5])
-    times = lambda: SimpleNamespace(children_user=next(spent), children_system=0.0)  # noqa: E731
+    spent = iter([1.0, 2.0, 5.5, 5.0])
+    times = lambda: SimpleNamespace(children_user=next(spent), children_system=next(spent))  # noqa: E731
     monkeypatch.setattr("comparison.study.user_models.os.times", times)
     cost = amplification(SCENE, PHASES, engine={"function": "user_engines:plain"}).cost
     assert 7.5 <= cost < 8.5, "what its processes cost is its own"
