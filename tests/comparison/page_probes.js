@@ -40,19 +40,21 @@ globalThis.probe = {
     const motions = models.map(key => motionOf(Int32Array.from(columns.flatMap(end => [0, end])), { motions: [about] }, key));
     state.body = 2;
     const last = motionFigures(scene, models, motions).map(figure => [figure.querySelector("figcaption").firstChild.textContent, ...figure.querySelector(".plot").spec.series.map(({ x, y }) => [x.at(-1), y.at(-1)])]);
-    const drawn = [], texts = [], frames = [], { fillRect, fillText } = CanvasRenderingContext2D.prototype;
+    const drawn = [], above = [], texts = [], frames = [], { fillRect, fillText, arc } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.arc = (x, y, radius) => { if (radius === 4) above.push([x, y]); };
     CanvasRenderingContext2D.prototype.fillRect = function (x, y, width) { drawn.push([x + width / 2, this.fillStyle]); };
     CanvasRenderingContext2D.prototype.fillText = text => texts.push(text);
     startFilm(scene, models, motions);
     for (film.time of [0, 1]) film.draw();
-    Object.assign(CanvasRenderingContext2D.prototype, { fillRect, fillText });
+    Object.assign(CanvasRenderingContext2D.prototype, { fillRect, fillText, arc });
     requestAnimationFrame = tick => frames.push(tick);
     film.time = scene.duration;
-    setPlaying(true, scene.duration);
-    frames[0](film.last + 500);
-    const played = film.time;
-    setPlaying(false);
-    return { last, middles: drawn.slice(-4).map(([x]) => x), colors: [drawn.at(-1)[1], variable("--c1")], said: texts.at(-1), played };
+    const played = [film.time, ...[0, 1].map(number => {
+      part("start").click();
+      frames[number]?.(film.last + 500);
+      return [part("start").textContent, film.time, frames.length];
+    })].slice(1);
+    return { last, middles: drawn.slice(-4).map(([x]) => x), colors: [drawn.at(-1)[1], variable("--c1")], said: texts.at(-1), played, above: above.slice(1, 3) };
   },
   demands() {
     const one = { displacement: [0.2, 0.03], base_shear: [4, 0.1] }, other = { displacement: [0.25, 0.021], travel_share: [0.5, 0], base_shear: [3, 0.1] }, models = ["exact", "spatial"];

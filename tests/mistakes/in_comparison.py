@@ -935,7 +935,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/limits.py", "found, error = value / per, error / per", "found, error = value / per, error",
             "A limit on a demand relative to a weight is judged with an error bar that is not divided by it.", ("tests/comparison/analyses/test_ensemble_limits.py::test_base_shear_is_limited_as_a_share_of_the_weight",)),
     Mistake(REPORT + "templates/film.js", "cy - size * at(column, 0, 1) / most", "cy + size * at(column, 0, 1) / most",
-            "From above the platform moves down where y grows.", (TESTS + "report/test_page_in_a_browser.py::test_the_film_shows_the_platform_from_above_with_y_upwards",)),
+            "From above the platform moves down where y grows.", (TESTS + "report/test_page_in_a_browser.py::test_the_second_body_has_its_own_motion",)),
     Mistake(REPORT + "templates/tables.js", "/^[=@]/.test(text)", "/^[=]/.test(text)",
             "A cell that begins with @ is copied as a formula.", (TESTS + "report/test_page_in_a_browser.py::test_a_table_is_copied_to_the_clipboard_as_csv",)),
     Mistake(CLI + "reports.py", "later = [analysis for analysis in analyses if analysis.needs_surfaces]", "later = analyses",
@@ -1309,5 +1309,8 @@ MISTAKES = (
     Mistake(REPORT + "templates/viewer.js", 'state.pair = here ? now.pair : drawnPair(body)',
             'state.pair = drawnPair(body)',
             'On paper stands another pair of models than was shown.', (PRINT + "paper_is_light_and_unfolded_and_has_every_surface_sharp",)),
+    Mistake(CLI + "user_models.py", "make_user_model(name, _inspect_function(spec, function), like, seconds)",
+            "make_user_model(name, _inspect_function(spec, function), like)",
+            "--model-limit reaches no engine.", (ENGINES + "an_import_that_ends_its_process_is_named",)),
 )
 # fmt: on

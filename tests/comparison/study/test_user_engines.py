@@ -18,7 +18,7 @@ from fake_models import fake_hierarchy, smooth
 from known_analyses import computed
 from places import ROOT, limited_scene, scene_text
 from report_texts import data_of, page_of, summary_of
-from runs import Run
+from runs import Here, Run
 from studies import body_comparisons, difference_rows, solved
 
 import reference
@@ -173,6 +173,10 @@ def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(sys, "path", [*sys.path])
     with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
         load_user_models(["mine=engine_that_leaves:f"])
+    assert sys.path[-1] == str(tmp_path), "last, so that it hides nothing"
+    monkeypatch.setattr("comparison.cli.user_models.Workers", Here)
+    (model,) = load_user_models(["mine=user_engines:plain@small"], "7.5")
+    assert (model.timeout, model.like) == (7.5, "small")
 
 
 def test_functions_are_used_from_python_by_their_place() -> None:
