@@ -1312,5 +1312,17 @@ MISTAKES = (
     Mistake(CLI + "user_models.py", "make_user_model(name, _inspect_function(spec, function), like, seconds)",
             "make_user_model(name, _inspect_function(spec, function), like)",
             "--model-limit reaches no engine.", (ENGINES + "an_import_that_ends_its_process_is_named",)),
+    Mistake(EVIDENCE + "benchmarks/analysis.py", 'any(len(other) != len(values) for other in others)',
+            'all(len(other) != len(values) for other in others)',
+            'A coarser motion that lacks numbers gives an error.', (EVIDENT + "benchmarks.py::test_a_number_that_a_coarser_motion_lacks_has_no_error",)),
+    Mistake(EVIDENCE + "benchmarks/analysis.py", 'max(1.0, case.scene.duration / 12.0)',
+            'min(1.0, case.scene.duration / 12.0)',
+            'A long motion costs as much as a short one.', (EVIDENT + "benchmarks.py::test_a_task_costs_what_its_side_and_its_duration_cost",)),
+    Mistake(EVIDENCE + "benchmarks/table.py", ' + VALUE_ROUNDING * abs(value))',
+            ')',
+            'The rounding of a value is a deviation.', (EVIDENT + "benchmarks.py::test_a_number_is_met_within_both_errors",)),
+    Mistake(CLI + "user_models.py", ' if module.startswith(missing) else ""',
+            '',
+            'A package that an engine lacks is looked for in the folder.', (ENGINES + "what_cannot_be_imported_or_called_is_named",)),
 )
 # fmt: on

@@ -5,6 +5,7 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -154,6 +155,36 @@ def test_a_number_is_met_within_both_errors():
     }  # fmt: skip
     assert word_with_error(SideNumber(2.02423, 3e-4, "met")) == "2.0242 ± 3e-04"
     assert word_with_error(SideNumber(math.pi, 1e-12, "met")) == "3.141593 ± 1e-12"
+    assert [word_with_error(SideNumber(*each, "met")) for each in ((2.5, 0.0), (1e-5, 1.0))] == ["2.5", "1e-05 ± 1e+00"]
+    assert _words(equations=(1.01 + 1e-13, 0.0), smoothed=far, engine=far)[EQUATIONS] == "met", (
+        "rounding is no deviation"
+    )
+    (known,) = known_benchmarks().benchmarks
+    with pytest.raises(ValueError, match="numbers must have equations and engine"):
+        replace(known, rows=[replace(known.rows[0], numbers={EQUATIONS: known.rows[0].numbers[EQUATIONS]})])
+
+
+def test_a_number_that_a_coarser_motion_lacks_has_no_error(monkeypatch):
+    monkeypatch.setattr(analysis, "halve_samples", lambda motion: SimpleNamespace(read=[1.3, 5.0]))
+    reading = SimpleNamespace(read=lambda motion: motion.read)
+    for coarser, errors in (([1.0, 2.0], [0.1 + 0.2 / 3.0, 2.0 + 1.0 / 3.0]), ([1.0], [math.nan] * 2)):
+        accuracy = SimpleNamespace(
+            coarser=[SimpleNamespace(read=coarser)], error_of=lambda value, others: value - others[0]
+        )
+        motion = SimpleNamespace(status="ok", time=[0.0, 1.0], read=[1.1, 4.0], accuracy=accuracy)
+        values, found = analysis._read_numbers(reading, motion)
+        assert values == motion.read
+        assert found == pytest.approx(errors, nan_ok=True)
+
+
+def test_a_task_costs_what_its_side_and_its_duration_cost():
+    short = BY_NAME["pendulum"]
+    tasks = [
+        BenchmarkTable([replace(short, scene=short.scene.with_values({"duration": end}))]).tasks()
+        for end in (6.0, 24.0)
+    ]
+    assert [[task.seconds for task in each] for each in tasks] == [[0.1, 0.1, 3.5], [0.2, 0.2, 7.0]]
+    assert [task.needs_compiled_reference for task in tasks[0]] == [True, True, False]
 
 
 def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
