@@ -1324,5 +1324,7 @@ MISTAKES = (
     Mistake(CLI + "user_models.py", ' if module.startswith(missing) else ""',
             '',
             'A package that an engine lacks is looked for in the folder.', (ENGINES + "what_cannot_be_imported_or_called_is_named",)),
+    Mistake(EVIDENCE + "benchmarks/analysis.py", "if len(answer.values) == len(case.published):", "if len(answer.values) >= 1:",
+            "One of two numbers is taken for the first.", (EVIDENT + "benchmarks.py::test_both_laws_of_friction_and_the_engine_are_asked",)),
 )
 # fmt: on
