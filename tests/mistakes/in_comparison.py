@@ -1326,5 +1326,9 @@ MISTAKES = (
             'A package that an engine lacks is looked for in the folder.', (ENGINES + "what_cannot_be_imported_or_called_is_named",)),
     Mistake(EVIDENCE + "benchmarks/analysis.py", "if len(answer.values) == len(case.published):", "if len(answer.values) >= 1:",
             "One of two numbers is taken for the first.", (EVIDENT + "benchmarks.py::test_both_laws_of_friction_and_the_engine_are_asked",)),
+    Mistake(EVIDENCE + "benchmarks/cases.py", "np.abs(samples[:, 1:]).max(axis=0)", "samples[:, 1:].max(axis=0)",
+            "A peak below zero is none.", (EVIDENT + "benchmarks.py::test_another_motion_is_not_that_of_mastodon",)),
+    Mistake(EVIDENCE + "benchmarks/command.py", "if only in case.scene.name", "if only in case.title",
+            "--only looks into titles.", (EVIDENT + "benchmarks.py::test_a_number_that_is_off_or_lacking_is_an_exit_code",)),
 )
 # fmt: on

@@ -15,7 +15,7 @@ from places import ROOT
 from rich.console import Console
 
 import reference
-from comparison.evidence.benchmarks import analysis, readings
+from comparison.evidence.benchmarks import analysis, cases, readings
 from comparison.evidence.benchmarks.analysis import (
     BenchmarkTable,
     SideNumbers,
@@ -199,11 +199,21 @@ def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
             STORED.load(tmp_path)
 
 
-def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys):
+def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys, monkeypatch):
     time = 0.01 * np.arange(5002)
-    shaking = np.outer(np.sin(time), [8.950749, 6.770387, 1.692597])
+    shaking = np.outer(0.9 * np.sin(time), [8.950749, 6.770387, 1.692597])
     kinds = {"steps": (2.0 * time, shaking), "short": (time[:200], shaking[:200]), "weak": (time, 0.9 * shaking)}
-    shaking[157] = [8.950749, 6.770387, 1.692597]
+    shaking[157] = [-8.950749, 6.770387, -1.692597]
+    kinds |= {"off": (time, 0.998 * shaking), "turned": (time, shaking[:, [1, 0, 2]])}
+    content = {kind: np.column_stack(columns) for kind, columns in {**kinds, "copy": (time, 0.9995 * shaking)}.items()}
+    monkeypatch.setattr(cases, "read_csv_samples", lambda text: content["copy"])
+    case = load_mastodon_case(ROOT / "README.md")
+    assert case.scene.record[157] == pytest.approx(content["copy"][157])
+    assert case.scene.total_mass * 9.81 == pytest.approx(6285710.0)
+    assert {row.quantity: row.published for row in case.published} == {
+        "smallest along x": -432.0, "largest along x": 330.0, "smallest along y": -197.0, "largest along y": 152.0
+    }  # fmt: skip
+    monkeypatch.undo()
     for name, (instants, samples) in kinds.items():
         rows = "\n".join(",".join(map(repr, map(float, row))) for row in np.column_stack([instants, samples]))
         (tmp_path / f"{name}.csv").write_text(f"time [s], ax [m/s^2], ay [m/s^2], az [m/s^2]\n{rows}\n")
@@ -313,6 +323,7 @@ def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, mon
     monkeypatch.setattr("comparison.evidence.benchmarks.command.compute_tasks", lambda *rest: None)
     monkeypatch.setattr(BenchmarkTable, "collect", lambda *rest: table)
     assert main(["--only", "frame", "--out", str(tmp_path / "report")]) == code
+    assert main(["--only", "one-story", "--out", str(tmp_path / "none")]) == 2, "part of the title"
     stored = STORED.load(tmp_path / "report")
     assert stored.benchmarks == table.benchmarks
     assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == word_page(stored)
