@@ -5,6 +5,7 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from places import ROOT
 from rich.console import Console
 
 import reference
-from comparison.evidence.benchmarks import analysis, readings
+from comparison.evidence.benchmarks import analysis, cases, readings
 from comparison.evidence.benchmarks.analysis import (
     BenchmarkTable,
     SideNumbers,
@@ -154,6 +155,36 @@ def test_a_number_is_met_within_both_errors():
     }  # fmt: skip
     assert word_with_error(SideNumber(2.02423, 3e-4, "met")) == "2.0242 ± 3e-04"
     assert word_with_error(SideNumber(math.pi, 1e-12, "met")) == "3.141593 ± 1e-12"
+    assert [word_with_error(SideNumber(*each, "met")) for each in ((2.5, 0.0), (1e-5, 1.0))] == ["2.5", "1e-05 ± 1e+00"]
+    assert _words(equations=(1.01 + 1e-13, 0.0), smoothed=far, engine=far)[EQUATIONS] == "met", (
+        "rounding is no deviation"
+    )
+    (known,) = known_benchmarks().benchmarks
+    with pytest.raises(ValueError, match="numbers must have equations and engine"):
+        replace(known, rows=[replace(known.rows[0], numbers={EQUATIONS: known.rows[0].numbers[EQUATIONS]})])
+
+
+def test_a_number_that_a_coarser_motion_lacks_has_no_error(monkeypatch):
+    monkeypatch.setattr(analysis, "halve_samples", lambda motion: SimpleNamespace(read=[1.3, 5.0]))
+    reading = SimpleNamespace(read=lambda motion: motion.read)
+    for coarser, errors in (([1.0, 2.0], [0.1 + 0.2 / 3.0, 2.0 + 1.0 / 3.0]), ([1.0], [math.nan] * 2)):
+        accuracy = SimpleNamespace(
+            coarser=[SimpleNamespace(read=coarser)], error_of=lambda value, others: value - others[0]
+        )
+        motion = SimpleNamespace(status="ok", time=[0.0, 1.0], read=[1.1, 4.0], accuracy=accuracy)
+        values, found = analysis._read_numbers(reading, motion)
+        assert values == motion.read
+        assert found == pytest.approx(errors, nan_ok=True)
+
+
+def test_a_task_costs_what_its_side_and_its_duration_cost():
+    short = BY_NAME["pendulum"]
+    tasks = [
+        BenchmarkTable([replace(short, scene=short.scene.with_values({"duration": end}))]).tasks()
+        for end in (6.0, 24.0)
+    ]
+    assert [[task.seconds for task in each] for each in tasks] == [[0.1, 0.1, 3.5], [0.2, 0.2, 7.0]]
+    assert [task.needs_compiled_reference for task in tasks[0]] == [True, True, False]
 
 
 def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
@@ -168,11 +199,21 @@ def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
             STORED.load(tmp_path)
 
 
-def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys):
+def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys, monkeypatch):
     time = 0.01 * np.arange(5002)
-    shaking = np.outer(np.sin(time), [8.950749, 6.770387, 1.692597])
+    shaking = np.outer(0.9 * np.sin(time), [8.950749, 6.770387, 1.692597])
     kinds = {"steps": (2.0 * time, shaking), "short": (time[:200], shaking[:200]), "weak": (time, 0.9 * shaking)}
-    shaking[157] = [8.950749, 6.770387, 1.692597]
+    shaking[157] = [-8.950749, 6.770387, -1.692597]
+    kinds |= {"off": (time, 0.998 * shaking), "turned": (time, shaking[:, [1, 0, 2]])}
+    content = {kind: np.column_stack(columns) for kind, columns in {**kinds, "copy": (time, 0.9995 * shaking)}.items()}
+    monkeypatch.setattr(cases, "read_csv_samples", lambda text: content["copy"])
+    case = load_mastodon_case(ROOT / "README.md")
+    assert case.scene.record[157] == pytest.approx(content["copy"][157])
+    assert case.scene.total_mass * 9.81 == pytest.approx(6285710.0)
+    assert {row.quantity: row.published for row in case.published} == {
+        "smallest along x": -432.0, "largest along x": 330.0, "smallest along y": -197.0, "largest along y": 152.0
+    }  # fmt: skip
+    monkeypatch.undo()
     for name, (instants, samples) in kinds.items():
         rows = "\n".join(",".join(map(repr, map(float, row))) for row in np.column_stack([instants, samples]))
         (tmp_path / f"{name}.csv").write_text(f"time [s], ax [m/s^2], ay [m/s^2], az [m/s^2]\n{rows}\n")
@@ -282,6 +323,7 @@ def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, mon
     monkeypatch.setattr("comparison.evidence.benchmarks.command.compute_tasks", lambda *rest: None)
     monkeypatch.setattr(BenchmarkTable, "collect", lambda *rest: table)
     assert main(["--only", "frame", "--out", str(tmp_path / "report")]) == code
+    assert main(["--only", "one-story", "--out", str(tmp_path / "none")]) == 2, "part of the title"
     stored = STORED.load(tmp_path / "report")
     assert stored.benchmarks == table.benchmarks
     assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == word_page(stored)
@@ -301,3 +343,7 @@ def test_both_laws_of_friction_and_the_engine_are_asked(monkeypatch):
     laws = [(path.partition(":")[0], settings["regularization"], settings["tolerance"]) for path, settings in asked]
     assert laws == [("reference", None, 1e-8), ("reference", 1e-7, 1e-8), ("multibody", 1e-7, 1e-4)]
     assert {settings["initial"].position[0, 0] for _, settings in asked} == {0.85e-3}
+    assert not any(settings["initial"].velocity.any() for _, settings in asked), "released from rest"
+    few = {side: SideNumbers([2.0242], [0.0], "ok", 0.0) for side in (EQUATIONS, SMOOTHED, ENGINE)}
+    rows = _make_benchmark(BY_NAME["frame"], few).rows
+    assert [row.numbers[EQUATIONS].verdict for row in rows] == [NOT_COMPARED] * 2, "one number of two may be either"

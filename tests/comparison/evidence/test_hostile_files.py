@@ -48,11 +48,12 @@ def large(time: Any = INSTANTS, values: Any = SWING) -> dict[str, dict[str, Any]
 
 HOSTILE = {
     "a plate that never stops": (pair(x=0.1 * np.arange(2500.0)), X, "x must repeat itself"),
-    "a plate that creeps back": (pair(x=SAW), X, "x must be faster than 2 mm/s to either side"),
+    "a plate that creeps back": (pair(x=SAW), X, "2 mm/s to either side in every cycle, or in none: not in cycle 1"),
     "a constant base": (pair(y=np.full(2500, 3.0)), Y, "y must move"),
     "two samples": (pair(TIME[:2], PLATE[:2], BASE[:2]), X, "t must be one column of 500"),
     "repeated times": (pair(np.repeat(TIME[::2], 2)), X, "t must rise in even steps"),
     "falling times": (pair(TIME[::-1]), X, "t must rise in even steps"),
+    "uneven times": (pair(TIME + 1e-3 * (np.arange(2500) % 2)), X, "t must rise in even steps"),
     "nanoseconds": (pair(1e-9 * TIME), X, "t must span 1 to 10000 s"),
     "centuries": (pair(1e9 * TIME), X, "t must span 1 to 10000 s"),
     "times beyond all numbers": (pair(1e306 * TIME), X, "t must"),
@@ -66,6 +67,7 @@ HOSTILE = {
     "a huge base": (pair(y=1e300 * BASE), Y, "y must be a motion of at most"),
     "infinity": (pair(x=np.where(PLATE > 1.0, np.inf, PLATE)), X, "x must be finite"),
     "other times": (pair(other_time=2.0 * TIME), Y, "t must be the same"),
+    "fewer times": (pair(other_time=TIME[:-1]), Y, "t must be the same"),
     "a hundredth of a cycle": (pair(y=np.cos(0.02 * TIME)), Y, "y must"),
     "a decay at rest": (decay(values=np.full(20000, np.pi)), DECAY_FILE, "Theta1.values must move"),
     "a decay of noise": (decay(values=np.resize(NOISE, 20000)), DECAY_FILE, ""),
@@ -106,6 +108,20 @@ def test_a_file_of_another_motion_ends_in_one_line(
         assert rule in lines[0]
     else:
         assert code in (0, 1) or (code, len(lines)) == (2, 1), lines
+
+
+def test_runs_are_read_from_the_lightest_to_the_heaviest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One in a subfolder; one has the fewest samples that are read, the other the most."""
+    monkeypatch.setattr(files, "Workers", Here)
+    monkeypatch.setattr(files, "MAX_SAMPLES", 2500)
+    (tmp_path / "more").mkdir()
+    for grams, folder, count in ((250, tmp_path, 2500), (90, tmp_path / "more", 500)):
+        for name, variables in pair(TIME[:count], PLATE[:count], BASE[:count]).items():
+            savemat(folder / name.replace("250", str(grams)), variables, oned_as="column")
+    found = files.read_folder(tmp_path).runs
+    assert [(run.weight, len(run.time), run.plate.max(), run.base.max()) for run in found] == [
+        (grams, count, PLATE[:count].max(), BASE[:count].max()) for grams, count in ((0.09, 500), (0.25, 2500))
+    ]
 
 
 def element(kind: int, data: bytes) -> bytes:

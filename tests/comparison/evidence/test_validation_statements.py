@@ -65,17 +65,20 @@ def test_what_is_validated_follows_the_record(planted: str) -> None:
 
 
 def test_both_sides_are_worded_equations_first() -> None:
-    def both(equations: float, engine: float) -> str:
+    def both(equations: float, engine: float, unit: str = "mm") -> str:
         sides = {
             side: SideComparison(1.0 + error, error, 0.0, 0.1, judge_error(error, 0.1))
             for side, error in ((EQUATIONS, equations), (ENGINE, engine))
         }
-        return MeasuredQuantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
+        return MeasuredQuantity("frame", "half range", unit, "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
 
     assert both(0.2, -0.3) == "not met (by +20 % / −30 %)"
     assert both(0.2, 0.05) == "not met (by +20 %) / met"
     assert both(0.05, -0.3) == "met / not met (by −30 %)"
     assert both(0.05, 0.01) == "met"
+    assert both(0.2, -0.3, "% of a cycle") == "not met (by +0.2 % of a cycle / −0.3 % of a cycle)", (
+        "no share of a share"
+    )
 
 
 def test_the_runs_of_the_fit_are_judged_as_well() -> None:

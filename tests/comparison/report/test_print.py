@@ -61,7 +61,14 @@ def test_nothing_reaches_beyond_the_paper_or_is_cut(browser: Browser, finished: 
 
 
 def test_paper_is_light_and_unfolded_and_has_every_surface_sharp(browser: Browser, finished: Path) -> None:
-    page = as_printed(opened(browser, finished / "index.html", LAPTOP, "dark").page)
+    page = opened(browser, finished / "index.html", LAPTOP, "dark").page
+    page.evaluate("change({ body: 2, pair: 'like-for-like' })")
+    pairs = [["translational", "like-for-like"], ["translational"] * 2]
+    told = "study.scenes[{}].pairs.find(pair => pair.key === '{}').sentence"
+    sentences = [page.evaluate(told.format(scene, key)) for scene, keys in enumerate(pairs) for key in keys]
+    as_printed(page)
+    heads = page.locator(".sheet h3").evaluate_all("list => list.map(each => each.textContent)")
+    assert all(letters(said) in letters(head) for said, head in zip(sentences, heads, strict=True)), "the pair shown"
     assert page.locator("button:not(.sort):visible, select:visible, nav:visible, input:visible").count() == 0
     assert page.locator("details:not([open])").count() == 0
     surfaces = page.evaluate("""[...document.querySelectorAll('canvas.surface')].filter(each => each.checkVisibility())
@@ -73,5 +80,6 @@ def test_paper_is_light_and_unfolded_and_has_every_surface_sharp(browser: Browse
     page.emulate_media(media="screen")
     page.evaluate("dispatchEvent(new Event('afterprint'))")
     assert page.locator("details.section[open]").count() == 0, "as it was"
-    assert page.locator("canvas.surface:visible").count() == 3
+    assert page.locator("canvas.surface").count() == 3
+    assert page.evaluate("[state.body, state.pair]") == [2, "like-for-like"]
     page.close()

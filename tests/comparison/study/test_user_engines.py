@@ -18,7 +18,7 @@ from fake_models import fake_hierarchy, smooth
 from known_analyses import computed
 from places import ROOT, limited_scene, scene_text
 from report_texts import data_of, page_of, summary_of
-from runs import Run
+from runs import Here, Run
 from studies import body_comparisons, difference_rows, solved
 
 import reference
@@ -164,7 +164,7 @@ def test_what_cannot_be_imported_or_called_is_named(
     monkeypatch.syspath_prepend(str(tmp_path))
     said, _ = inspect_in_worker(path)
     assert said.startswith(fault)
-    assert "\n" not in said
+    assert (": run the command" in said, "\n" in said) == (path.startswith("no_such"), False)
 
 
 def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,6 +173,10 @@ def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(sys, "path", [*sys.path])
     with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
         load_user_models(["mine=engine_that_leaves:f"])
+    assert sys.path[-1] == str(tmp_path), "last, so that it hides nothing"
+    monkeypatch.setattr("comparison.cli.user_models.Workers", Here)
+    (model,) = load_user_models(["mine=user_engines:plain@small"], "7.5")
+    assert (model.timeout, model.like) == (7.5, "small")
 
 
 def test_functions_are_used_from_python_by_their_place() -> None:
@@ -207,6 +211,7 @@ def test_every_form_of_answer_is_read(form: str) -> None:
         ("misshapen", "ValueError: the engine's mu has shape (3,), asked: (4, 2)"),
         ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
         ("nothing_at_all", "TypeError: the engine's mu is None"),
+        ("three_parts", "TypeError: the engine returned a tuple of 3: give mu, (mu, error) or an object"),
         ("complex_numbers", "TypeError: the engine's mu has complex128 in place of real numbers"),
         ("truths", "TypeError: the engine's mu has bool in place of real numbers"),
         ("exits", "RuntimeError: the engine asked the process to end: exit code 0"),
@@ -233,8 +238,8 @@ def test_values_that_are_none_are_never_ok(monkeypatch: pytest.MonkeyPatch) -> N
     nothing = amplification(SCENE, PHASES, engine={"function": "user_engines:zeros"})
     assert (list(nothing.status), nothing.mu.any(), nothing.error.any()) == (["ok", "ok"], False, False)
     assert PHASES[1].tolist() == [1.0, 2.0], "an engine has phases of its own to change"
-    spent = iter([1.0, 8.5])
-    times = lambda: SimpleNamespace(children_user=next(spent), children_system=0.0)  # noqa: E731
+    spent = iter([1.0, 2.0, 5.5, 5.0])
+    times = lambda: SimpleNamespace(children_user=next(spent), children_system=next(spent))  # noqa: E731
     monkeypatch.setattr("comparison.study.user_models.os.times", times)
     cost = amplification(SCENE, PHASES, engine={"function": "user_engines:plain"}).cost
     assert 7.5 <= cost < 8.5, "what its processes cost is its own"
