@@ -30,7 +30,7 @@ def _load_feature(folder: str) -> Feature:
     return feature
 
 
-FEATURES: tuple[Feature, ...] = (  # all features; the sections of the report stand in this order
+FEATURES: tuple[Feature, ...] = (  # all features: each an analysis, a report section or both, in the report's order
     core.AMPLIFICATION_SECTION,
     _load_feature("analyses.records"),
     _load_feature("analyses.motions"),
@@ -59,7 +59,7 @@ FEATURES: tuple[Feature, ...] = (  # all features; the sections of the report st
 )
 # Analyses of the features; a feature that only shows a report section has none
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
-# Names and rules of the features that the options --only, --skip and --also may name
+# Features that --only, --skip, --also may name: name, rules (only on request, only for the paper's scenes, and others)
 SELECTABLE = tuple(feature.selectable_entry for feature in FEATURES if feature.selectable)
 EVERYTHING = Selection(SELECTABLE)  # selection without options: for every scene all analyses but those on request
 

@@ -98,7 +98,7 @@ def main(
 
 
 def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
-    """Return the command line for the differences alone at a tenth of the tolerance, its report next to the first."""
+    """Return a command to repeat model differences alone at a tenth of the tolerance, reported in another folder."""
     place = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(place), "--only", "differences,budget"]
     return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])

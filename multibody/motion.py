@@ -42,7 +42,7 @@ def trajectory(
     softened: bool = False,
 ) -> Trajectory:
     """
-    Compute the motion at one phase pair, relative to the ground, with the engine, to a tolerance.
+    Compute the motion against the ground at one pair of loading phases by the engine, peak acceleration to a tolerance.
 
     Parameters
     ----------

@@ -128,10 +128,10 @@ def amplification(
     ).reshaped(leading)
     if not regularization_effect:
         return found
-    if not found.reading:  # without dry friction v_reg has no effect
+    if not found.reading:  # without rigid dry friction regularization speed v_reg has no effect: both changes are 0
         nothing = np.where(np.isfinite(found.mu), 0.0, np.nan)
         return replace(found, regularization_effect=nothing, displacement_effect=nothing[..., 0])
-    assert regularization is not None  # dry friction without v_reg is refused before
+    assert regularization is not None  # `assemble` refuses dry friction without a regularization speed
     v_reg = SECOND_V_REG_RATIO * regularization
     finer = amplification(scene, phases, model, v_reg, tolerance, full=full, levels=levels, max_work=max_work)
     effect, slip = finer.mu - found.mu, finer.displacement - found.displacement
@@ -185,7 +185,7 @@ class _ReducedModel:
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
-        """Refine runs at a phase pair to the tolerance; use the complete model if the reduced one gives no result."""
+        """Run accuracy levels at one loading phase pair to tolerance; the complete model's if the reduced one fails."""
         pair = PhasePair(self.scene, self.built, phase, in_full=self.in_full)
         point = refine(pair, tolerance, levels=levels, max_work=max_work)
         if self.complete is not None and np.isnan(point.peaks).any():
@@ -207,7 +207,7 @@ def _reduce_model(scene: Scene, model: str, regularization: float | None, full: 
     built = assemble(moving, chosen, regularization, **axes)
 
     def complete() -> tuple[Scene, EngineModel]:
-        """Assemble the model that the caller names, for phase pairs at which the reduced model gives no result."""
+        """Assemble the unreduced model named by the caller, for loading phases where the reduced one has no result."""
         return scene, assemble(scene, model, regularization)
 
     return _ReducedModel(moving, built, complete if chosen != model else None, full)

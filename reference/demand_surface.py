@@ -23,7 +23,7 @@ def peak_demands(
     rest_condition: str = "consistent",
 ) -> PeakDemands:
     """
-    Return the demands on isolator and structure at every phase pair, with errors.
+    Return the demands on isolator and structure at every pair of initial phases of the loading, with errors.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def peak_demands(
     prepare_run(scene, equations, regularization, tolerance, None, rest_condition)
 
     def compute_trajectory(phase: ArrayLike) -> Trajectory:
-        """Return the motion of one phase pair."""
+        """Return the motion at one pair of initial phases of the loading."""
         return trajectory(scene, phase, equations, regularization, tolerance, rest_condition)
 
     return demands_of_motions(scene, phases, compute_trajectory)

@@ -77,7 +77,7 @@ class Sensitivity(Estimates):
     warning: str
 
     def __repr__(self) -> str:
-        """Return the derivative, its error, friction law, definition of the peak in (5.1) and warning in one line."""
+        """Return derivative, error, friction law, definition of the peak acceleration (5.1) and warning in one line."""
         if np.size(self.value) == 1:
             slope = f"{float(np.squeeze(self.value)):.6g} ± {float(np.squeeze(self.error)):.1g}"
         else:
@@ -89,7 +89,7 @@ class Sensitivity(Estimates):
 
 
 class _ComputedQuantity(NamedTuple):
-    """Value and error of a quantity, with the friction law and the definition of the peak in (5.1) that it used."""
+    """Value and error of a quantity, with its friction law and definition of the peak acceleration in (5.1)."""
 
     value: Array
     error: Array
@@ -402,7 +402,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
             return None
         noise = (low.error + 2.0 * middle.error + high.error) / (middle.at - low.at)
         apart = max(abs(left - below), abs(right - beyond))
-        if apart <= noise < 0.1 * abs(beyond - below):  # both halves are straight, so the kink is at the middle
+        if apart <= noise < 0.1 * abs(beyond - below):  # each half's slope is that outside it: kink at the middle
             near = max(noise / abs(beyond - below) * (high.at - low.at), 0.5 * enough)
             low = _QuantityAtValue(middle.at - near, middle.value - below * near, middle.error)
             high = _QuantityAtValue(middle.at + near, middle.value + beyond * near, middle.error)
@@ -417,7 +417,7 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
 
 
 def _value_and_provenance(found: Any) -> _ComputedQuantity:
-    """Return value, error, definition of the peak in (5.1) and friction law from the result of a user's function."""
+    """Return value, error, definition of peak acceleration in (5.1), friction law from a user function's result."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:

@@ -32,7 +32,7 @@ SAMPLES_PER_PERIOD = 64  # evenly spaced output instants per loading period (the
 STEP_SAMPLES = 8000  # target number of output instants placed in steps of the solver; more if there are many steps
 MAX_SAMPLES = 200_000  # largest number of evenly spaced output instants, and of those placed in steps of the solver
 # Lower bound on the error of a peak, as a share of the tolerance: a closer agreement of two runs is accidental
-# (measured errors reach 0.2)
+# (measured errors reach 0.2 of the tolerance)
 MIN_ERROR_FRACTION = 1.0
 
 
@@ -48,7 +48,7 @@ def trajectory(
     initial: State | None = None,
 ) -> Trajectory:
     """
-    Return one motion for one phase pair by the paper's equations, sampled in time.
+    Return one motion for one pair of initial phases of the loading by the paper's equations of motion, sampled in time.
 
     Parameters
     ----------
@@ -102,7 +102,8 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
-    # If the looser run ended early, as at the rim, a tighter run gives the motion, and the first run then its error.
+    # If the looser run ended early, as where the platform reached the isolator's rim, a tighter run gives the motion.
+    # Its error then follows from the difference to the first run.
     if other.outcome != Outcome.OK:
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
@@ -184,7 +185,7 @@ def _default_instants(scene: Scene, record: StepRecord) -> Array:
 
 
 def _check_times(scene: Scene, times: ArrayLike) -> Array:
-    """Return rising instants (T,), s, within the duration. Raises ValueError, one line."""
+    """Return rising instants (T,), s, within the duration. Raises ValueError with a one-line message for others."""
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
     instants = check_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))

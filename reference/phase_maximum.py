@@ -33,7 +33,7 @@ from reference.support.arguments import check_choice, check_number
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")  # quantities that `worst_phases` maximizes
-GRID_TOLERANCE = 1e-4  # relative error of the amplification mu on the grid of phases
+GRID_TOLERANCE = 1e-4  # relative error asked on the grid of phases, or the user's if larger: the grid starts searches
 MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
 MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by more is neither classified nor refined
 
@@ -41,7 +41,7 @@ MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by m
 @dataclass(frozen=True)
 class PhaseMaximum:
     """
-    Largest amplification factor, or displacement, over all phase pairs; the result of `worst_phases`.
+    Largest amplification of a body, or displacement of the platform, over all initial phases; result of `worst_phases`.
 
     Attributes
     ----------
@@ -176,7 +176,7 @@ def worst_phases(
 
 
 def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
-    """Return a local search started at each of the phase pairs (K, 2), rad, at which the surface has a value."""
+    """Return a local search started at each of the phase pairs (K, 2), rad, at which the motion gave a result."""
     points = surface.compute(phases)
     return [
         LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
@@ -187,7 +187,7 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
 def _classify_highest(
     surface: Surface, searches: Sequence[LocalSearch]
 ) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
-    """Return kind (smooth, kink, jump) and high side of the highest maxima; searches at a jump first move along it."""
+    """Return kind (smooth, kink, jump) of the highest maxima, direction to a jump's high side; first follow jumps."""
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
     kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:

@@ -13,7 +13,7 @@ from reference.records.description import G_UNIT_QUESTION, RecordDescription
 from reference.support.arguments import Range, name_some
 
 SUPPORT_LOAD_RANGE = Range(1e3, 1e8, "N")  # plausible dead load per support
-MAX_UNIT_MASS_SCENE = 10.0  # kg, total mass: a lighter scene has unit masses, as those of the paper, and is no building
+MAX_UNIT_MASS_SCENE = 10.0  # kg, total mass: less means unit masses, as in the paper; masses, supports are unchecked
 MIN_FRICTION_RATE = 1.0  # s/m: a smaller rate of change of friction with slip speed is hardly intended
 MAX_SUPPORT_EXTENT = 300.0  # m: supports that are farther apart are hardly intended
 MAX_EXTENT_OVER_SIZE = 2.0  # a larger ratio of the supports' extent to the platform's size is hardly intended

@@ -38,7 +38,7 @@ def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
 
 
 def _amplitude_ratios(scene: Scene, axis: int, s: complex) -> Array:
-    """Return |A_i / A_1| of the upper bodies under exp(s t): (m_i s^2 + links) A = link to the platform times A_1."""
+    """Return upper bodies' amplitudes / the platform's in motions ~ exp(s t), by the links' linear equations (4.4)."""
     links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
     matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))
     matrix -= np.diag(links[1:], 1) + np.diag(links[1:], -1)

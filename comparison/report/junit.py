@@ -21,7 +21,7 @@ ELEMENT_OF_COUNT = {"failures": "failure", "skipped": "skipped"}
 
 @dataclass(frozen=True)
 class JUnitCase:
-    """Test case: a limit, or a comparison without one. failures: a line per breach; skipped: why unchecked, or ""."""
+    """Test case: acceptance limit of a scene, or models compared without. failures: breaches; skipped: why, or ""."""
 
     name: str
     failures: Sequence[str] = ()

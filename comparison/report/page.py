@@ -107,7 +107,7 @@ def has_engine(study: Study) -> bool:
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Return whether a chart of differences, in the mean or at the largest, has a bar of at least MIN_DRAWN_BAR."""
+    """Return whether a bar of model differences, mean or at the largest one's phases, is MIN_DRAWN_BAR or larger."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
     return any(abs(bar.size) >= MIN_DRAWN_BAR for bar in every)
 

@@ -98,7 +98,7 @@ def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[l
 
 
 def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
-    """Return two compared models for the page: texts; by body, curves |difference| = uncertainty, or uncertainty."""
+    """Return two models' texts; by body curves |difference| = uncertainty if both are surfaces, else uncertainty."""
     surfaces = (
         not scene.recorded
         and _is_drawn_as_surface(report, scene, pair.first)

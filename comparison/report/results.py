@@ -24,7 +24,7 @@ VERSION: Literal[6] = 6  # version of summary.json: grows when a key changes its
 
 
 # Statement in every report on what measurements validate. docs/measured_statements.py writes it from the recorded
-# comparison, and a test checks it, because the report itself knows no analysis.
+# comparison, and a test checks it: the report may not import the analysis that could compute it.
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
     " fitted at 250 g and 450 g, at 350 g met (E = +1.4 %, within 2.2 %), at 550 g met (E = +0.68 %, within 3.3 "
@@ -86,7 +86,7 @@ class ModelDescription(Part):
 class Results(Part):
     """Results of a study, the content of summary.json. Relative sizes are fractions; a missing number is null."""
 
-    model_config = ConfigDict(defer_build=True)  # the fields of the features are missing
+    model_config = ConfigDict(defer_build=True)  # comparison/registry.py adds fields: build no validator before
 
     kind: Literal["phase-resonance/summary"] = Field(
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"

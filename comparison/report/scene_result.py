@@ -44,7 +44,7 @@ class RecordValue:
 class SceneResult(Part):
     """Results of one scene: what each model computed, and the differences between models."""
 
-    model_config = ConfigDict(defer_build=True)  # the fields of the features are missing
+    model_config = ConfigDict(defer_build=True)  # comparison/registry.py adds fields: build no validator before
 
     name: Text = Field(description="file stem or built-in name")
     title: Text = Field(description="as the scene states it")

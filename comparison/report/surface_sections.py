@@ -52,7 +52,7 @@ def _surface_feature(key: str, title: str, selectable: bool = False, **about: An
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about), selectable=selectable)
 
 
-# Features that compute nothing and only show a section. Amplification is one value, not a surface, under a record.
+# Report section, without computation: amplification over both phases, or one value under a recorded ground motion
 AMPLIFICATION_SECTION = _surface_feature("surfaces", "Amplification and motions", selectable=True, folded=False)
 # section: differences between models
 DIFFERENCES = _surface_feature("differences", "Differences", selectable=True, context=_differences_context)

@@ -24,8 +24,8 @@ class Analysis(Protocol[Result]):
     key: ClassVar[str]  # name of the analysis in options, and key of its result
     stage: ClassVar[str]  # name under which the terminal shows the progress of its tasks
     seconds: ClassVar[float] = 1.0  # s, rough processor time for one scene
-    needs_surfaces: ClassVar[bool] = False  # whether its tasks depend on the values of the surfaces
-    level: ClassVar[int] = LAST_LEVEL  # number of the first level of a study at which the analysis is computed
+    needs_surfaces: ClassVar[bool] = False  # whether its tasks depend on the amplification, which is computed first
+    level: ClassVar[int] = LAST_LEVEL  # number of the study's step, from coarse to full grid, that first computes it
 
     def estimate_seconds(self, study: Study) -> float:
         """Return the rough processor time of this analysis in a study, s."""

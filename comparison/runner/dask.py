@@ -61,7 +61,7 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
             raise ValueError("what answers is none")
 
     try:
-        # Asked before a Client is made, because a Client leaves threads behind if no scheduler answers
+        # Check that a scheduler answers before a Client is made, because a Client leaves threads behind if none answers
         _finish_call(lambda: asyncio.run(knock()))
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
     except MemoryError:  # raised if another program answers and Dask takes its text for the length of a message

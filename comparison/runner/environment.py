@@ -17,11 +17,12 @@ from reference.support.version import __version__
 
 COMPUTING_PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")  # With another version, results are made anew.
 OWN_PACKAGES = ("reference", "multibody", "comparison")  # packages of this project
-USER_MODELS = "comparison.study.user_models"  # module that calls users' engines; their settings hold source hashes
+# Module that calls users' engines: only its own source is hashed, as the engines' settings hold hashes of theirs
+USER_MODELS = "comparison.study.user_models"
 SHARED_MODULES = ("reference.problem", "comparison.study.batches")  # modules through which every model is called
 # Packages whose versions a report states
 REPORTED_PACKAGES = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")
-# versions also in the key of stored results that may hold figures
+# Stored results of analyses, which may hold figures, are also made anew if one of these packages has another version
 DRAWING_PACKAGES = ("matplotlib", "pillow", "xarray")
 # Modules whose source code a stored result of an analysis depends on: if it changes, the result is computed again
 ANSWERING_MODULES = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
@@ -75,7 +76,7 @@ def fingerprint_engine(module: str) -> dict[str, str]:
 
 @cache
 def _list_installed_packages() -> Mapping[str, list[str]]:
-    """Return for each installed package the names under which it was installed; this takes half a second."""
+    """Return by import name the distributions (names for pip) that provide it; this takes half a second."""
     return packages_distributions()
 
 

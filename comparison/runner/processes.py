@@ -39,8 +39,8 @@ except ImportError:  # Windows cannot limit a process's processor time; its wall
 SPAWN_CONTEXT = multiprocessing.get_context("spawn")  # starts worker processes as new Python interpreters
 # A process without an answer is ended after this multiple of its limit of processor time as wall time.
 STALLED_WALL_RATIO = 20.0
-# A process is also ended after WALL_TIME_RATIO times its processor time limit plus SPARE_WALL_SECONDS, s, of wall time,
-# if that is earlier; wall time is longer because a process may have to share its processor.
+# A process is ended after STALLED_WALL_RATIO * limit, or WALL_TIME_RATIO * limit + SPARE_WALL_SECONDS if that is less,
+# s of wall time; limit: of its processor time, which is less because a process may have to share its processor.
 WALL_TIME_RATIO, SPARE_WALL_SECONDS = 5.0, 60.0
 MAX_TIMEOUT = 1e6  # s, longest time that the system accepts when waiting for an answer
 EXIT_SECONDS = 5.0  # s, longest wait for a process to end after its pipe (connection to this process) has closed
@@ -121,7 +121,7 @@ class Workers(Executor):
         return self.start(partial(function, *args, **kwargs))
 
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """Start a call in a process that only its group uses; TimeLimitError after `seconds` of processor time."""
+        """Start a call in a process kept for its group of tasks; TimeLimitError after `seconds` of processor time."""
         return self._threads.submit(self._run, call, seconds, group)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
@@ -141,7 +141,7 @@ class Workers(Executor):
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _run(self, call: Call, seconds: float | None, group: str) -> Any:
-        """Make a call in a worker process of its group and return the result; end the process if it takes too long."""
+        """Make a call in a process kept for its group of tasks, return the result; end the process after too long."""
         process = self._free_process(group)
         try:
             value, error = process.run(call, seconds)
@@ -159,7 +159,7 @@ class Workers(Executor):
         return value
 
     def _free_process(self, group: str) -> _Process:
-        """Return an idle worker process of the group, or start one."""
+        """Return an idle worker process kept for this group of tasks, or start one."""
         with self._lock:
             if self._idle[group]:
                 return self._idle[group].pop()

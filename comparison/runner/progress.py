@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 LINE_INTERVAL = 15.0  # s, shortest time between two lines of progress when output goes to a file or a pipe
-ROUGH_COST_SHARE = 0.1  # share of all work assumed done at its estimated cost in the speed that gives the time left
+ROUGH_COST_SHARE = 0.1  # share of all work that counts as done at its estimated cost in the speed for the time left
 PLAIN_WIDTH = 120  # width in letters of output that goes to a file or a pipe
 EXIT_SECONDS = 0.3  # s before the deadline at which work is stopped, because the process takes so long to end
 MIN_TIMER = 1e-3  # s, shortest time to which the timer is set: 0 would switch it off
@@ -37,7 +37,7 @@ class Display:
     """
 
     def __init__(self, total: float, jobs: int, show: Callable[[Display], None] = lambda display: None) -> None:
-        """Start the clock."""
+        """Start timing; total: estimated processor time of all work, s; jobs: workers; show: called on each advance."""
         self.total, self._jobs, self._show, self.done = total, jobs, show, 0.0
         self._what = ""
         self.begin = time.monotonic()

@@ -119,7 +119,7 @@ class Runner:
             raise
 
     def _fill_workers(self, executor: Executor, arriving: bool = False) -> None:
-        """Start tasks until each worker has one; arriving: in queue order, as unread results may free its first."""
+        """Start tasks until each worker has one; arriving: in queue order, as unread results may free waiting tasks."""
         while len(self._at_work) < getattr(executor, "width", self.jobs):
             candidates = list(self._queue)[:1] if arriving else self._queue
             ready = (work for work in candidates if not (self._first and work.task.needs_compiled_reference))

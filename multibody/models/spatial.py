@@ -100,10 +100,10 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     under_platform = underside(geometry.places, centers[0], geometry.radius, vertical)
     springs = make_friction_springs(mbs, scene, units, contacts, parts.body_coordinates, under_platform)
     law = DryFriction(engine_law.friction, engine_law.friction, 0.0) if varying is None else varying.law
-    law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # springs transmit no friction impulse
+    law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # 0: friction that yields on springs passes no impulse
     impact_law = _make_impact_law(scene, geometry, under_platform, links, law, engine_law.threshold)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
-    # rounding of positions, and of the moments of forces, is in proportion to the distance
+    # rounding errors of positions, and those of moments, are each proportional to the distance from the origin
     farthest_place = max(1.0, float(geometry.distances.max()), float(centers[:, 2].max()))
     return EngineModel(
         mbs=mbs,
@@ -154,7 +154,7 @@ class _Geometry:
 
     @property
     def tensors(self) -> Array:
-        """Tensors of inertia of the bodies in the axes of the plate, (N, 3, 3)."""
+        """Inertia tensors of the bodies at rest, (N, 3, 3), in the ground's axes x, y, z, not those of the boxes."""
         turned: Array = (self.axes * self.inertias[:, None, :]) @ self.axes.swapaxes(1, 2)
         return turned
 
@@ -213,7 +213,7 @@ def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, number
 
 
 def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, shared: bool) -> Supports:
-    """Add the supports' spheres: fixed, on springs that share the load, or on torsion springs for elastic friction."""
+    """Add the supports' spheres: fixed, on springs that share load, or on torsion springs, elastic until sliding."""
     places = geometry.places
     if scene.dry_friction.elastic:
         moved = SPHERES_MASS if shared else 0.0
@@ -266,14 +266,14 @@ class _SpatialSystem:
         return BODY_COORDINATES * len(self.index)
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
-        """Set the contacts' penetration under the weight and the supports' compliance against warping out of plane."""
+        """Set contacts, supports and links for penetration and out-of-plane warping of supports by the weight."""
         self._set_penetration(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
             link.set_stiffness(self.mbs, penetration)
 
     def bar_damping_times(self, penetration: float) -> Array:
-        """Return each link's ratio of damping to stiffness along its bars, (N - 1,), at a penetration of contacts."""
+        """Return each link's damping over stiffness in tension, (N - 1,): 0 if elastic, else by contact penetration."""
         return np.array([link.damping_time(penetration) for link in self.links])
 
     def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
@@ -284,7 +284,7 @@ class _SpatialSystem:
             self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
 
     def _set_penetration(self, penetration: float) -> None:
-        """Set stiffness, damping and radii of all contacts for `penetration` under the weight, or that of bearings."""
+        """Set contact stiffness, damping, radii by stated bearing stiffness, or for a penetration under the weight."""
         pressed = self.bearing_penetration or penetration
         radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
         stated = self.scene.isolator.support_damping
@@ -293,11 +293,11 @@ class _SpatialSystem:
             set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts), ratio)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        """Return the engine's state for an initial state (None: at rest) and the plate's acceleration, m/s^2."""
+        """Return the engine's state for an initial state (None: at rest) and the ground's acceleration, m/s^2."""
         index, pressed = self.index, self.bearing_penetration or penetration
 
         def set_extent(distance: float) -> None:
-            """Make the planes' triangles large enough for a platform that moves by `distance`, in units of length."""
+            """Make the triangles of a flat slider's plane large enough for a move by `distance`, in units of length."""
             for contact in self.contacts:
                 set_plane_extent(self.mbs, contact, distance, 1.0 + self.radius)
 
@@ -317,7 +317,7 @@ class _SpatialSystem:
         return EngineState(coordinates, velocities, data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return the state unchanged, because contact forces of bodies that rotate settle by themselves."""
+        """Return `state` unchanged, to go on with a smaller step: contact forces of bodies that rotate adjust to it."""
         return state
 
     def warping_displacement(self, coordinates: Array) -> Array:

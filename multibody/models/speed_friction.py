@@ -43,7 +43,7 @@ class SpeedFriction:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
-        # ratio of each contact's coefficient to that of the law: above 1 if friction is elastic and the contact rests
+        # each contact's coefficient over the law's: above 1 to hold a contact at rest if friction yields on springs
         self.coefficient_ratios = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
@@ -73,7 +73,7 @@ class SpeedFriction:
         self._set_coefficients(mbs, 0.0)
 
     def friction_feedback_rate(self, slip: Array) -> Array:
-        """Return the largest rate (T,), over contacts, at which speed-dependent friction changes slip speeds (T, K)."""
+        """Return the largest rate (T,), 1/time, at which friction makes changes of slip speeds (T, K) grow or decay."""
         rate: Array = (self._mass_ratio * self.law.steepness(slip) * np.minimum(slip / self._threshold, 1.0)).max(
             axis=1
         )
@@ -104,7 +104,7 @@ class SpeedFriction:
         return True
 
     def _read_speeds(self, contact: Array, velocities: Array) -> list[float]:
-        """Return the speeds on which coefficients depend: slip speeds, or the platform's if friction is elastic."""
+        """Return speeds that set coefficients: slip speeds, or the platform's if friction is elastic before sliding."""
         if self.law.elastic:
             return [math.hypot(*velocities[:3])] * len(self._add_contacts)
         speeds: list[float] = contact[SLIP_INDEX::DATA_PER_CONTACT].tolist()

@@ -31,7 +31,8 @@ MAX_DETERMINATE_SUPPORTS = 3
 # Stiffness of the springs under the spheres, against heave and tilt, divided by the stiffness of the contacts.
 SPHERE_STIFFNESS_RATIO = 10.0
 
-# Displacement of a support out of plane (warping) under its share of the weight, over rho; accuracy levels set others.
+# Displacement of a support out of the plane of all (warping) under its share of the weight, over pendulum length rho:
+# the first and smallest value. Later accuracy levels may set larger ones.
 MIN_WARPING_COMPLIANCE = 2e-5
 
 # Mass of all spheres together as a share of the total mass: so small that it hardly affects the motion.
@@ -76,7 +77,7 @@ def warping_projection(ring: Array) -> Array:
 
 
 def add_fixed_supports(mbs: Any, ring: Array) -> Supports:
-    """Add spheres fixed to the plate at horizontal places (K, 2), centers at height 1 in the model's unit of length."""
+    """Add spheres fixed to the ground at horizontal places (K, 2), centers at height 1 in model units of length."""
     plate = mbs.AddObject(items.ObjectGround())
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate, localPosition=[*place, 1.0])) for place in ring]
     return Supports(
@@ -108,7 +109,7 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set springs by contact penetration and out-of-plane warping of supports under the weight, in units of rho."""
+        """Set springs' stiffness, damping for contact penetration and support warping by weight, in units of length."""
         stiffness, damping = _sharing_springs(count, penetration, warping_compliance)
         mbs.SetObjectParameter(springs, "stiffnessMatrix", _combine_tilt_and_warping(warped, *stiffness))
         mbs.SetObjectParameter(springs, "dampingMatrix", _combine_tilt_and_warping(warped, *damping))
@@ -136,7 +137,7 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
     warped = warping_projection(ring) if shared else np.zeros((0, count))
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set springs by contact penetration and out-of-plane warping of supports under the weight, in units of rho."""
+        """Set springs' stiffness, damping for contact penetration and support warping by weight, in units of length."""
         if not shared:
             return
         block = np.ix_(vertical, vertical)

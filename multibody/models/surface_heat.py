@@ -29,7 +29,7 @@ KERNEL_CUTOFF_TIME = 1e-6
 
 class _HeatState(NamedTuple):
     """
-    Heat in the contact surfaces at one instant, divided among exponential decays that make up the temperature.
+    Heat in the contact surfaces at one instant, kept per decay rate: a weighted sum of it is the temperature rise.
 
     time: instant, in units of time. shares: heat in each of the decays, W s, (K, X). power: power of friction, W, (K,),
     whether the platform covers the contact or not. distance: of the platform from the center, in units of length.
@@ -67,7 +67,7 @@ class SurfaceHeat:
         return known
 
     def step_to(self, time: float, power: Array, distance: float) -> None:
-        """Store the heat state after a step up to `time`; power (K,), W, and the platform's distance: at its end."""
+        """Store the heat after a step to `time`; power (K,), W, and the platform's distance from center: at its end."""
         self._kept.append(self._advance(time, power, distance))
 
     def temperature(self, time: float, power: Array, distance: float) -> Array:
@@ -84,7 +84,7 @@ class SurfaceHeat:
         return last.distance + (time - last.time) * (last.distance - before[0].distance) / (last.time - before[0].time)
 
     def _advance(self, time: float, power: Array, distance: float) -> _HeatState:
-        """Return the heat state after a step up to `time` in which friction power and distance change linearly."""
+        """Return the heat state after a step to `time` with friction power and distance from center linear in time."""
         last = self._kept[-1]
         span = (time - last.time) * self._unit_time
         nearest, way = min(last.distance, distance), abs(distance - last.distance)

@@ -155,7 +155,7 @@ class _TranslationalSystem:
         return EngineState(coordinates, velocities, contact_data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return `state` with the same contact force, by penetration alone, from which to go on with a smaller step."""
+        """Return `state` with the same contact force, by penetration, not damping, which rings at smaller steps."""
         x, y, z = (0.0, 0.0, 0.0) if self.scene.flat else state.coordinates[:3].tolist()
         to_center_of_hollow_sphere = -x, -y, 1.0 - z
         length = math.hypot(*to_center_of_hollow_sphere)

@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # points of an interval; Newton's method starts from the best of them
-NEWTON_STEPS = 5  # iterations of Newton's method that finds the time of the largest |v|
-SERIES_REMAINDER = 1e-14  # error of the truncated series, as a share of the upper bound `envelope` of |v|
+NEWTON_STEPS = 5  # iterations of Newton's method that finds the instant of the largest displacement or acceleration
+SERIES_REMAINDER = 1e-14  # error of the truncated series of displacement or acceleration, over its bound `envelope`
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class PhaseSeries:
     def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
         """Return the series from time derivatives (T, N, axes, 2 harmonics) at midpoints; half: half an interval, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
-        sizes = np.abs(scaled).sum(axis=-1)  # upper bound for all phases: both harmonics add up
+        sizes = np.abs(scaled).sum(axis=-1)  # upper bound of each term at any phases: both harmonics' amplitudes add up
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
         envelope = np.sqrt((sizes.sum(axis=0) ** 2).sum(axis=-1)).max(axis=0)
         rest = np.moveaxis(sizes[2:].sum(axis=0), 0, -1)
@@ -57,14 +57,14 @@ class PhaseSeries:
 
 
 def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
-    """Return the largest length |v| over time of every body for phase pairs (M, 2), rad, and its error: (M, N) each."""
+    """Return bodies' peak displacement or acceleration over time at phases (M, 2), rad, and its error: (M, N) each."""
     peaks, errors = np.empty((2, len(phases), len(series.envelope)))
     _maximize_over_time(series.terms, series.rest, _phase_factors(phases), peaks, errors)
     return peaks, errors + SERIES_REMAINDER * series.envelope
 
 
 def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray[np.bool_]:
-    """Return a mask (M,): phase pairs (M, 2), rad, at which the length |v| of the first body may reach `bound`."""
+    """Return a mask (M,): phases (M, 2), rad, where displacement or acceleration of body 1 may reach `bound`."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))
@@ -76,13 +76,13 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return cos and -sin of both phases, (M, 4): factors of the amplitudes Re A_1, Im A_1, Re A_2, Im A_2 in v."""
+    """Return cos, -sin of both phases, (M, 4): factors of Re A_n, Im A_n, a motion's amplitudes by harmonic n."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
 @cache_on_disk(__file__)
 def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
-    """Set `least`, a body's |v|^2 at each interval's middle, and `most`, its upper bound on the interval, (T,) each."""
+    """Set `least`, squared displacement or acceleration mid-interval, and `most`, upper bound in the interval, (T,)."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
@@ -98,7 +98,7 @@ def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array,
 
 @njit(nogil=True)
 def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
-    """Return the coefficient of x^order in the series of a body's v along an axis, interval n; turn: phase factors."""
+    """Return the coefficient of x^order, x scaled time in interval n, of motion along an axis; turn: phase factors."""
     total = 0.0
     for part in range(4):
         total += turn[part] * terms[order, body, axis, part, n]
@@ -107,7 +107,7 @@ def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: i
 
 @cache_on_disk(__file__, nogil=True)
 def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
-    """Set `peaks` (M, N), the largest |v| over time of every body, and its `errors`; turns: phase factors (M, 4)."""
+    """Set `peaks` (M, N), largest displacements or accelerations, and their `errors`; turns: phase factors (M, 4)."""
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
@@ -133,7 +133,7 @@ def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, e
 
 @njit(nogil=True)
 def _maximize_on_interval(series: Array) -> tuple[float, float]:
-    """Return the largest |v|^2 on one interval, and its error; series: coefficients of v on it, (axes, P)."""
+    """Return the largest squared displacement or acceleration on an interval and its error; series: terms (axes, P)."""
     best, place = -1.0, 0.0
     for x in STARTING_POINTS:
         value, _, _ = _squared_length(series, x)
@@ -155,7 +155,7 @@ def _maximize_on_interval(series: Array) -> tuple[float, float]:
 
 @njit(nogil=True)
 def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
-    """Return |v|^2 at x in [-1, 1] on an interval, and its first two derivatives by x; series: coefficients of v."""
+    """Return squared displacement or acceleration, slope, curvature at scaled time x in [-1, 1]; series: terms."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):
         value = slope = curvature = 0.0

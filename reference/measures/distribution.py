@@ -11,8 +11,8 @@ from reference.measures.demand_reader import Estimate
 from reference.support.arguments import check_array
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # probabilities with which the fractiles are not exceeded
-# Sampling error as a multiple of the largest difference from grids of twice the spacing. On the paper's scenes,
-# 8 to 64 phases per axis against 256, the error was at most 1.6 of these differences in 336 values.
+# Sampling error as a multiple of the largest difference from grids of twice the spacing. On the built-in scenes of the
+# paper, grids of 8 to 64 phases per axis had errors against 256 phases of at most 1.6 differences in 336 values.
 SAMPLING_FACTOR = 2.0
 
 

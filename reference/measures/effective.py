@@ -79,7 +79,8 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     if not (amplitude > 0.0).all():
         raise ValueError(f"displacement = {quote(displacement)}: must be lengths in m above 0")
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
-    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # force over weight, also elastic
+    # friction force over weight: elastic, in proportion to the displacement, until it reaches the sliding friction
+    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)
     dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)
     stiffness = weight * (friction + slope) / amplitude
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -9,13 +9,13 @@ from reference.problem.result import Array
 from reference.problem.scene import Scene
 from reference.problem.symmetry import indices_of_solved_pairs
 
-GRID = 48  # phases per axis of the grid on which local maxima are sought
+GRID = 48  # values of either loading phase in the grid on which maxima of amplification or displacement are sought
 MAX_STARTS = 12  # largest number of local maxima from which searches start: those that may lead to the highest values
 
 
 def find_local_maxima(surface: Array, scene: Scene) -> Array:
     """
-    Return the phase pairs (K, 2), rad, at which a surface is at least as high as at all eight neighbors.
+    Return loading phases (K, 2), rad, at which amplification or displacement is not below any of 8 neighbors on a grid.
 
     `surface` is (n, n), on `phase_grid(n)`; NaN without an answer. Pairs that may rise highest come first, at most
     MAX_STARTS of them, and only one of those that a symmetry of the motion makes equal.

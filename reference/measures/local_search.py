@@ -24,7 +24,7 @@ from reference.problem.outcome import Outcome
 from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
-DISPLACEMENT_ERROR = 1e-3  # relative error of `Amplification.displacement`
+DISPLACEMENT_ERROR = 1e-3  # relative error taken for `Amplification.displacement`: the largest that it may have
 # Coordinates along each axis of a search's square region at which a polynomial is evaluated: first, and finer grids
 COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids that locate the maximum of the interpolant, each finer than the grid before
@@ -33,13 +33,14 @@ MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of a search's square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
-MAX_GOOD_PREDICTION_ERROR = 0.1  # largest error of a good prediction, over the range of values in a search's square
+# Largest error of a predicted maximum, over the range of values in its square, after which the square may shrink fast
+MAX_GOOD_PREDICTION_ERROR = 0.1
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a search region's half width after a good and a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
 # values in its square, or by more than GAIN_FACTOR times what its LATEST_ROUNDS rounds gained: next to a jump even a
 # small square has a large range.
-PROMISE_FACTOR = 2.0  # factor on the range of values in a search's square
-LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0  # rounds over which the gain of a search is taken, and the factor on this gain
+PROMISE_FACTOR = 2.0  # a search ends if its best value is below the highest by more than this times its square's range
+LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0  # rounds, and factor on a search's gain in them: it ends if below the best by more
 MAX_MERGED_WIDTH = 0.04  # rad: two searches within one square of at most this half width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
 JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # number of squares in which a search follows a jump, and of grids in each square
@@ -52,7 +53,7 @@ CLEAR_FALL = 10.0  # a fall shows the kind of a maximum if it is larger than thi
 
 @dataclass(frozen=True)
 class ComputedPhases:
-    """Values of a surface computed at M phase pairs, as numerator and denominator; NaN where a run gave no result."""
+    """Amplification or displacement at M phase pairs, as numerator over denominator; NaN where a run gave no result."""
 
     phases: Array  # (M, 2), rad
     numerator: Array  # (M,), largest acceleration of the body, m/s^2, or displacement, m
@@ -101,7 +102,7 @@ class Surface:
 
 @dataclass(eq=False)
 class LocalSearch:
-    """A search for a maximum: its best phase pair so far, and the square region of phases around it to compute next."""
+    """Search for the largest amplification or displacement: best phase pair so far, square of phases to try next."""
 
     phases: Array  # (2,), rad, best phase pair so far
     value: float
@@ -141,7 +142,7 @@ def make_square_nodes(nodes: int) -> tuple[Array, Array]:
 
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance all searches one round: compute the surface in each square of phases, then at its predicted maximum."""
+    """Advance searches one round: compute values in each one's square of two phases, then at the predicted maximum."""
     # All searches share two calls of the solver, which computes their pairs in parallel. A prediction is good if the
     # value computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly
     # and with more nodes. A search ends where neither the values of its square nor the prediction differ by more than
@@ -178,7 +179,7 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
     coefficients = (make_square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
 
     def predicted_amplification(first: Array, second: Array) -> Array:
-        """Return interpolated numerator over exact denominator at coordinates in [-1, 1] of the search's square."""
+        """Return interpolated displacement, or acceleration over exact ground peak, at a square's places in [-1, 1]."""
         phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
         denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
@@ -218,7 +219,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], offset_grids:
 
 
 def follow_jump(surface: Surface, search: LocalSearch) -> None:
-    """Move a search at a jump of the surface to the highest phase pair along this jump, without interpolation."""
+    """Move a search at a jump of the quantity over phases to the largest value along it, without interpolation."""
     # The polynomial of a square fails across a jump. So the maximum over the second phase is taken for each first one,
     # on ever finer grids of computed values, and then the maximum over the first phase: a ridge of any direction
     # is followed. The square is centered anew and made ten times smaller once.

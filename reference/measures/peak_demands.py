@@ -71,7 +71,7 @@ class Estimates:
 @dataclass(frozen=True)
 class PeakDemands(Mapping[str, Estimates]):
     """
-    Demands on isolator and structure at many phase pairs, the result of `peak_demands`.
+    Demands on isolator and structure at many pairs of initial phases of the loading, the result of `peak_demands`.
 
     A mapping from the names of the fields of `Demands` to `Estimates`, without those that the model does not have.
 

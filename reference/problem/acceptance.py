@@ -12,7 +12,7 @@ from reference.problem.keys import ENSEMBLE, STUDY, NonNegative, Positive, Table
 from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
 
-ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # form of the name that a user may give to an engine
+ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # form of a name that users may give to their solver (engine)
 
 
 class LimitTable(Table):
@@ -79,7 +79,7 @@ DemandLimits.limited = tuple(name for name in DemandLimits.model_fields if name 
 
 
 def _check_table(value: Any) -> Any:
-    """Raise an error for an unknown key, unless its value is a table: then the key may name an engine of the user."""
+    """Raise an error for an unknown key, unless its value is a table: the key may then name a user's own solver."""
     if isinstance(value, dict | Limits):
         return value
     raise PydanticCustomError("extra_forbidden", "unknown key")
@@ -122,7 +122,7 @@ class Acceptance(Limits):
 
     @model_validator(mode="after")
     def _check_duplicate_and_engine_keys(self) -> Acceptance:
-        """Refuse a limit stated both here and in `like_for_like`, and a table whose key cannot name an engine."""
+        """Refuse a limit both here and in `like_for_like`, and a table whose key cannot name a user's own solver."""
         if twice := sorted(self.limits_by_key().keys() & (self.like_for_like or Limits()).limits_by_key().keys()):
             raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
         for name, limits in self.user_engine_limits.items():
@@ -133,7 +133,7 @@ class Acceptance(Limits):
 
     @property
     def user_engine_limits(self) -> dict[str, Limits]:
-        """Limits of the user's engines, by name of the engine."""
+        """Limits on differences of the user's own solvers (engines) from the equations, by name of the solver."""
         return self.__pydantic_extra__
 
     def list_limited_differences(self) -> list[tuple[str, str, str, float]]:
@@ -154,7 +154,7 @@ class Acceptance(Limits):
 
     @property
     def allowed_failures(self) -> int | None:
-        """Number of phase pairs that may lack a result: as stated, or else 0 with other limits and None without any."""
+        """Number of phase pairs that may lack a result: stated, or 0 if differences or closure have limits, or None."""
         return (
             0 if self.failed is None and (self.list_limited_differences() or self.closure is not None) else self.failed
         )

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class BarLink:
     """
-    Stiffness of all bars of one link together, between points of its two bodies that coincide half-way up.
+    Stiffness of all bars of one link, between two points, one fixed to each body, that coincide half-way up the bars.
 
     shear: N/m, without the effect of a weight that sinks as bars shorten. bending: N m, about either horizontal axis.
     tension: N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the
@@ -39,7 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """Return the stiffness of links, lowest first, each under its load, N; None: rigid; radius: default `spread`, m."""
+    """Return links' stiffness, lowest first, under loads, N; None: rigid; radius: default bar distance from axis, m."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -99,5 +99,5 @@ def stands_upright(
 
 
 def _upright_bending(link: BarLink) -> float:
-    """Return the bending stiffness, N m, of a link in a model in which the body above sinks by shear alone."""
+    """Return the bending stiffness, N m, of a link for `stands_upright`, where no rod lowers the body above it."""
     return link.bending + 0.25 * link.load * link.pendulum

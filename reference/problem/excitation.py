@@ -110,7 +110,7 @@ def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
 
 
 def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], Array]:
-    """Return the ground acceleration of one phase pair as a function of time (T,), s, for repeated calls."""
+    """Return ground acceleration for one pair of initial phases as a function of time (T,), s, for repeated calls."""
     if scene.recorded:
         return lambda time: _integrate_record(scene.record, time, 0)
     powers, amplitudes = exponents(scene), _phase_factors(phase)[:, None] * scene.amplitudes.T
@@ -190,7 +190,7 @@ def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
 
 
 def _check_instants(time: ArrayLike) -> Array:
-    """Return finite instants, s, as an array of the given shape. Raises ValueError, one line."""
+    """Return instants, s, as an array of the given shape. Raises ValueError, a one-line message, if not finite."""
     return check_array("time", time, "must be instants (T,), s").reshape(np.shape(time))
 
 

@@ -135,7 +135,7 @@ class Family:
         if not all(hasattr(result, "to_xarray") for result in results):
             raise TypeError(f"results = {quote(results)}: must be what amplification or peak_demands return")
         data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
-        data.attrs = {}  # attributes differ between the scenes, as the cost does, so the joined data have none
+        data.attrs = {}  # attributes such as the computing time differ between the scenes, so the joined data have none
         shorts = [key.rpartition(".")[2] for key in self.columns]
         names = [
             key if re.search(r"\.\d", key) or shorts.count(short) > 1 else short
@@ -373,7 +373,7 @@ def _scale_friction(friction: Any, factor: float) -> Any:
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, Any]) -> None:
-    """Check that `combine` fits the keys with several values and how many values they have. Raises SceneError."""
+    """Check `combine` (product, zip) against the keys with several values and how many they have. Raises SceneError."""
     if combine is not None and combine not in COMBINATIONS:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")
     if combine is not None and len(places) < 2:

@@ -25,7 +25,7 @@ LEAST_LOAD = 1e-6  # smallest ratio of normal force to weight: below it the coef
 @dataclass(frozen=True)
 class Heat:
     """
-    Temperature of the track's center, degrees C: initial + rise * integral of friction power P(t - s) / sqrt(s) over s.
+    Center temperature of a sliding surface, degrees C: initial + rise * integral of power P(t - s) / sqrt(s) over s.
 
     P is the power of friction while the slider covers the center: conduction from its whole contact into a half space.
 

@@ -116,7 +116,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
-        """Require the numbers of a key, in lists too, to lie in its range, but not in lists that are its other form."""
+        """Require numbers of a key, in lists too, to be in its range; lists as its other form have their own ranges."""
         said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])
@@ -142,6 +142,6 @@ class Table(BaseModel):
 
 
 def require_exactly_one(table: BaseModel, *keys: str) -> None:
-    """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
+    """Raise ValueError with a one-line message unless exactly one of the keys of a table has a value."""
     if sum(getattr(table, key) is not None for key in keys) != 1:
         raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 class Outcome(StrEnum):
     """
-    Outcome of the run of one phase pair.
+    Outcome of the computed motion for one pair of initial phases of the loading.
 
     Anything but OK means that `mu` is NaN or its error above the tolerance. `ADVICE` has what to try.
 

@@ -27,14 +27,14 @@ REGULARIZATION_RANGE = Range(1e-12, 1e6, "m/s")  # allowed v_reg: slip speed bel
 CUTOFF_RANGE = Range(1e-15, 1e6, "m/s")  # allowed v_c: accelerations at lower slip speeds do not count as peaks
 POSITION_RANGE = Range(-1e12, 1e12, "m")  # allowed displacements in an initial state
 VELOCITY_RANGE = Range(-1e9, 1e9, "m/s")  # allowed velocities in an initial state
-TOLERANCE_RANGE = Range(1e-10, 0.1)  # relative error that a caller may ask for
+TOLERANCE_RANGE = Range(1e-10, 0.1)  # allowed tolerance: relative error asked of amplifications or accelerations
 
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits, so the ground counts as at rest
 
 
 def check_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
-    Return position and velocity (N, 2) of an initial `State`, inside radius and travel. Raises ValueError, one line.
+    Return position, velocity (N, 2) of a `State` within the isolator's radius and travel. Raises one-line ValueError.
     """
     rule = f"must have finite position and velocity of shape ({bodies}, 2)"
     try:

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from reference.problem.scene import Scene
 
-AS_INTEGRATED = "as integrated"  # definition of the peak in (5.1): what an integration in time resolves
+AS_INTEGRATED = "as integrated"  # peak acceleration in amplification (5.1): what an integration in time resolves
 """The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
-LITERAL_SUPREMUM = "literal supremum"  # definition of the peak in (5.1): limit of vanishing slip speed
+LITERAL_SUPREMUM = "literal supremum"  # peak acceleration in amplification (5.1) with the limit v -> 0+ of slip speed
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
-BOTH_READINGS = "in both readings"  # both definitions of the peak in (5.1) agree, as there is no dry friction
+BOTH_READINGS = "in both readings"  # without dry friction peaks as integrated and as literal supremum (5.1) are equal
 """Reading of a factor without dry friction, which is the same as integrated and as literal supremum."""
 DEFAULT_V_REG = 1e-3  # m/s, slip speed below which regularized friction is linear
 """Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity on both sides."""
@@ -22,7 +22,7 @@ SECOND_V_REG_RATIO = 0.1  # second regularization speed over the first, to see t
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
-    """Return how the peak in amplification (5.1) is taken, in words; "" if both ways agree: no rigid dry friction."""
+    """Return how peak acceleration in (5.1) is taken: as integrated, literal supremum, "" if no rigid dry friction."""
     if not scene.has_dry_friction:
         return ""
     return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED

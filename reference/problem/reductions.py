@@ -18,10 +18,11 @@ from reference.support.constants import GRAVITY
 
 # Largest phase, rad, of the fastest vibration in a motion that is summed from harmonics: longer motions are integrated
 MAX_VIBRATION_ANGLE = 2e5
-RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # reason why a scene with a record permits no reduction
+RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # why a record permits no symmetry, plane or linear sum
 
 MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned about the vertical
-LOAD_SHIFT_FACTOR = 2.0  # safety factor on the shift of the supports' load, computed as if all contacts were level
+# Safety factor on the shift by friction of the supports' center of force, which must stay inside the ring of supports
+LOAD_SHIFT_FACTOR = 2.0  # the shift is computed as if all contacts were level; on a displaced platform they are not
 
 
 @dataclass(frozen=True)
@@ -60,9 +61,9 @@ def has_one_axis_per_harmonic(scene: Scene) -> Reduction:
 def body_cannot_tilt(scene: Scene) -> Reduction:
     """Find whether the spatial model is one body that cannot turn: then the translational model gives its motion."""
     # All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
-    # shares: at height 0 the supports' center of load is off by at most friction times R, and must stay inside the
-    # ring. The weight of a second body shifts with its displacement across the direction of sliding, and turns the
-    # platform.
+    # shares. If its center of mass is level with the depressions' centers, friction moves the supports' center of force
+    # off the axis by at most its coefficient times the depressions' radius. It must stay inside the ring of supports.
+    # The weight of a second body shifts with its displacement across the direction of sliding, and turns the platform.
     isolator = scene.isolator
     if scene.support_places is None or isolator.sphere_radius is None:
         return Reduction(False, "no supports are stated")

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
-POINT_FIELDS = ("instant", "cap_share", "displacement", "displacement_effect")  # fields with a number per phase pair
+# Fields of `Amplification` that hold one number for each pair of initial phases
+POINT_FIELDS = ("instant", "cap_share", "displacement", "displacement_effect")
 AXIS_LABELS = {  # quantities that `Trajectory.plot` draws, and the labels of their axes
     "position": "displacement against the plate, m",
     "velocity": "velocity against the plate, m/s",
@@ -29,7 +30,7 @@ AXIS_LABELS = {  # quantities that `Trajectory.plot` draws, and the labels of th
 
 
 def _count_statuses(status: NDArray[np.str_]) -> list[str]:
-    """Return texts with the number of phase pairs of each status."""
+    """Return texts with the number of runs (one for each pair of initial phases) that ended with each status."""
     return [f"{count} {name}" for name, count in zip(*np.unique(status, return_counts=True))]
 
 
@@ -42,7 +43,7 @@ def _join_facts(facts: Sequence[str]) -> str:
 @dataclass(frozen=True, repr=False)
 class Amplification:
     """
-    Amplification mu_i (5.1) of N bodies, peak acceleration over the ground's, for phase pairs of any shape (...).
+    Amplification mu_i (5.1) of N bodies, peak acceleration over the ground's, at pairs of loading phases, array (...).
 
     Attributes
     ----------
@@ -104,7 +105,7 @@ class Amplification:
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
 
     def __repr__(self) -> str:
-        """Return amplifications, statuses, how the peak in (5.1) is read, and friction law in one line."""
+        """Return amplifications (5.1), statuses, definition of their peak acceleration and friction law in one line."""
         points, bodies = self.status.size, self.mu.shape[-1]
         if points == 1:
             rows = zip(self.mu.reshape(-1), self.error.reshape(-1))
@@ -133,7 +134,7 @@ class Amplification:
 
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
         """
-        Return the same amplifications with their phase pairs arranged in another shape.
+        Return the same amplifications with their pairs of loading phases arranged in an array of another shape.
 
         Parameters
         ----------
@@ -188,7 +189,7 @@ class Amplification:
 
     def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
         """
-        Draw amplification mu_i (5.1) on a grid of phases as a surface; title: scene, body, model, reading of the peak.
+        Draw amplification mu_i (5.1) over a grid of phases; title: scene, body, model, definition of peak acceleration.
 
         Parameters
         ----------
@@ -401,7 +402,7 @@ class Trajectory:
 @dataclass(frozen=True)
 class Accuracy:
     """
-    Less accurate runs of a motion, from which its errors are estimated, and the weights of these runs.
+    Less accurate runs of a motion, and weights of their differences from it in the sum that estimates its errors.
 
     Attributes
     ----------

@@ -35,7 +35,7 @@ from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000  # largest number of bodies in a scene
 MIN_STATIC_SHARE = 1e-9  # smallest load of a support at rest, over the weight: a smaller one counts as none
-MAX_SUPPORT_DEFLECTION = 0.1  # largest deflection of the supports under the weight, over the radius
+MAX_SUPPORT_DEFLECTION = 0.1  # largest accepted deflection of supports under the weight, over the pendulum radius
 DERIVED_ROUNDING = 1e-12  # relative rounding error that is allowed when a computed value is checked against its range
 
 
@@ -197,7 +197,7 @@ class Scene(Table):
             raise MisfitError("duration", self.duration, rule)
 
     def _check_isolator(self) -> None:
-        """Check that the travel and the compliance of the supports are small against the radius."""
+        """Check that travel is below the pendulum radius, and deflection of supports by the weight small against it."""
         travel, bearings = self.isolator.travel, self.isolator.support_stiffness
         if travel is not None and not travel < self.radius:
             raise MisfitError("isolator.travel", travel, f"must be below the radius, rho = {self.radius:.6g} m")

@@ -38,7 +38,7 @@ LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NEST
 
 def builtin_scenes() -> list[str]:
     """
-    Return names of the built-in scenes, the paper's own cases, in the order of its figures.
+    Return names of the built-in scenes, cases of the paper whose equations are solved, in the order of its figures.
 
     Returns
     -------

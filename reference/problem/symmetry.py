@@ -36,7 +36,7 @@ def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 
 def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
-    """Return the fewest phase pairs (P, 2), rad, that give a surface on a grid, and each point's index among them."""
+    """Return the fewest phase pairs (P, 2), rad, that by symmetry stand for a grid, and each point's index in them."""
     solved, taken = np.unique(indices_of_solved_pairs(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
 

@@ -8,7 +8,7 @@ from comparison.report.section import Section
 FOUND = ResultField(  # field of the results with the verdicts on the paper's statements
     Claims.key, ClaimTable, "the paper's statements about its figures; null unless every scene of the paper was studied"
 )
-FEATURE = Feature(  # declaration of this feature: its result field, analysis and report section
+FEATURE = Feature(  # check of the paper's statements: its result field, analysis and report section
     Claims.key,
     (FOUND,),
     analysis=Claims(),

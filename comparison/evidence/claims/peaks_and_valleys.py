@@ -54,7 +54,7 @@ def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = 
 
 
 def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
-    """Return peak and valley counts of the profile: mean amplification at each alpha1 - alpha2, from -2 pi to 2 pi."""
+    """Return peak and valley counts of the mean amplification as a function of alpha1 - alpha2, -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
     along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
@@ -82,13 +82,13 @@ def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed
     rank = [0] * len(height)
     for place, node in enumerate(order):
         rank[node] = place
-    # Union-find forest (each point's parent) of the islands above a falling water level; its roots: highest points
+    # Parent of each point in a union-find forest of connected points above a falling level; root: their highest point
     parent = [-1] * len(height)
     top_of = [-1] * len(height)  # for each grid point, the maximum to which steepest ascent leads
     into = list(range(len(height)))  # for maxima of too little prominence, the higher maximum that each is merged into
     tops = []
     for node in order:
-        islands: dict[int, int] = {}  # root of each adjacent island: highest of this point's neighbors in it
+        islands: dict[int, int] = {}  # by root of each adjacent union-find tree: this point's highest neighbor in it
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
                 islands.setdefault(_root_of_node(parent, other), other)

@@ -11,31 +11,31 @@ from reference.problem import Scene, load_scene, readings
 
 @dataclass(frozen=True)
 class PeakReading:
-    """Definition of the peak in (5.1): key of its model; lowest sliding speed that counts, m/s, None if all count."""
+    """Definition of the peak acceleration in the amplification (5.1): sliding speeds at which accelerations count."""
 
-    name: str
-    model: str
-    cutoff: float | None
+    name: str  # name of the definition in tables
+    model: str  # key of the model of the small-vibration equations that has this definition
+    cutoff: float | None  # m/s, lowest sliding speed at which accelerations count; None: all count
 
 
-# Definitions of the peak (5.1): only rest and sliding above v_c count, or also the limit just before a stop (supremum)
+# Definition of the peak acceleration (5.1): accelerations count at rest and at sliding speeds above v_c = 1 mm/s
 AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
-# peak at any sliding speed, also in the limit just before a stop
+# Definition of the peak acceleration (5.1): any sliding speed counts, also the limit as it falls to 0 before a stop
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
-READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)  # both definitions of the peak in (5.1), in the order of tables
+READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)  # both definitions of the peak acceleration (5.1), in the order of tables
 
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
-    """Return the given definition of the peak (5.1); without dry friction the literal supremum, which then agrees."""
+    """Return the given definition of peak acceleration (5.1), or LITERAL_SUPREMUM without dry friction: both agree."""
     return reading if models.has_dry_friction(scene) else LITERAL_SUPREMUM
 
 
 @cache
 def _make_platform_scene(name: str, oscillator: bool) -> Scene:
     """
-    Return a scene of the paper reduced to its platform, of period T_c close to the loading's, or to an oscillator.
+    Return a scene of the paper with its platform alone; oscillator: frictionless, its period far from both harmonics.
 
-    oscillator: instead without friction, of the period T_3x of the second body on its springs: far from both harmonics.
+    Otherwise its period T_c is close to the loading's. The oscillator's is T_3x of the second body on its springs.
     """
     scene = load_scene(name)
     kind, values = "alone", dict[str, Any]()

@@ -17,7 +17,8 @@ from comparison.result_types import Array
 DIFFERENCE_DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])  # directions of second differences, grid steps
 SEARCHED_PLACES = 2  # number of grid points on each surface around which ever smaller phase steps are tried
 STEP_HALVINGS = 5  # number of times the phase step is halved around a searched point: down to 1/32 of the grid step
-FITTED_HALVINGS = 3  # number of last halvings to which the exponent is fitted; longer steps still show the peak's shape
+# Number of last phase-step halvings in the fit of the second difference's exponent; longer steps show a peak's shape
+FITTED_HALVINGS = 3
 # Second difference ~ (phase step)^exponent: smooth surface above 1.5, a fold from 0.5 to 1.5, a jump below 0.5
 MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5
 

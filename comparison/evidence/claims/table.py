@@ -34,7 +34,7 @@ CORRELATION_STRIDE = 2  # Surfaces that are only correlated with others are comp
 
 @result
 class Statement:
-    """One statement of the paper about its figures, with the verdict on it for each definition of the peak in (5.1)."""
+    """Statement of the paper about its figures, with a verdict for each definition of the peak acceleration (5.1)."""
 
     figure: Annotated[str, "figure of the paper"]
     says: Annotated[str, "what the paper says"]
@@ -45,7 +45,7 @@ class Statement:
     @property
     def reasons(self) -> list[str]:
         """
-        Return the reasons of the verdicts: one text if both definitions of the peak (5.1) have the same, else two.
+        Return the verdicts' reasons: one if both definitions of peak acceleration (5.1) have the same, else two texts.
         """
         texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
         same = len({*texts.values()}) == 1
@@ -54,7 +54,7 @@ class Statement:
 
 @result
 class ClaimTable:
-    """Table of the paper's statements about its figures, with verdicts for the two definitions of the peak (5.1)."""
+    """Table of the paper's statements on its figures, with verdicts for both definitions of peak acceleration (5.1)."""
 
     grid: Annotated[int, "phases per axis"]
     statements: Annotated[tuple[Statement, ...], "in the order of the figures"]
@@ -62,7 +62,7 @@ class ClaimTable:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def counts(self) -> dict[str, dict[Verdict, int]]:
-        """Return the numbers of statements met, not met and not compared, by name of the peak's definition (5.1)."""
+        """Return numbers of statements met, not met, not compared, by name of peak acceleration definition (5.1)."""
         return {
             reading.name: count_verdicts(each.verdicts[reading.name].verdict for each in self.statements)
             for reading in READINGS
@@ -71,7 +71,7 @@ class ClaimTable:
 
 def word_claims(table: ClaimTable) -> str:
     """
-    Return how many of the paper's statements are met for each definition of the peak in (5.1), in one sentence.
+    Return how many of the paper's statements are met for each definition of peak acceleration (5.1), in one sentence.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def word_claims(table: ClaimTable) -> str:
 
 
 def count_met(table: ClaimTable) -> str:
-    """Return a clause: how many paper statements are met or not compared, for each definition of the peak (5.1)."""
+    """Return a clause: numbers of statements met and not compared, by definition of the peak acceleration (5.1)."""
     integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
     uncompared = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
     rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in uncompared.items())
@@ -104,14 +104,14 @@ def count_met(table: ClaimTable) -> str:
 
 @dataclass(frozen=True)
 class Claims(Analysis[ClaimTable]):
-    """Check of all the paper's statements for both definitions of the peak (5.1), if possible on study surfaces."""
+    """Check of the paper's statements for both kinds of peak acceleration (5.1), on study amplification if possible."""
 
     key, stage, needs_surfaces = "claims", "claims", True
     seconds = 0.3
     grid: int = CLAIMS_GRID
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return a task per scene and definition of the peak (5.1); none if the study lacks a scene of the paper."""
+        """Return tasks for evidence by scene and kind of peak acceleration (5.1); none if a paper scene is missing."""
         return list(self._tasks(study, surfaces).values())
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
@@ -131,7 +131,7 @@ class Claims(Analysis[ClaimTable]):
         )
 
     def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
-        """Return tasks by scene name and definition of the peak (5.1): one task where both definitions agree."""
+        """Return tasks that gather evidence, by scene and kind of peak acceleration (5.1): both if they differ."""
         if not has_every_paper_scene(study):
             return {}
         tasks = {}
@@ -150,7 +150,7 @@ def select_study_surfaces(
     study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
 ) -> Evidence | None:
     """
-    Return a scene's surfaces from the study for one definition of the peak (5.1), at `grid` phases per axis.
+    Return the study's amplification of a scene, `grid` phases per axis, by one definition of peak acceleration (5.1).
 
     None if the study lacks the reading's model or these phases, or if its scene differs from the printed one.
     """
@@ -176,7 +176,7 @@ def has_every_paper_scene(study: Study) -> bool:
 
 
 def make_claim_table(verdicts: Mapping[str, list[StatementVerdict]], grid: int = CLAIMS_GRID) -> ClaimTable:
-    """Return the table of all statements; verdicts: by name of the peak's definition (5.1), in statement order."""
+    """Return the table of all statements; verdicts: in their order, by name of peak acceleration's definition (5.1)."""
     rows = [dict(zip(verdicts, row)) for row in zip(*verdicts.values(), strict=True)]
     return ClaimTable(
         grid,

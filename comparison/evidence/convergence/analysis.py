@@ -32,19 +32,20 @@ RelativeDifferences = tuple[Array, Array]  # relative differences of amplificati
 # rad, phase pairs at which the reference equations are solved
 EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
 ENGINE_PHASES = EQUATION_PHASES[[0, 3]]  # rad, phase pairs at which Exudyn computes motions
-EQUATION_PERIODS = 6.0  # longest motion, in periods of the slower harmonic; the loading is strongest in the first
+EQUATION_PERIODS = 6.0  # longest motion by equations, in slower harmonic's periods; loading is strongest in the first
 ENGINE_PERIODS = 3.0  # longest motion by Exudyn with variable steps, in periods of the slower harmonic
 CONSTANT_STEP_PERIODS = 2.5  # longest motion by Exudyn with constant steps, in periods of the slower harmonic
-REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s, speeds v_reg tried in the reference equations
-ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s, speeds v_reg tried in Exudyn
-PENETRATIONS = (3e-3, 1e-3, 3e-4)  # contact stiffnesses tried, as penetration under the weight divided by rho
-STIFFNESS_V_REG = 1e-2  # m/s, v_reg while the contact stiffness varies; so large that constant steps resolve it
+REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s, speeds v_reg below which friction is linear, tried in equations
+ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s, sliding speeds v_reg below which friction is linear, tried in Exudyn
+PENETRATIONS = (3e-3, 1e-3, 3e-4)  # contact stiffnesses tried: penetration under the weight / sliding radius rho
+STIFFNESS_V_REG = 1e-2  # m/s, friction is linear below it as stiffness varies; so large that constant steps resolve it
 STEPS_PER_PERIOD = 2250  # constant steps per period of the faster harmonic; a second run takes twice as many
 MAX_STEPS = 20_000  # largest number of constant steps of one motion; a second run takes at most twice as many
 EQUATION_TOLERANCE = 1e-7  # relative error asked of the amplification by the reference equations
 # Newton's method in Exudyn's steps: tolerance of the residual relative to the first one, and in units of the weight
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
-STEP_ERROR_FACTOR = 1.5  # error estimate / change of amplification by halved steps, the latter 0.5 to 1 coarse errors
+# Estimated error after halving the steps / change of amplification by it, which is 0.5 to 1 times the error before
+STEP_ERROR_FACTOR = 1.5  # 1 is enough for errors that halve with the steps
 
 
 def _compare_at_speeds(
@@ -88,7 +89,7 @@ def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
 
 
 def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
-    """Return Exudyn's translational amplification (P, N), `factor` times the usual constant steps; NaN if it fails."""
+    """Return Exudyn's translational amplification (P, N) in `factor` times the usual number of steps; NaN if failed."""
     mu = np.full((len(ENGINE_PHASES), len(scene.bodies)), np.nan)
     count = factor * min(MAX_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
     step = scene.duration / count
@@ -117,10 +118,10 @@ class ConvergenceCase(NamedTuple):
     applies: Callable[[Scene], bool]
 
 
-_by_equations = partial(  # compares the reference equations at each v_reg with those with set-valued friction
+_by_equations = partial(  # reference equations: friction linear below each speed v_reg, against set-valued friction
     _compare_at_speeds, reference, EQUATION_PHASES, EQUATION_PERIODS, EQUATION_TOLERANCE, REGULARIZATIONS
 )
-_by_engine = partial(  # compares Exudyn at each v_reg with the reference equations with set-valued friction
+_by_engine = partial(  # Exudyn, friction linear below each speed v_reg, against equations with set-valued friction
     _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
 )
 
@@ -180,7 +181,7 @@ class Convergence(MappedAnalysis[list[Trend]]):
     function, without_value = staticmethod(fit_limit_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[CaseArguments]:
-        """Return every scene with phases, paired with the index of each comparison that applies to it."""
+        """Return every scene under harmonics (with phases), with the index of each comparison that applies to it."""
         return [
             (scene, number)
             for scene in study.phased

@@ -3,7 +3,7 @@
 from comparison.evidence.convergence.analysis import Convergence
 from comparison.evidence.trend_feature import make_trend_feature
 
-FEATURE = make_trend_feature(  # result field, analysis and report section
+FEATURE = make_trend_feature(  # convergence of friction law and contact: result field, analysis, report section
     Convergence(),
     "Convergence of friction law and contact",
     "scenes with phases",

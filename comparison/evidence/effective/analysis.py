@@ -18,9 +18,9 @@ from comparison.wording import percent, word_exception
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
-PHASES = (0.3, 1.1)  # rad, phases of the harmonics in the motion from which the values are read
+PHASES = (0.3, 1.1)  # rad, phases of the harmonics in the motion from which radius, friction, mass and link are read
 DURATION = 6.0  # s, longest motion under two harmonics, strongest in the first seconds; a record is followed to its end
-# If a motion is so slow that friction changes by less than this share of (fast - slow value), no fast value is read.
+# High-speed friction is not read from a motion so slow that friction changes by at most this share of (fast - slow).
 MIN_FRICTION_CHANGE_SHARE = 0.1
 MAX_FLAT_SLOPE = 1e-5  # A flat slider may rise by this share of its displacement, as its contacts are elastic.
 MEASURED_SPEED_SHARE = 0.9  # Friction is measured while the platform moves faster than this share of its top speed.
@@ -28,7 +28,7 @@ MEASURED_SPEED_SHARE = 0.9  # Friction is measured while the platform moves fast
 
 @result
 class EffectiveModelValues:
-    """Radius, friction, mass, and stiffness of the top link: found from a motion, or stated by the scene; else null."""
+    """Platform sphere radius, friction, total mass, stiffness below top body: from a motion or stated; else null."""
 
     scene: Annotated[Text, "name of the scene"]
     model: Annotated[str, "key of the model, or scene"]
@@ -44,7 +44,7 @@ class EffectiveModelValues:
 
 
 def word_effective(values: Sequence[EffectiveModelValues]) -> str:
-    """Return in words by how much radius, friction and mass found from motions differ at most from the stated ones."""
+    """Return in words by how much sphere radius, friction, mass found from motions differ at most from those stated."""
     known = {each.scene: each for each in values if each.model == "scene"}
     parts = []
     for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
@@ -57,7 +57,7 @@ def word_effective(values: Sequence[EffectiveModelValues]) -> str:
 
 
 def read_scene_values(scene: Scene) -> EffectiveModelValues:
-    """Return radius, friction, mass and top link that the scene states, and platform acceleration at t = 0, at rest."""
+    """Return stated platform sphere radius, friction, mass, top body's link; platform acceleration at rest, t = 0."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return EffectiveModelValues(
         scene=scene.name,
@@ -73,7 +73,7 @@ def read_scene_values(scene: Scene) -> EffectiveModelValues:
 
 
 def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
-    """Return radius, friction, mass and top link found from a motion of one model, or why the motion failed."""
+    """Return platform sphere radius, friction, mass, top body's link found from a model's motion, or why it failed."""
     scene, model = task
     nothing = EffectiveModelValues(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
@@ -87,7 +87,7 @@ def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
 
 
 class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
-    """Analysis of radius, friction, mass and top link: as each scene states them and as each model's motion shows."""
+    """Analysis of platform sphere radius, friction, mass, top body's link: as stated and as models' motions show."""
 
     key, stage, level = "effective", "effective values", 2
     seconds = 1.0
@@ -101,7 +101,7 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
         return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[EffectiveModelValues]:
-        """Return for each scene the values that it states, then those that each model's motion shows."""
+        """Return for each scene sphere radius, friction, mass, top body's link: stated, then by models' motions."""
         read = self.values(study, surfaces, results)
         of_scenes = (
             [read_scene_values(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
@@ -110,7 +110,7 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
 
 
 def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
-    """Return radius, friction, contact force, mass and the top link's stiffness and damping found from a motion."""
+    """Return from a motion the sphere radius, friction, contact force, mass, stiffness and damping below top body."""
     place = motion.position[:, 0]
     ground = ground_acceleration(scene, PHASES, motion.time)
     swing = (place**2).sum(axis=1)

@@ -13,20 +13,20 @@ from reference.problem import Scene
 
 
 def _effective_of_scene(findings: Findings, scene: Scene) -> list[EffectiveModelValues]:
-    """Return radius, friction, mass and top link of one scene: as stated, then as each model's motion shows them."""
+    """Return one scene's platform sphere radius, friction, mass, top body's link: stated, then by models' motions."""
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-EFFECTIVE = SceneField(  # each scene's results: radius, friction, mass, top link, as stated and as motions show them
+EFFECTIVE = SceneField(  # field: platform sphere radius, friction, mass, top body's link; as stated, as motions show
     EffectiveValues.key, list[EffectiveModelValues], "the scene, then every model", _effective_of_scene
 )
-FORCED = SceneField(  # field of each scene's results: amplitude ratios under each harmonic
+FORCED = SceneField(  # field of each scene's results: amplitudes of upper bodies / the platform's, by harmonic
     "forced",
     list[ForcedRatio],
     "one per axis, harmonic and body above the platform; empty under a recorded motion",
     lambda findings, scene: compute_forced_ratios(scene),
 )
-FEATURE = Feature(  # result fields, analysis and report section
+FEATURE = Feature(  # radius, friction, mass, amplitude ratios of each scene: result fields, analysis, report section
     EffectiveValues.key,
     scene_fields=(EFFECTIVE, FORCED),
     analysis=EffectiveValues(),

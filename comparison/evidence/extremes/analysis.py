@@ -42,10 +42,10 @@ RELATIVE_ROUNDING = 1e-12  # Two amplifications whose relative difference is sma
 # Groups of extremes that --reduced also computes with Exudyn's models
 GROUPS_QUICK_BY_ENGINE = {"lubrication, s/m", "start at the friction limit", "outside the rules"}
 STAGE = "extremes"  # name under which the terminal shows the progress of these tasks
-# s, processor time after which a cell with its finer runs is stopped: twice what the slowest takes on a busy machine
+# s, processor time after which a model at an extreme, with finer runs, is stopped: twice the slowest on a busy machine
 CELL_TIME_LIMIT = 300.0
-SECONDS_OF_LONG_ROWS = 30.0  # s, rough processor time of one cell in a row that takes the equations over a second
-# First word of the reason in a cell whose worker process timed out or died; "raises" stands for other failures
+SECONDS_OF_LONG_ROWS = 30.0  # s, rough processor time of a model at an extreme that takes the equations over a second
+# First word of the reason for the verdict FAILED if a worker process timed out or died; if its call raised, "raises"
 PROCESS_FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}
 MIN_TOLERANCE = 1e-10  # smallest relative error that a finer run is asked for: models accept no smaller one
 
@@ -228,7 +228,7 @@ def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
 
 @dataclass(frozen=True)
 class Extremes:
-    """Every model computed at every extreme; limit: processor time, s (rounded up), after which a cell is stopped."""
+    """Computations of each model at each extreme; limit: processor time, s (rounded up), after which one is stopped."""
 
     rows: Sequence[ExtremeCase]
     columns: Sequence[ModelColumn] = COLUMNS
@@ -249,7 +249,7 @@ class Extremes:
         return Matrix(titles, [Extreme(group, title, row) for (group, title), row in entries.items()], {})
 
     def _task(self, cell: MatrixCell) -> Task:
-        """Return the task that judges a cell; it waits for compiled code only if the reference equations are solved."""
+        """Return the task that judges a model at an extreme; it waits for compiled equations only if it solves them."""
         row, column = cell.row, cell.column
         functions = {row.amplification or column.amplification, *(function for function, _, _ in column.finer)}
         seconds, compiled = column.seconds if row.quick else SECONDS_OF_LONG_ROWS, EQUATIONS in functions

@@ -22,11 +22,11 @@ class ModelColumn:
     tolerance: float  # relative error asked of the model
     # finer runs, tried in order until one has an answer: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
-    seconds: float = 0.5  # s, rough processor time of a cell with its finer runs
+    seconds: float = 0.5  # s, rough processor time of the model and its finer runs at one extreme
     like: str = ""  # for a user's engine: key of the built-in model with the same extremes; "" for built-in models
 
 
-MAX_WORK = 6e5  # largest number of Exudyn's steps for a phase pair, so that a cell ends within its time limit
+MAX_WORK = 6e5  # largest number of Exudyn's steps per phase pair, so that a model at an extreme ends in its time limit
 
 
 def _model_column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:

@@ -38,7 +38,7 @@ def amplification(
             levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
     if step is not None:  # multiply the largest step by `factor`; keep the smallest
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
-        # Additional step divisions that make up for `factor`, and the factor by which errors of second order grow
+        # Step divisions added so that the smallest step stays, and growth of the level's error, of second order in step
         more, error = math.ceil(math.log(factor, LEVEL_STEP_RATIO)), max(factor, 1.0) ** 2
         for number, level in enumerate(levels):
             changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error)

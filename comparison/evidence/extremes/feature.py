@@ -4,8 +4,9 @@ from comparison.evidence.extremes.matrix import MEANING_OF_VERDICT, STORED, Cell
 from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
 
-FOUND = make_stored_field(STORED, "extremes", "every model at the extremes of every quantity")  # field with the matrix
-FEATURE = Feature(  # results field and report section
+# Results field with the verdicts on every model (columns) at every extreme (rows): the matrix of extremes
+FOUND = make_stored_field(STORED, "extremes", "every model at the extremes of every quantity")
+FEATURE = Feature(  # stability of the models at extremes: results field and report section
     "extremes",
     (FOUND,),
     section=Section(

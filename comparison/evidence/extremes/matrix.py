@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from comparison.json_file import StoredFile
 from comparison.result_types import require, result
 
-FILE = "extremes.json"  # name of the file with the matrix
+FILE = "extremes.json"  # name of the file with the matrix of verdicts on every model at every extreme
 
 
 class CellVerdict(StrEnum):

@@ -35,8 +35,8 @@ Phases = tuple[tuple[float, float], ...]  # phase pairs (alpha1, alpha2), rad
 USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs at which most extremes are computed
 # rad, phase pairs that are extremes themselves: by symmetry, forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-# Largest number of Exudyn's steps for a phase pair, here of long motions or stiff links, for which MAX_WORK is too
-# small (translational model only); below, of towers of many bodies
+# Largest number of Exudyn's steps for a phase pair of long motions or stiff links (translational model only), in place
+# of MAX_WORK, which is too small for them
 MAX_WORK_OF_LONG_ROWS = 4e6
 MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # largest number of steps for towers, by number of bodies
 
@@ -45,17 +45,17 @@ MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # largest number of ste
 class ExtremeCase:
     """One extreme value of one quantity, with the scene that has it and the models that are run with it."""
 
-    group: str  # the quantity in words
-    title: str  # its extreme value in words
+    group: str  # quantity whose extreme value is tried, in words
+    title: str  # extreme value of this quantity, in words
     scene: Mapping[str, Any]  # tables and keys of the scene file
     columns: tuple[str, ...]  # keys of the models that the extreme concerns
     phases: Phases = USUAL_PHASES
-    settings: Mapping[str, Any] = field(default_factory=dict)  # keyword arguments that override those of the column
+    settings: Mapping[str, Any] = field(default_factory=dict)  # override keyword arguments of the models' functions
     invalid: bool = False  # whether the input is against the rules, so that every model must refuse it
     right: tuple[str, ...] = ()  # outcomes that are correct instead of an amplification; empty: not prescribed
-    quick: bool = True  # whether the equations take less than a second
+    quick: bool = True  # whether the reference equations take less than a second; --reduced leaves other cases out
     max_work: float = MAX_WORK  # largest number of steps that the engine's models may take
-    amplification: str = ""  # import path of a function to call instead of the column's, "" for the column's
+    amplification: str = ""  # import path of an amplification function in place of the model's, "" for the model's
 
     @property
     def name(self) -> str:
@@ -162,7 +162,7 @@ def _chain_cases() -> Iterator[ExtremeCase]:
         "total mass, kg", {total: make_baseline_scene(masses=[0.5 * total, 0.5 * total]) for total in totals}
     )
     group = "platform's share of the mass"
-    # At shares below friction^2 / 4 the equations reach Painleve's paradox; an elastic contact jams and opens.
+    # If platform / total mass < friction^2 / 4, the equations reach Painleve's paradox; elastic contact jams and opens.
     paradox = ("painleve paradox", "contact lost")
     for share, right in ((1e-6, ()), (1e-3, paradox), (0.999, ()), (0.999999, ())):
         tower = make_baseline_scene(masses=[2.0 * share, 2.0 * (1.0 - share)])

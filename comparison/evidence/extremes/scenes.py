@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-BASELINE_RADIUS = 0.25  # m, radius of the baseline scene, whose period is 1 s
+BASELINE_RADIUS = 0.25  # m, radius of the sphere on which the baseline scene's platform slides with a period of 1 s
 GRAVITY_LIMIT = 9.81  # m/s^2, downward acceleration of the shaking plate at which the contact force vanishes
 
 
@@ -20,7 +20,7 @@ def make_baseline_scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """Return the baseline scene (`fig3-I`, twice the amplitude), values changed, as scene file tables; None: no key."""
+    """Return scene file tables of the baseline (`fig3-I`, twice the amplitude) with given values; None: no such key."""
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]

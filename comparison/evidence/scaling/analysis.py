@@ -31,11 +31,11 @@ EXACT_MINUS_SMALL = "exact minus small"
 # name of the change of amplification by the small-vibration equations when loading and friction are halved
 SMALL_SCALE_DIFFERENCE = "small, s minus s/2"
 
-Arguments = tuple[Scene, bool]  # scene; True: the peak is the supremum, at any sliding speed; False: the resolved peak
+Arguments = tuple[Scene, bool]  # scene; True: peak acceleration at any sliding speed; False: at rest or > s * 1 mm/s
 
 
 def scale_scene(scene: Scene, s: float) -> Scene:
-    """Return the scene with loading, dry friction and travel limit multiplied by s; friction's rate divided by s."""
+    """Return a scene: loading, dry friction, travel limit times s; friction's change rate with speed divided by s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
     if not law.constant or law.elastic:
@@ -50,7 +50,7 @@ def scale_scene(scene: Scene, s: float) -> Scene:
 
 
 def fit_scene_trends(task: Arguments) -> list[Trend]:
-    """Return power laws of two amplification differences over the loading scale s, for each body. Runs in a worker."""
+    """Fit in a worker power laws in s to amplification changes by body: small to exact equations; small, s/2 to s."""
     scene, supremum = task
     answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (scale, equations, phases, body)
@@ -79,7 +79,7 @@ def fit_scene_trends(task: Arguments) -> list[Trend]:
 
 def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     """Return amplification and error, each (2, P, N): small-vibration, exact equations; P phase pairs; N bodies."""
-    cutoff = None if supremum else DEFAULT_V_C * s  # lowest sliding speed that counts; it scales with the motion
+    cutoff = None if supremum else DEFAULT_V_C * s  # m/s, peaks at slower sliding do not count; scales with the motion
     answers = [
         reference.amplification(scene, SCALING_PHASES, equations=equations, tolerance=SCALING_TOLERANCE, cutoff=cutoff)
         for equations in ("small", "exact")
@@ -110,7 +110,7 @@ class Scaling(MappedAnalysis[list[Trend]]):
     function, without_value = staticmethod(fit_scene_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return scenes with phases with each definition of the peak; none if friction heats: heat does not scale."""
+        """Return harmonic scenes with each kind of peak acceleration; none if friction heats: heat does not scale."""
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
         return [
             (scene, supremum) for scene in scenes for supremum in ([True, False] if has_dry_friction(scene) else [True])

@@ -5,7 +5,7 @@ from fractions import Fraction
 from comparison.evidence.scaling.analysis import LOADING_SCALES, Scaling
 from comparison.evidence.trend_feature import make_trend_feature
 
-FEATURE = make_trend_feature(  # result field, analysis and report section
+FEATURE = make_trend_feature(  # scaling test of loading and friction: result field, analysis and report section
     Scaling(),
     "Scaling test",
     "scenes with phases and without heated friction",

@@ -32,9 +32,9 @@ TASK_SECONDS = 3.0  # s, processor time that one task should take: it gets as ma
 # A task is stopped after TIME_LIMIT_RATIO times its expected processor time plus SPARE_SECONDS, s, for compilation.
 # Explicit methods on stiff links take that long.
 TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
-# s, resolution of the processor time of a process once it has a time limit; that of a thread is finer
+# s, resolution of a process's processor time under a limit; subtracted, so that the finer time of a lone thread counts
 CLOCK_STEP = 0.01
-OWN_SOLUTION_SECONDS = 0.01  # s, rough processor time per phase pair of a reference solution made for one setting
+OWN_SOLUTION_SECONDS = 0.01  # s, rough processor time per phase pair of the reference solution made for one method
 # Methods that check a reference solution, described in words; keys: first word of the method's name
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
@@ -125,19 +125,19 @@ def join_results(parts: Sequence[SettingResult]) -> SettingResult:
 
 @dataclass(frozen=True)
 class TradeOff:
-    """Measurement of error against compute time of every setting and scene; quick: fewer phase pairs and settings."""
+    """Measurement of amplification error and time by method, parameter value, scene; quick: fewer values, phases."""
 
     scenes: Sequence[Scene]
     quick: bool = False
     supplied: tuple[Model, ...] = ()
 
     def tasks(self) -> list[Task]:
-        """Return tasks that measure every setting and compute every reference solution, each of about TASK_SECONDS."""
+        """Return tasks of about TASK_SECONDS: each method at each parameter value, accurate solutions to compare."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
         return list({task.key: task for task in tasks}.values())  # Settings with the same function share its tasks.
 
     def collect(self, results: TaskResults) -> list[trade.MeasuredTrade]:
-        """Return each scene's measured trade-off; the command adds times and provenance of the run."""
+        """Return each scene's measured errors and compute times; the command adds times and provenance of the run."""
         return [self._trade(scene, results) for scene in self.scenes]
 
     def _settings(self, scene: Scene) -> list[Setting]:
@@ -145,7 +145,7 @@ class TradeOff:
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
-        """Yield lists of tasks: one per reference solution, then two per setting: its own runs, and its reference."""
+        """Yield task lists: accurate solution per set of equations; per method and value: runs, solution to match."""
         questions = {question.key: question for question in list_questions(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
@@ -156,7 +156,7 @@ class TradeOff:
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Return tasks that run a function at a question's phase pairs; seconds: time of a pair, for 20 s of motion."""
+        """Return tasks that call a function at all phase pairs; seconds: processor time of a pair, 20 s of motion."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
@@ -170,7 +170,7 @@ class TradeOff:
         return tasks
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
-        """Return the measured errors and processor times of every setting for one scene."""
+        """Return one scene's amplification errors and processor times by method and parameter value, as measured."""
         measured = (
             join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
@@ -188,7 +188,7 @@ class TradeOff:
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """
-    Return errors and time of one setting; reference_solution: amplification to compare, M phase pairs, (M, N).
+    Return errors, time of a method at a parameter value; reference_solution: amplification to compare, M pairs, (M, N).
 
     Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
     """
@@ -215,7 +215,7 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
 def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
 ) -> trade.SolvedQuestion:
-    """Return a question with a description of its reference solution, the solution's error, and how it was checked."""
+    """Return a question (equations to solve) with its reference solution's description, largest error, and checks."""
     with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
         error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = trade.find_error_quantile(error_estimate.ravel(), 1.0)

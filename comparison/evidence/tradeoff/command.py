@@ -40,7 +40,7 @@ from reference.support.command import UsageError
 
 DEFAULT_SCENE = "fig3-I"  # name of the scene that is measured if the command line names none
 COMMAND = "comparison.tradeoff"  # name of the command, as the manifest (list of written files) states it
-WORKER_START_SECONDS = 8.0  # s that a worker process takes to start: imports, loading of compiled code
+WORKER_START_SECONDS = 8.0  # s for the start of workers (imports, compiled code), added to the estimated run time
 # Import paths of the functions that worker processes call
 WORKER_FUNCTIONS = {REFERENCE, ENGINE, REFERENCE_RUN, ENGINE_LEVEL, CONSTANT_STEP_RUN, SCIPY_FACTORS}
 
@@ -76,7 +76,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     measured = measure_trades(scenes, options, argv, console, executor)
 
     def write() -> list[Path]:
-        """Write measured and earlier trade-offs, and each scene's values; return the path of the file of trade-offs."""
+        """Write errors, compute times (also earlier) and each scene's amplification; return the first file's path."""
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
@@ -137,7 +137,7 @@ def _load_harmonic_scene(name: str) -> Scene:
 
 
 def _load_trades(out: Path) -> list[SceneTrade]:
-    """Return the trade-offs that an earlier run left in the folder. Raises UsageError if the file is not readable."""
+    """Return errors and compute times that an earlier run left in the folder. Raises UsageError if not readable."""
     try:
         return load_trades(out) or []
     except (OSError, ValueError) as error:
@@ -147,7 +147,7 @@ def _load_trades(out: Path) -> list[SceneTrade]:
 def measure_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
-    """Return the scenes' trade-offs with time and provenance of the run; stored results are not measured again."""
+    """Return scenes' errors and compute times, time and provenance of the run; stored results are not remeasured."""
     supplied = load_user_models(options.model, options.model_limit, options.scheduler)
     tradeoff = TradeOff(scenes, options.quick, supplied)
     tasks, width = tradeoff.tasks(), read_number_of_jobs(options)
@@ -172,7 +172,7 @@ def _values_file(scene: str) -> str:
 
 
 def print_trade(console: Console, trade: SceneTrade) -> None:
-    """Print the settings on the Pareto front of error and time, and how each reference solution was checked."""
+    """Print methods and values on the Pareto front of error and time, and how each reference solution was checked."""
     for question in trade.questions:
         console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
         console.print(

@@ -16,19 +16,19 @@ TARGET_ERRORS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the fastest 
 
 
 def make_tradeoff_panels(trade: SceneTrade) -> list[Panel]:
-    """Return plots of error against processor time, for each question one of the platform and one of the top body."""
+    """Return plots of the platform's and top body's errors over processor time, for each set of equations solved."""
     bodies = sorted({0, trade.bodies - 1})
     return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
 
 
 def word_trades(trades: Sequence[SceneTrade]) -> str:
-    """Return a clause: how many settings were measured in how many scenes, and that speed has no verdict."""
+    """Return a clause: numbers of settings (method and parameter value) and scenes measured; speed is not judged."""
     settings = sum(len(trade.entries) for trade in trades)
     return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
 
 
 def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
-    """Return in words, by question, the fastest method for each of TARGET_ERRORS; with error estimate if possible."""
+    """Return, by equations solved, the fastest method for TARGET_ERRORS in words; one that estimates errors if any."""
     answers = []
     for question in trade.questions:
         parts = []
@@ -122,7 +122,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
     return {**functions, "growth_panels": panels, "digests": digests}
 
 
-FEATURE = Feature(  # results fields and report section
+FEATURE = Feature(  # error against compute time, and growth of this time: results fields and report section
     "tradeoff",
     (TRADES, GROWTH),
     section=Section(

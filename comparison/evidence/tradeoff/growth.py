@@ -18,10 +18,10 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import Scene, SceneError
 
-WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # calls that a varied number of workers share, and phase pairs in each call
+WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # calls of the equations timed with 1, 2, 4 ... workers, and phase pairs per call
 
-FILE = "growth.json"  # name of the file with the measured growth
-SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # name of the format of that file
+FILE = "growth.json"  # name of the file on how compute time grows with bodies, duration, phase pairs and workers
+SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # name of the format of growth.json
 BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies for which the processor time is measured
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion for which the processor time is measured
 PHASE_PAIRS = "phase pairs"  # quantity with which the processor time grows: number of phase pairs per call

@@ -17,16 +17,16 @@ from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack_scene
 
 ABSOLUTE_TOLERANCE_RATIO = 1e-2  # absolute tolerance of SciPy's steps, m and m/s, divided by the relative tolerance
-MOTION_SAMPLES = 2001  # number of instants, besides those of the solver's steps, at which the peak is looked for
+MOTION_SAMPLES = 2001  # number of instants, besides those of the solver's steps, at which peak acceleration is sought
 # Where the acceleration is below its peak by at most this share, instants are then PEAK_REFINEMENT times as dense.
 PEAK_NEIGHBORHOOD = 1e-3
 PEAK_REFINEMENT = 50  # factor by which the sampling rate rises near a peak
-LUBRICATED_V_REG = 1e6  # m/s, v_reg in lubricated scenes: above any speed, so that friction is f_c |v| at every speed
+LUBRICATED_V_REG = 1e6  # m/s, friction is linear below it; above any speed, so that friction coefficient f_c |v| holds
 
 
 @njit  # type: ignore[untyped-decorator]
 def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
-    """Return dy/dt, y = (x, v), (N, 2) each, by (3.9)-(3.13), (4.4); friction is linear below speed `corner`, m/s."""
+    """Return d(position, velocity)/dt by exact equations (3.9)-(3.13), (4.4); friction linear below `corner`, m/s."""
     below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
     z = np.exp(s * t + 1j * phase)

@@ -97,7 +97,7 @@ def list_questions(scene: Scene) -> list[TradeoffQuestion]:
 
 
 def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Return every setting that is measured for a scene; quick: fewer values of parameters whose runs take long."""
+    """Return methods with parameter values to measure for a scene; quick: fewer values of parameters that take long."""
     keys = {question.key for question in list_questions(scene)}
     every = [
         *_reference_settings(scene),
@@ -109,7 +109,7 @@ def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
 
 
 class _VariedCall(NamedTuple):
-    """Function (import path), name of its argument that varies along a curve, and its other keyword arguments."""
+    """Function (import path), argument varied along a curve of error over time, and its other keyword arguments."""
 
     function: str
     argument: str
@@ -137,7 +137,7 @@ def _make_curve_settings(
 
 
 def _reference_settings(scene: Scene) -> Iterator[Setting]:
-    """Yield settings of the reference equations: error-controlled, single runs, regularized against rigid friction."""
+    """Yield methods by the equations: error-controlled; single runs; regularized friction, compared with rigid."""
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
         controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(REFERENCE_RUN, "step_tolerance", law)

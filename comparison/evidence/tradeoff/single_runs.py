@@ -15,7 +15,7 @@ from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import prepare_run
 
-DISCONTINUOUS_TOLERANCE = 1.0  # Exudyn's default tolerance when it iterates on contacts that open within a step
+DISCONTINUOUS_TOLERANCE = 1.0  # Exudyn's default error at which it stops iterating on contacts that open in a step
 DEFAULT_ENGINE_LEVEL = 1  # index of the accuracy level with which Exudyn usually reaches the default tolerance
 
 
@@ -37,7 +37,7 @@ def run_reference_once(
 def run_engine_once(
     scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """Return amplification (M, N), one run of Exudyn per phase pair; step: step factor; level: new `Level` fields."""
+    """Return amplification (M, N), one Exudyn run per phase pair; step: factor on steps; level: numerical settings."""
     usual = multibody.levels(scene, model, regularization=regularization)[DEFAULT_ENGINE_LEVEL]
     changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
     return _compute_factors(scene, phases, lambda run: run.peak, model, regularization, level=changed)

@@ -13,8 +13,8 @@ from comparison.json_file import StoredFile
 from comparison.result_types import Array, require, require_size, result
 from reference.problem.scene import MAX_BODIES
 
-FILE = "tradeoff.json"  # name of the file with the measured trade-offs
-SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # name of the format of that file
+FILE = "tradeoff.json"  # name of the file with the measured error and compute time of every method
+SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # name of the format of tradeoff.json
 MEANINGS = {  # descriptions of the variables in the netCDF file of all measured values
     "mu": "amplification factor (5.1)",
     "reference_solution": "the same by the reference solution of the question",
@@ -127,7 +127,7 @@ def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
         return entry.seconds, math.inf if error is None else error
 
     def is_on_front(entry: MeasuredSetting, body: int) -> bool:
-        """Return whether no setting for the same question beats this one in time and error, by `is_pareto_optimal`."""
+        """Return whether no method and value for these equations beats this in time and error (`is_pareto_optimal`)."""
         rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
         return entry in complete and is_pareto_optimal(time_and_error(entry, body), rivals)
 
@@ -136,7 +136,7 @@ def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
 
 @result
 class TradeFile:
-    """Content of tradeoff.json: error against compute time of every setting, for each scene."""
+    """Content of tradeoff.json: amplification error and compute time of each method and parameter value, by scene."""
 
     schema: Annotated[Literal["phase-resonance/tradeoff"], "what the file is"]
     trades: Annotated[list[SceneTrade], "one per scene"]
@@ -147,14 +147,14 @@ STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeo
 
 
 def load_trades(folder: Path) -> list[SceneTrade] | None:
-    """Return the trade-offs in the file tradeoff.json of a folder; None if there is no such file."""
+    """Return each scene's errors and compute times in tradeoff.json of a folder; None if there is no such file."""
     content = STORED.load(folder)
     return None if content is None else content.trades
 
 
 @dataclass(frozen=True)
 class MeasuredTrade:
-    """Measured trade-off of one scene, and all values behind it by setting, phase pair and body."""
+    """Measured error against compute time of one scene, and amplification by method and value, phase pair and body."""
 
     trade: SceneTrade
     values: xr.Dataset
@@ -163,7 +163,7 @@ class MeasuredTrade:
 def label_values(
     entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array
 ) -> xr.Dataset:
-    """Return all measured values by setting, phase pair and body; NaN where a question has fewer phase pairs."""
+    """Return amplification, its reference, error estimate by method and value, phase pair, body; NaN: not computed."""
     axes = ("setting", "point", "body")
     variables: dict[str, Any] = {}
     for name, rows in values.items():

@@ -12,7 +12,7 @@ from comparison.result_types import Array
 CYCLE_SAMPLES = 250  # number of samples in each cycle of a folded run; the measurements have as many
 MIN_CYCLES = 3  # A measured run with fewer whole cycles is refused.
 BASE_HARMONICS = 6  # number of harmonics of the base frequency that are fitted to the measured base motion
-MAX_UNEXPLAINED_SHARE = 0.1  # runs with a larger rms share outside these harmonics are refused; published: 0.003
+MAX_UNEXPLAINED_SHARE = 0.1  # rms share of base motion beside fitted harmonics: refused if larger; published: 0.003
 MAX_DRIFT_SHARE = 0.1  # Runs whose plate's mean shifts between cycles by a larger share of its range are refused.
 REST_SPEED = 2.0  # mm/s, speed below which the plate counts as at rest
 VELOCITY_HALF_WIDTH = 4  # A velocity is computed from the positions this many samples before and after.

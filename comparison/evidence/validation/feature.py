@@ -37,7 +37,7 @@ def make_experiment_panels(table: Validation) -> list[Panel]:
 
 # Results field with the comparisons that the command left next to the report
 FOUND = make_stored_field(STORED, "validation", "measured motions, compared with what both sides compute")
-FEATURE = Feature(  # results field and report section
+FEATURE = Feature(  # comparison with measured motions: results field and report section
     "validation",
     (FOUND,),
     section=Section(

@@ -36,7 +36,8 @@ DURATION_RANGE = (1.0, 1e4)  # s, shortest and longest measured motion that is n
 MAX_READINGS = {"mm": 1e4, "rad": 1e3}  # largest measured displacement or angle that is not refused, by unit
 # Data types of a MATLAB file that are accepted as columns of numbers; logical values are not
 NUMERIC_TYPES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
-FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")  # matches names of frame files: disc, g; x plate or y base
+# Matches file names of measured shaken-frame motions; groups: mass of the disc, g; x for top plate or y for base
+FRAME_FILE_NAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")
 # Names of the published files with the pendulum's decay and with its large swings
 DECAY_FILE, LARGE_SWING_FILE = "SingleDataFreeSwing_1_Dt_0_0001.mat", "SinglePendulumDataForParameterEstimation.mat"
 FRAME_SOURCE = (  # publication and download place of the measured frame runs

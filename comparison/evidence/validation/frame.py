@@ -31,7 +31,7 @@ from reference.problem import GRAVITY, Scene, Trajectory
 
 # Second body, which only presses on the platform: its mass / that of the platform; period of its soft link, s
 SHAKER_MASS_RATIO, SHAKER_LINK_PERIOD = 10.0, 1e4
-FRICTION_GROWTH = 1.0  # fast minus slow friction coefficient: its slope at zero speed stands for viscous damping
+FRICTION_GROWTH = 1.0  # fast minus slow friction coefficient; its slope over speed, at zero, stands for frame damping
 COMPUTED_CYCLES = 12  # number of cycles computed; only the last one is compared with the measurement
 ENGINE_V_REG = 1e-4  # m/s, sliding speed below which friction is linear in Exudyn
 FIRST_FITTED_WEIGHT = 0.250  # kg, disc of the run that constant friction is fitted to; if not measured, the lightest
@@ -164,7 +164,7 @@ class FittedRun(NamedTuple):
 
 
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
-    """Return a run with fitted friction ratio; shift: inputs whose factor on base motion `shifted` takes; None: fit."""
+    """Return a run with friction ratio fitted; `shifted`: base motion's factor from `shift`, if None fitted as well."""
     setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = table.COVERAGE_FACTOR * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + INPUT_UNCERTAINTIES[name][0]} for name in REFITTED_INPUTS)
@@ -226,7 +226,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 
         def between(setup: Setup, low: float, high: float, share: float = share) -> Setup:
-            """Return `setup` with a friction ratio `low` at share 0, `high` at 1, a power of the load through both."""
+            """Return `setup`, friction ratio a power of load: low at first fitted load (share 0), high at second."""
             return setup._replace(ratio=low * (high / low) ** share)
 
         pairs = zip([*first.changed, first.shifted], [*second.changed, second.shifted])
@@ -244,7 +244,7 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
 def _compare_run(
     cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
 ) -> table.ExperimentFindings:
-    """Compare one run; varied: inputs changed one by one; other: base motion's factor fitted; own: this run's ratio."""
+    """Compare a run; `varied` inputs give uncertainty, `other` (base factor fitted) and `own` (ratio fitted) causes."""
     title = cycles.run.name + law
     found = [measure_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.MeasuredData(

@@ -75,7 +75,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
-        """Return the motion by one code (side); values: half period, s, loss of a half swing, first angle, rad."""
+        """Return the motion by one code (side); values: half period, s; angle lost per half swing, first angle, rad."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 

@@ -54,7 +54,7 @@ def recognize_format(text: str, suffix: str = "") -> Reader | None:
 
 def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> RecordSamples:
     """
-    Return the samples and directions that a file holds. Raises RecordError, one line.
+    Return the samples and directions that a file holds. Raises RecordError with a one-line message if unreadable.
 
     name: of the file, which tells nothing that its content does not. options: `step`, `unit`, `skip` and `column` of
     a plain text; `unit` alone is that of a table whose header names none.

@@ -70,7 +70,7 @@ def recognizes_csv(head: Sequence[str]) -> bool:
     return _header_row([(number, line) for number, line in enumerate(head, 1) if line.strip()], None) is not None
 
 
-@lru_cache(maxsize=32)  # a family reads the same files again while its other keys vary
+@lru_cache(maxsize=32)  # scenes that differ in other keys read the same files again
 def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> RecordSamples:
     """Return the samples of a table; unit: for columns whose header names none. Raises RecordError."""
     separator, rows = _split_lines(text)
