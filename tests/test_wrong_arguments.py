@@ -167,6 +167,21 @@ def test_a_wrong_value_is_one_line_with_the_rule(call: Callable[[], Any], line: 
     assert "\n" not in str(failure.value)
 
 
+BEYOND = {"tolerance": 0.2, "max_work": 0.5, "regularization": 1e-13, "cutoff": 1e7}
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_a_number_beyond_its_range_is_refused_by_every_function_that_takes_it(name: str) -> None:
+    calls = [
+        (function, words) for function, words, _ in FUNCTIONS if next(iter(words), "") == "scene" and name in words
+    ]
+    assert calls
+    for function, words in calls:
+        required = [(0.0, 0.0) for word in [*words.values()][1:] if word.default is word.empty]
+        with pytest.raises(ValueError, match=f"^{name} = {BEYOND[name]}: must be finite and positive, from "):
+            function(SCENE, *required, **{name: BEYOND[name]}, **({"step": 1e-3} if "level" in words else {}))
+
+
 @pytest.mark.parametrize(
     ("call", "line"),
     [

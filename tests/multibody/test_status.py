@@ -16,7 +16,7 @@ import reference
 from multibody import surface
 from multibody.integration import refine
 from multibody.integration.constant_step import EngineSolver
-from multibody.integration.engine_run import EngineRun, begin_run
+from multibody.integration.engine_run import Budget, EngineRun, begin_run
 from multibody.integration.level import plan_levels
 from multibody.integration.one_run import PhasePair
 from multibody.models import engine
@@ -111,6 +111,10 @@ def test_an_answer_without_another_level_says_nothing_of_its_error() -> None:
     one = refine.refine(PhasePair(scene, model, np.array(PHASE)), 1e-3, levels=plan_levels(scene, model, 1e-3)[:1])
     assert (one.outcome, one.instant) == (Outcome.STEP_LIMIT, 0.5)
     assert np.isnan(one.peaks).all()
+    pair, (level, *_) = PhasePair(scene, model, np.array(PHASE)), plan_levels(scene, model, 1e-3)
+    half = pair.run_level(level, Budget(0.5 * pair.run_level(level, Budget(1e9)).work))
+    assert half.outcome == Outcome.STEP_LIMIT
+    assert 0.005 < half.instant * model.units.time < 0.5, "s, what the steps reach"
 
 
 def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) -> None:

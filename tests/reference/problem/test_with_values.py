@@ -116,7 +116,7 @@ def test_keys_and_numbers_of_any_length_are_one_line(text: str, tmp_path: Any) -
 @pytest.mark.parametrize(
     ("values", "name"),
     [
-        ({"isolator.friction": 0.12}, "fig3-I[friction=0.12]"),
+        ({"isolator.friction": 0.123456789}, "fig3-I[friction=0.123456789]"),
         ({"isolator.friction": 0.12, "duration": 3}, "fig3-I[friction=0.12, duration=3]"),
         ({"bodies.1.mass": 2.0}, "fig3-I[bodies.1.mass=2]"),
         ({"isolator.friction": None, "isolator.lubrication": 0.5}, "fig3-I[friction=none, lubrication=0.5]"),
