@@ -44,7 +44,7 @@ def assert_consistent(
     failed: int = 0,
 ) -> None:
     """
-    Raise AssertionError where the equations and an engine differ by more than their errors and a limit.
+    Raise AssertionError where amplifications by equations and engine differ beyond both errors together and a limit.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ MAX_DRAWN_THICKNESS, MAX_DRAWN_DIP = 0.4, 0.2
 MAX_DRAWN_ROTATION = 0.3
 MAX_MAGNIFICATION = 1e4  # largest factor on drawn rotations and contact paths
 
-# Length of the poles of the supports, as a share of the width of the drawing.
+# Length of the vertical line below the platform that stands for a support, as a share of the width of the drawing.
 POLE_LENGTH = 0.15
 
 # Width of the figure, inches, for any number of pixels, so that the layout does not depend on the pixels.
@@ -264,7 +264,7 @@ class _TopView(_Panel):
 
 
 class _SideView(_Panel):
-    """Panel from the side: the boxes above each other on their poles, and the line through their centers."""
+    """Panel from the side: boxes above each other, the supports as vertical lines below, and a line through centers."""
 
     def __init__(self, panel: Any, drawn: Drawing, axis: int) -> None:
         """Draw the supports and the curve of the platform's center, seen along y if `axis` is 0, along x if it is 1."""

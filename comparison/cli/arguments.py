@@ -195,7 +195,7 @@ def edit_command_line(
 
 
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return a line: where finished results are kept, how to compute the rest. batches: how many there are in all."""
+    """Return a line: where finished results are kept, how to go on. batches: total of tasks of several phase pairs."""
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT_KIND]
     if batches is None:

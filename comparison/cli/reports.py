@@ -82,7 +82,7 @@ class ReportWriter:
 
     def write(self, complete: CompleteLevel, runner: Runner) -> Results:
         """Write the report of a level (grid of phases) and return the level's results."""
-        from comparison.report.writing import write_report  # late: plotting libraries are not needed to refuse or plan
+        from comparison.report.writing import write_report  # imported late: a run refused or planned needs no plots
 
         begin = time.monotonic()
         report = self._report(complete, runner)

@@ -66,7 +66,7 @@ def _print_models(console: Console, study: Study, families: Sequence[Family]) ->
 
 
 def _print_analyses(console: Console, study: Study) -> list[Task]:
-    """Print the number of tasks of every analysis; return the tasks that do not depend on the surfaces."""
+    """Print the number of tasks of every analysis; return those that need no amplification over the phases."""
     first, counts = [], {}
     for each in select_analyses(study):
         tasks = [] if each.needs_surfaces else each.tasks(study.restrict_to(each.key))
@@ -86,7 +86,7 @@ def _print_levels(console: Console, study: Study) -> None:
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
-    """Print how many results an earlier run stored. batches: tasks for the surfaces. others: tasks of analyses."""
+    """Print how many results are stored. batches: tasks of amplification over phases. others: tasks of analyses."""
     stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
     if results.cache is not None and stored + analyses:
         rest = f", {analyses} of {len(others)} analyses" if others else ""

@@ -21,7 +21,7 @@ from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
 BATCH_KIND, RESULT_KIND = "batch", "result"  # kinds of stored results: of tasks of several phase pairs, and all others
-# Number of batches of a user's engine that may time out or end their process; then no further batch of it is computed.
+# Number of calls of a user's own engine that may time out or end their process; then no further phase pair is computed
 MAX_FAILED_BATCHES = 2
 # Error message of a batch (several phase pairs) that is not computed because MAX_FAILED_BATCHES others failed
 GIVEN_UP_MESSAGE = f"{MAX_FAILED_BATCHES} calls hung or ended their process: not asked for the other phase pairs"
@@ -34,14 +34,14 @@ class Task:
     function: Callable[[Any], Any]
     argument: Any
     stage: str  # name of the kind of work to which it belongs, for the terminal and the report's table of times
-    seconds: float = 1.0  # s, rough processor time, relative to the other tasks of its stage
-    about: Any = None  # what it has in common with other tasks, such as the scene: their results share a directory
+    seconds: float = 1.0  # s, rough processor time; within a stage it weights the task in the progress that is shown
+    about: Any = None  # object in common with other tasks, such as the scene: their results are stored in one directory
     # Whether the task must wait until a worker has compiled the reference equations, if that has not been done yet
     needs_compiled_reference: bool = True
     # s, processor time (rounded up) after which the task is ended, with Outcome.TIME_LIMIT as outcome; None: no limit
     timeout: float | None = None
-    group: str = ""  # name of the workers that it may use: users' engines have their own, as they may harm a process
-    model: str = ""  # "package:name" of the only model that it calls, if so: its result depends on no other source code
+    group: str = ""  # name of the worker processes that run it: an engine of the user has its own, as it may crash them
+    model: str = ""  # "package:name" of a model if it calls no other: changes of other code then keep its result valid
 
     @cached_property
     def key(self) -> CacheKey:
@@ -67,7 +67,7 @@ class Task:
 
     @property
     def points(self) -> int:
-        """Return the number by which the task counts in progress: its phase pairs if it is a batch, else 1."""
+        """Return the task's share of the count in the progress shown: its phase pairs if it is a batch, else 1."""
         return self.batch.points if self.batch else 1
 
     def halves(self) -> list[Task]:
@@ -90,7 +90,7 @@ class Task:
 class TaskResult:
     """Value that a task returned, or the reason why it returned none."""
 
-    value: Any  # None unless `outcome` is OK; a batch of which some phase pairs failed also has a value
+    value: Any  # None if the task failed; if only some phase pairs of a batch failed, a result with NaN at these
     cost: float  # s, processor time of the task
     outcome: Outcome = Outcome.OK
     error_message: str = ""
@@ -161,6 +161,6 @@ def _describe_dataclass(value: Any) -> Any:
     """Return the type and contents of a dataclass as plain JSON; for a model also the hashes of its source code."""
     held, source = {part.name: getattr(value, part.name) for part in fields(value)}, {}
     if isinstance(value, Model):
-        del held["most"]  # largest number of phases for which the model is asked: it does not change its answers
+        del held["most"]  # this limit on the phases of a study changes no result, so results are stored without it
         source = fingerprint_environment(value.amplification)
     return [type(value).__qualname__, describe_contents(source), describe_contents(held)]

@@ -21,7 +21,7 @@ USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET
 
 @dataclass(frozen=True)
 class Batch:
-    """Consecutive phase pairs (M, 2), rad, of a model and scene; first: place of the first among the model's pairs."""
+    """Consecutive phase pairs (M, 2), rad, of the ground for one call of a model; first: place of the first in all."""
 
     scene: Scene
     model: str
@@ -30,7 +30,7 @@ class Batch:
     first: int
     phases: Array
     timeout: float | None = None  # s, limit on the processor time of the call that computes the batch
-    group: str = ""  # for a user's engine: name of the workers that only it uses; its errors may be unknown
+    group: str = ""  # key of a user's engine, which has its own workers and need not state errors of amplifications
 
     @property
     def points(self) -> int:
@@ -39,7 +39,7 @@ class Batch:
 
     @property
     def question(self) -> dict[str, object]:
-        """Return what batches of an amplification surface share: scene without name and title, function, settings."""
+        """Return what all batches of a model and scene share, to key results: unnamed scene, function, settings."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
@@ -90,7 +90,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Result of a batch: mu and others as in `reference.problem.Amplification`; error_message: the solver's, or ""."""
+    """Amplification mu, error (M, N) of a batch; status, instant, s, displacement, m, (M,); solver's error_message."""
 
     mu: Array
     error: Array
@@ -123,11 +123,11 @@ def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Set unusable amplifications mu and errors (M, N) to NaN, in place, and adapt status (M); own: of this project.
+    Set amplification mu and error (M, N) to NaN where it failed or is out of range; own: by a model of this project.
 
     An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
     and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
-    infinite or above MAX_MU: its status becomes "value out of range".
+    infinite or above MAX_MU: its status (M,) becomes "value out of range". All changes are made in place.
     """
     with np.errstate(invalid="ignore"):
         absurd = np.any((mu < 0.0) | (mu > MAX_MU) | (error > MAX_MU), axis=1).tolist()

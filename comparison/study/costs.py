@@ -15,17 +15,18 @@ from reference.problem import Scene
 
 COMPILING_SECONDS = 20.0  # s, time that compiling the reference takes, at its first call on a machine
 STARTING_SECONDS, WRITING_SECONDS = 4.0, 4.0  # s, durations of loading modules and workers, and of writing a report
-USUAL_DURATION, USUAL_BODIES = 20.0, 2  # s of motion and number of bodies for which Model.seconds is stated
+# Duration, s, and bodies of a scene whose phase pair takes `Model.seconds` of processor time; others in proportion.
+USUAL_DURATION, USUAL_BODIES = 20.0, 2
 # Estimated processor time, s, of one motion computed by the reference: a constant part; then, both times the number of
 # bodies + 1, the parts per second of motion and per sample of the record.
 MOTION_COST, MOTION_SECOND_COST, MOTION_KNOT_COST = 0.02, 4e-4, 3.7e-6
-# Estimated processor time, s, of Exudyn per radian that the fastest link vibrates; of the spatial model, also per body.
+# Processor time, s, of Exudyn per radian that the link of highest frequency vibrates; if bodies rotate, also per body.
 MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3
-DEFAULT_FREQUENCY = 7.0  # rad/s, lower bound on the frequency of the fastest link in the estimate
+DEFAULT_FREQUENCY = 7.0  # rad/s, used to estimate processor time if every link between bodies vibrates more slowly
 
 
 def estimate_motion_seconds(scene: Scene, model: Model) -> float:
-    """Return the rough processor time of one motion to its end, s."""
+    """Return the rough processor time, s, for computing one motion over the whole duration of its scene."""
     bodies, knots = len(scene.bodies), len(scene.record)
     if model.side == "reference":
         return MOTION_COST + (bodies + 1) * (MOTION_SECOND_COST * scene.duration + MOTION_KNOT_COST * knots)

@@ -7,7 +7,7 @@ from math import gcd
 from comparison.study.models import Model
 from comparison.study.study import Study, nested_grids
 
-# Largest number of phases per axis at the first and second level, by kind of model; the third is the whole study.
+# Largest number of phases per axis to which levels 1 and 2 of a study thin its grid, by kind of model; level 3 has all.
 MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
     {"reference": 16, "engine": 8, "spatial": 4, "user": 8},
     {"reference": float("inf"), "engine": float("inf"), "spatial": 8, "user": float("inf")},
@@ -16,7 +16,7 @@ MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
 
 @dataclass(frozen=True)
 class StudyLevel:
-    """One level of a study: what it computes (a study), its number from coarse to fine, and the number of levels."""
+    """One of `of` levels of a study, from few phases to all: the study with this level's phases, and level number."""
 
     study: Study
     number: int
@@ -51,17 +51,17 @@ def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
 
 
 def _describe_work(study: Study) -> tuple[object, ...]:
-    """Return grid, strides and analyses of a study, to find out whether two levels compute the same."""
+    """Return grid, every how many phases each model computes, and analyses: equal where two levels compute the same."""
     return study.grid, tuple(study.strides.items()), study.selection
 
 
 def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
-    """Return the study, each model on its finest nested grid within `most`: phases per axis by kind of model."""
+    """Return the study, each model on its finest nested grid of at most `most` phases per axis (by kind of model)."""
     strides = {
         model.key: _find_stride(study, model, most["spatial" if model.is_spatial else model.side])
         for model in study.hierarchy
     }
-    shared = gcd(*strides.values())  # The reference computes every phase of a grid thinned by this factor.
+    shared = gcd(*strides.values())  # No model computes phases between its multiples: the level's grid leaves them out.
     if study.grid % shared:
         return study
     grid = study.grid // shared
@@ -75,7 +75,7 @@ def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
 def _find_stride(study: Study, model: Model, most: float) -> int:
     """Return k where a model computes every k-th phase of the study at a level with at most `most` phases per axis."""
     stride, phases = study.strides[model.key], len(study.phase_indices(model))
-    # Unevenly spaced phases, the last closer to the first of the next period, contain no coarser even grid.
+    # A stride that does not divide the grid leaves uneven phases, which contain no coarser even grid: it stays.
     if stride * phases != study.grid:
         return stride
     chain = nested_grids(phases)

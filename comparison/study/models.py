@@ -14,9 +14,9 @@ from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
 from reference.problem.reductions import is_mirror_symmetric
 
-# Texts of two default speeds: v_reg of regularized friction, and v_c, below which accelerations of sliding do not count
+# Default speeds as text: v_reg of regularized friction; v_c, below which sliding does not count for peak accelerations
 V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
-# Largest relative error asked of the reference in any study: it is cheap, and its error shall blur no difference.
+# Largest relative error asked of package `reference` in any study: it is cheap, and differences hardly show its error.
 REFERENCE_TOLERANCE = 1e-6
 SOFTENED = "softened-"  # prefix of the key of a model whose bars are softened
 
@@ -37,7 +37,7 @@ def applies_to_every_scene(scene: Scene) -> bool:
 
 
 def has_smooth_friction(scene: Scene) -> bool:
-    """Return whether no friction is dry and rigid, so that both definitions of the peak (readings of (5.1)) agree."""
+    """Return whether no friction is dry and rigid: limits just before stops then add nothing to peak accelerations."""
     return not has_dry_friction(scene)
 
 
@@ -89,11 +89,11 @@ def has_spatial_unloaded_bars(scene: Scene) -> bool:
 @dataclass(frozen=True)
 class Model:
     """
-    Model of the study (equations or engine). `adds`: the report's text on what it adds. `settings`: function arguments.
-    `assumptions`: its row in the report's table of equations. `applies`: whether the scene gives it anything to add.
-    `most`: phases per axis that its cost allows, or None; of a finer study it computes every k-th phase. `symmetric`:
-    whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they are not computed again.
-    `refusal`: the function that tells from the scene alone
+    Model of the study: equations of motion, or an engine. `adds`: report's text on what it adds to the model before.
+    `settings`: function arguments. `assumptions`: its row in the report's table of equations. `applies`: whether the
+    scene gives it anything to add. `most`: phases per axis that its cost allows, or None; of a finer study it computes
+    every k-th phase. `symmetric`: whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they
+    are not computed again. `refusal`: the function that tells from the scene alone
     why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
     "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no
     trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
@@ -132,7 +132,7 @@ class Model:
 
     @property
     def motion_settings(self) -> dict[str, object]:
-        """Return the keyword arguments for computing a motion: settings without `cutoff`, which affects peaks only."""
+        """Return arguments for computing a motion: settings without `cutoff`, a slip speed that affects peaks only."""
         return {key: value for key, value in self.settings.items() if key != "cutoff"}
 
     def scene_of(self, scene: Scene) -> Scene:
@@ -140,7 +140,7 @@ class Model:
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
-        """Return keyword arguments for its amplification in a study of this tolerance; full: nothing is skipped."""
+        """Return its amplification function's arguments at a study's tolerance; full: no early end, no reduction."""
         asked = {"full": True} if full else {}
         return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
 
@@ -167,13 +167,13 @@ class Pair:
 
 
 def label_of(model: Model, scene: Scene) -> str:
-    """Return the title of a model with its definition of the peak (reading of (5.1)), where the definitions differ."""
+    """Return a model's title, and how it reads peak accelerations (as integrated, literal supremum) if that matters."""
     title, readings = model.title.removesuffix(f", {model.reading}"), readings_of([model], scene)
     return f"{title}, {model.reading}" if readings else title
 
 
 def readings_of(models: Sequence[Model], scene: Scene) -> list[str]:
-    """Return the readings of (5.1) (definitions of the peak) of models in a scene, each once; none where both agree."""
+    """List how models read peak accelerations (as integrated, literal supremum), each once; none where both agree."""
     return [*dict.fromkeys(each.reading for each in models if not has_smooth_friction(each.scene_of(scene)))]
 
 
@@ -197,7 +197,7 @@ def chain_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
 
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return the pairs of models to compare: the first with the last, both programs on the same equations, and others.
+    Return pairs of models to compare: first with last, `reference` with Exudyn on the same equations, and others.
 
     They are, as far as the scene allows: every user's engine against its partner, then the total, the difference
     under the paper's assumptions, and the like-for-like one. left_out: keys of models without results. The total then
@@ -212,7 +212,7 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     complete = last is asked[-1] and engine is not None
     other = "the most complete model of Exudyn" if complete else f"the {last.title}"
     pairs = [Pair("total", "total", f"{printed} against {other}", first, last, first)]
-    # A model that is left out does not meet the tolerance, exceeds the budget, or has no answer.
+    # The next two pairs need models with results: within the tolerance and the budget, and with an answer.
     if engine is not None and engine in models:
         if engine is not last and first is asked[0]:
             sentence = f"{printed} against Exudyn under the paper's own assumption that no body turns"
@@ -247,7 +247,7 @@ def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return pairs of models that differ by one effect, successive ones first, and pairs with two definitions of the peak.
+    Return pairs of models that differ by one effect, successive ones first, or by what counts as peak acceleration.
 
     An effect as integrated is a share of the amplification of the chain's first model, so that the effects of the chain
     add up to the total. Between literal suprema it is a share of the literal supremum of the small equations.
@@ -272,7 +272,7 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
-    """Return the pair of models that differ by `effect`, relative to the amplification by `base`; where: key's end."""
+    """Return the pair of models for `effect`, relative to `base`; where: end of its key, if several show `effect`."""
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
@@ -289,7 +289,8 @@ def _model_after(before: Model, changed_assumptions: Mapping[str, str], **change
     return replace(before, assumptions={**before.assumptions, **changed_assumptions}, **changes)
 
 
-# First of the models: small-vibration equations (4.3)-(4.4), literal supremum. Each later one is a changed earlier one.
+# First model: small-vibration equations (4.3)-(4.4); peak accelerations include the limits just before stops (literal
+# supremum of (5.1)). Each later model is a changed earlier one.
 SMALL = Model(
     key="small",
     title="small equations, literal supremum",
@@ -314,7 +315,7 @@ SMALL = Model(
     in_chain=has_smooth_friction,
     seconds=0.0005,
 )
-# Exact equations of large displacements (3.9)-(3.13), with the friction law and the literal supremum of SMALL
+# Exact equations (3.9)-(3.13) of large displacements; friction law and peaks, with limits at stops, as in model SMALL
 EXACT = _model_after(
     SMALL,
     {
@@ -328,7 +329,7 @@ EXACT = _model_after(
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
-# The motion of SMALL, with the peak that an integration sees: slow sliding, below v_c, does not count
+# Motion as in model SMALL, equations (4.3)-(4.4); sliding slower than v_c does not count for the peak acceleration
 SMALL_AS_INTEGRATED = _model_after(
     SMALL,
     {"mu_i": _RESOLVED_PEAK},
@@ -341,7 +342,7 @@ SMALL_AS_INTEGRATED = _model_after(
     reading=AS_INTEGRATED,
     in_chain=applies_to_every_scene,
 )
-# The motion of EXACT, with the peak that an integration sees: slow sliding, below v_c, does not count
+# Motion as in model EXACT, equations (3.9)-(3.13); sliding slower than v_c does not count for the peak acceleration
 EXACT_AS_INTEGRATED = _model_after(
     EXACT,
     {"mu_i": _RESOLVED_PEAK},
@@ -432,7 +433,7 @@ SPATIAL = _model_after(
 MODEL_HIERARCHY: tuple[Model, ...] = (  # all models for rigid friction and stiff bars, from simple to complete
     SMALL, EXACT, SMALL_AS_INTEGRATED, EXACT_AS_INTEGRATED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# Pairs of models that differ by one effect beside the chain of models: effect, end of the pair's key, both models
+# Further pairs to show an effect, besides successive models of the chain: effect, end of the pair's key, both models
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
     (EXACT_AS_INTEGRATED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
@@ -490,7 +491,7 @@ def _tell_of_yielding(model: Model, only: bool) -> Model:
 
 def with_steps_of_scenes(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
     """
-    Return the models plus those that only some scenes need: softened bars; rigid friction, where friction yields.
+    Return the models, plus those that some scene needs: with softened bars; with rigid friction if friction yields.
 
     Models with softened bars are added at the end. The one whose friction stays rigid comes first.
     """

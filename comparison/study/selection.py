@@ -58,7 +58,7 @@ class Selection:
         return f"on request; --also {analysis} makes it" if analysis in self.on_request else "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
-        """Return the selection without these analyses, which a later level of the study runs."""
+        """Return the selection without these analyses: they are run only at a later, finer level of the study."""
         return replace(self, later=tuple(analyses))
 
     def has(self, analysis: str, scene: str) -> bool:
@@ -73,9 +73,9 @@ class Selection:
 
 def refuse_unknown(names: Iterable[str], analyses: Sequence[Selectable], added: bool = False) -> None:
     """
-    Raise ValueError, with the nearest name, for a name that is no analysis; if `added`, also for what a command makes.
+    Raise ValueError, with the nearest name, for a name of no analysis and, if `added`, of one that only a command runs.
 
-    added: whether they are asked for besides the usual ones; then none may be what only a command makes.
+    added: whether they are asked for besides the usual ones; a study only shows what a command of that name has left.
     """
     known = {each.name: each for each in analyses}
     for name in names:

@@ -17,7 +17,7 @@ from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
 
-# Relative error required of amplifications without --tolerance, and of analyses by Exudyn; also multibody's default
+# Default of --tolerance, relative error required of amplifications; also for analyses by Exudyn; multibody has the same
 STUDY_TOLERANCE = 1e-3
 
 
@@ -34,7 +34,7 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
 @cache
 def nested_grids(grid: int) -> tuple[int, ...]:
     """
-    Return the numbers of phases per axis of nested grids, up to `grid`: each divides the next; factors 2 come first.
+    Return numbers of phases per axis, each a divisor of the next, up to `grid`: 2, 4, 8, 24 for 24 (factors 2 first).
 
     >>> nested_grids(48), nested_grids(96), nested_grids(7)
     ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
@@ -81,7 +81,7 @@ class Study:
 
     @cached_property
     def strides(self) -> dict[str, int]:
-        """Return by key each model's stride k (it computes every k-th phase): the smallest that `Model.most` allows."""
+        """Return by key each model's stride k (it computes every k-th phase): the least with at most `Model.most`."""
         strides, stride = {}, 1
         for model in sorted(self.hierarchy, key=lambda model: -(model.most or self.grid)):
             most = min(model.most or self.grid, self.grid)
@@ -91,7 +91,7 @@ class Study:
 
     @property
     def phased(self) -> tuple[Scene, ...]:
-        """Return the scenes that have phases."""
+        """Return the scenes loaded by harmonics with initial phases; the others are loaded by recorded motions."""
         return tuple(scene for scene in self.scenes if not scene.recorded)
 
     def restrict_to(self, analysis: str) -> Study:
@@ -131,16 +131,16 @@ class Study:
         return np.arange(0, self.grid, self.stride(model, scene))
 
     def points(self, model: Model, scene: Scene | None = None) -> int:
-        """Return the number of phase pairs of one surface of this model."""
+        """Return the number of phase pairs that this model's surface of amplification over both phases has."""
         return len(self.phase_indices(model, scene)) ** 2
 
     def places(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
-        """Return the model's phase pairs as indices on the whole grid, alpha2 running fastest."""
+        """Return the model's phase pairs (alpha1, alpha2) as flat indices into the study's grid, alpha2 fastest."""
         axis = self.phase_indices(model, scene)
         return (self.grid * axis[:, None] + axis).ravel()
 
     def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
-        """Return for each of `places` the phase pair whose motion is mirrored to give its own; itself if none is."""
+        """Return, for each phase pair of `places`, the index of the pair whose mirrored motion it has, or its own."""
         places = self.places(model, scene)
         if scene.recorded:
             return places

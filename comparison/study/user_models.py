@@ -35,9 +35,9 @@ REFERENCE_MODEL_KEYS = [model.key for model in MODEL_HIERARCHY if model.side == 
 MAX_PHASES = 8  # largest number of phases per axis for an engine, because the cost of its calls is unknown
 TIME_LIMIT = 60.0  # s, default limit of processor time for one call with one phase pair
 OFFERED_ARGUMENTS = ("tolerance", "regularization", "equations")  # arguments that a function receives if it names them
-# Packages of this project and folders of installed packages: a note on an error of the user points to no line in them
+# Packages of this project and folders of installed ones: a note on where a user's engine failed names no line in them
 OWN_PACKAGES, INSTALLATION_FOLDERS = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
-UNKNOWN_ERROR = np.nan  # error of an engine that states none
+UNKNOWN_ERROR = np.nan  # error estimate of an amplification by a user's engine that states none
 MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status that a message repeats
 
 
@@ -195,7 +195,7 @@ def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
 
 
 def _read_outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
-    """Return the outcome of each phase pair, "solver failed" for the engine's own words, and a message with them."""
+    """Return each phase pair's outcome, "solver failed" if its status is no known one, and a message that quotes it."""
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")

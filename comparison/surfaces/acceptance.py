@@ -123,7 +123,7 @@ def _list_breaches(
 
 
 def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
-    """Return the key of a pair of models, but "total" for "translational" where these are the same two models."""
+    """Return key `pair`, but "total" for "translational" if the last model is the only engine: the same two models."""
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and engines == [compared["total"].second.key]

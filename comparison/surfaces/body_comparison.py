@@ -32,7 +32,7 @@ class BodyComparison:
 
     @cached_property
     def pairs(self) -> list[Pair]:
-        """Return the pairs of models to compare: first with last, both programs on the same equations, and others."""
+        """Return pairs of models to compare: first with last, `reference` with Exudyn on the same equations, others."""
         return self.study.pairs(self.scene)
 
     @cached_property
@@ -93,7 +93,7 @@ def compare_bodies(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Bod
 def count_independent_phases(
     study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
 ) -> int:
-    """Return the number of phase pairs in `known` (K, K); those that symmetries of all models relate count once."""
+    """Return the number of phase pairs in `known` (K, K); pairs with mirrored motions in all models count once."""
     if scene.recorded:
         return int(known.any())
     reduced = replace(study, full=False)  # A full study also computes mirrored phases, which are not independent.

@@ -22,7 +22,7 @@ TOTAL = "total"  # key of the difference between the first and the last model
 @result
 class BudgetEntry(DifferenceStatistics):
     """
-    Statistics of the difference of two successive models, or of the total, for one body; base: the chain's first model.
+    Statistics of a body's difference between two successive models, or first and last; base: the chain's first model.
 
     Its signed mean is the bar in `waterfalls`.
     """

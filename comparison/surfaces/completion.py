@@ -36,11 +36,11 @@ Indices = NDArray[np.intp]  # index of each phase pair on the whole grid
 
 MIN_SPATIAL_PER_AXIS = 9  # phases per axis of the spatial model, below which its values are drawn as points
 MIN_VALUES = 16  # smallest number of phase pairs from which a surface is interpolated
-CONFIDENCE = 0.95  # probability that at most the stated share of phase pairs is off by more than the stated error
+CONFIDENCE = 0.95  # probability that no larger share of a completed surface than stated is off by more than its error
 # Phase pairs held out per model and scene: with CONFIDENCE at most 1 - 0.05^(1/59) = 5 % exceed their largest error.
 HELD_OUT_PAIRS = 59
-# Largest share of phase pairs that may be off by more than the stated error: none is stated where the held-out values
-# are too few to show this share.
+# Largest share of phase pairs of a completed surface that may be off by more than its error: where held-out values are
+# too few to show this share, no surface is completed.
 MAX_SHARE_BEYOND_ERROR = 0.1
 POINTS_PER_TASK = 8  # largest number of held-out phase pairs in one task
 CERTIFICATE_VARIABLES = {  # meaning of each variable that surfaces.nc stores with a completed surface
@@ -65,7 +65,7 @@ class HeldOut:
 @result
 class Completion:
     """
-    One body's surface of a model that is computed on fewer phases than the study has, completed through a finer model.
+    A body's amplification by a model on fewer phases than the study has, interpolated through a model that has all.
 
     It is the finer model plus the interpolated difference of the two. With the confidence stated at most a share of the
     phase pairs that were not computed is off by more than the error. The completed values are the variable `completed`
@@ -167,7 +167,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
 
 def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
     """
-    Return the held-out phase pairs: random, not computed by the model, as indices on the whole grid, alpha2 fastest.
+    Return random phase pairs outside the model's grid, to check interpolation: flat indices on all, alpha2 fastest.
 
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
     """
@@ -192,7 +192,7 @@ def bound_share_beyond_error(held_out: int) -> float:
 def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """Return a completed surface, or why none, per body: of models without all phases, and of a coarse spatial one."""
+    """Return by body the completed surface, or why none, of each model on part of the phases or, if spatial, on few."""
     if scene.recorded:
         return []
     listed = []
@@ -206,7 +206,7 @@ def complete_surfaces(
 
 
 def add_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
-    """Return `surfaces` with `completed`, amplification on all phases where it may be drawn, and its error measures."""
+    """Return `surfaces` plus `completed`, amplification interpolated to all phases if accurate enough, and errors."""
     nothing, meaning = np.full(surfaces["mu"].shape, np.nan), "mu on all phases, completed through a finer model"
     about = {"units": "1", "long_name": meaning, "confidence": CONFIDENCE}
     found = surfaces.assign(completed=(surfaces["mu"].dims, nothing, about))
@@ -222,7 +222,7 @@ def add_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Data
 
 
 def _find_finer_model(study: Study, scene: Scene, model: Model) -> Model | None:
-    """Return the nearest model before this one that has all phases."""
+    """Return the last model before `model`, in the order of added effects, that is computed at every phase, or None."""
     models = study.compared(scene)
     return next((before for before in reversed(models[: models.index(model)]) if study.stride(before) == 1), None)
 
@@ -283,7 +283,7 @@ def _complete_body(
 
 
 def _explain_refusal(study: Study, finer: Model | None, model: Model, computed: int, unused: HeldOut | None) -> str:
-    """Return why the difference of two models is not interpolated, "" if it is; computed: number of values of both."""
+    """Return why the models' difference is not interpolated, or ""; computed: phase pairs where both have a value."""
     count = len(study.phase_indices(model))
     if finer is None:
         return "no model before it has all phases"

@@ -45,7 +45,7 @@ class GridMean:
 @result
 class Difference(DifferenceStatistics):
     """
-    Difference of two models in one body: second minus first, relative to the base, on the finest common grid of phases.
+    Difference of two models' amplifications of a body: second minus first, relative to model `base`, on common phases.
     """
 
     pair: Annotated[str, "key of the pair: total, translational, like-for-like, supremum, reading, or of an effect"]
@@ -113,7 +113,7 @@ def compute_difference_statistics(scene: str, difference: ModelDifference) -> di
 
 
 def make_difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
-    """Return statistics of two models' difference; independent, not_ok: numbers of phase pairs, see `Difference`."""
+    """Return a difference's statistics; independent: phase pairs, mirrored ones once; not_ok: pairs not solved "ok"."""
     pair, size, known = difference.pair, difference.size, difference.known
     grid = len(size)
     stated = known & np.isfinite(difference.uncertainty)

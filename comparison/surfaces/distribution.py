@@ -14,7 +14,7 @@ from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
 
-CURVE_PROBABILITIES = np.linspace(0.01, 0.99, 50)  # probabilities of the points of the drawn curve
+CURVE_PROBABILITIES = np.linspace(0.01, 0.99, 50)  # probabilities of points of the drawn amplification distribution
 
 
 @result

@@ -21,13 +21,13 @@ SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
 }
-# For each effect: key of the pair of models that differ by it if the peak is the literal supremum
+# For each effect: key of the pair of models that differ by it if peaks include the limits at stops (literal supremum)
 SUPREMUM_PAIRS = {"geometry": "geometry-supremum"}
 
 
 @result
 class Effect:
-    """Mean difference that one effect makes for a body, and its mean if effects are added in another order."""
+    """Mean change of a body's amplification by an effect of a model, and the mean if effects come in another order."""
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]
@@ -121,7 +121,7 @@ class Headline:
 
 
 def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
-    """Return the total difference of one body in numbers and words; bars: its waterfall of effects."""
+    """Return the total difference of one body in numbers and words; bars: its split into effects that add up to it."""
     total, pair, largest = comparison.total, comparison.total_pair, bars.largest
     scene = comparison.scene
     effects = compute_effects(comparison)
@@ -215,7 +215,7 @@ def compute_effects(comparison: BodyComparison) -> tuple[Effect, ...]:
 
 
 def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
-    """Return resolved effects of either sign above a fifth of the total, largest first; none if that is unresolved."""
+    """Return resolved effects (see `Effect`) above a fifth of the total, largest first; none if that is unresolved."""
     if not total.mean_is_resolved:
         return []
     named = [effect for effect in effects if effect.resolved and abs(effect.mean) > NAMED_SHARE * abs(total.mean)]

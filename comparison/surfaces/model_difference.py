@@ -90,7 +90,7 @@ class ModelDifference:
         return float(values[place[0] // self.stride, place[1] // self.stride])
 
     def at_stride(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
-        """Return those of `values`, an array like `size`, that are at every `stride`-th phase of the study."""
+        """Return those of `values`, on this difference's grid, that are at every `stride`-th phase of the study."""
         return values[:: stride // self.stride, :: stride // self.stride]
 
 

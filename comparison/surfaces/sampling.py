@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 from comparison.study.study import nested_grids
 
-SCATTER_FACTOR = 1.5  # estimated error of a mean over all phases, divided by the scatter of means on shifted grids
+SCATTER_FACTOR = 1.5  # ratio of the estimated error of a mean over phases to the scatter of means on shifted grids
 MIN_INDEPENDENT_PHASES = 4  # smallest number of independent phase pairs from which a mean over all phases is estimated
 
 

@@ -25,7 +25,7 @@ MAX_NAMED_SCENES = 4  # largest number of scenes that a sentence names
 
 
 def word_headline(numbers: Headline) -> str:
-    """Return the headline of one body: difference, causes, agreement of the codes, and the literal supremum."""
+    """Return one body's headline: difference, causes, `reference` against Exudyn, and peaks with limits at stops."""
     parts = [word_total(numbers), word_causes(numbers), word_agreement(numbers), word_supremum(numbers)]
     rest = " ".join(part for part in parts if part)
     where = f"{numbers.scene}, {numbers.name}, {numbers.reading}"
@@ -125,7 +125,7 @@ def _word_multiple(ratio: float) -> str:
 
 
 def word_supremum(numbers: Headline) -> str:
-    """Return how much the literal supremum of the first model's equations exceeds the amplification as integrated."""
+    """Return by how much limits at stops (literal supremum) raise the amplification by the first model's equations."""
     if math.isnan(numbers.supremum_mean):
         return ""
     if numbers.supremum_maximum < EQUAL_DIFFERENCE:
@@ -137,7 +137,7 @@ def word_supremum(numbers: Headline) -> str:
 
 
 def name_engine(title: str) -> str:
-    """Return how a sentence names an engine of the user, next to Exudyn."""
+    """Return the name of a user's engine in a sentence, marked as the user's to tell it from Exudyn."""
     return f"{title} (your engine)"
 
 
@@ -221,7 +221,7 @@ def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
 
 def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     """
-    Return the result of the whole study in at most three sentences; measured: its last sentence.
+    Return the result of the whole study in at most three sentences; measured: the last, on measurements.
 
     How far the paper's equations lie from the last model, in which reading; how closely the codes agree where they
     solve the same, and what the other reading is worth; what was measured.
@@ -248,7 +248,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
         single = f", and by {word_difference(*low)} to {word_difference(*high)} at single phase pairs"
     first = " or ".join(sorted({each.first_name for each in known}))
     second = " or ".join(sorted({each.second_name for each in known}))
-    # A scene in which both definitions of the peak give the same adds no reading of its own.
+    # A scene whose peaks are the same as integrated and as literal supremum is worded so only if all scenes are such.
     readings = sorted({each.reading for each in known} - {BOTH_READINGS}) or [BOTH_READINGS]
     return (
         f"The largest accelerations that {first} give, read {' or '.join(readings)}, differ from those of "
@@ -258,7 +258,7 @@ def _word_largest(known: Sequence[Headline]) -> str:
 
 
 def _word_codes(known: Sequence[Headline]) -> str:
-    """Return the difference of the codes for the same equations, and how much higher the literal supremum is."""
+    """Return how far `reference` and Exudyn differ for the same equations, and how far limits at stops raise peaks."""
     parts = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
@@ -313,7 +313,7 @@ def word_causes_cell(numbers: Headline) -> str:
 
 
 def word_agreement_cell(numbers: Headline) -> str:
-    """Return the text on the codes' difference for the same equations, for the table at the top of the report."""
+    """Return the text on `reference` against Exudyn for the same equations, for the table at the top of the report."""
     if math.isnan(numbers.like_for_like):
         return "not compared"
     verdict = {True: "met", False: "not met", None: "error unknown"}[numbers.like_for_like_met]
@@ -321,7 +321,7 @@ def word_agreement_cell(numbers: Headline) -> str:
 
 
 def word_supremum_cell(numbers: Headline) -> str:
-    """Return the text on the excess of the literal supremum for the table at the top of the report."""
+    """Return the text on how much limits at stops raise the amplification, for the table at the top of the report."""
     if math.isnan(numbers.supremum_mean):
         return "no difference" if numbers.reading == BOTH_READINGS else "not compared"
     if numbers.supremum_maximum < EQUAL_DIFFERENCE:

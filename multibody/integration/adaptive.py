@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 # The largest step is divided so many times by `STEP_RATIO` in the first chunk, in which the contact force settles.
 FIRST_DIVISIONS = 2
 
-# Largest ratio of the number of steps in a chunk of largest steps to that in the chunk before it
+# If the step has its largest size or friction yields: most steps in a chunk, over their number in the chunk before
 MAX_CHUNK_GROWTH = 2
 
 # Number of Newton iterations that count as one step of the budget: a step that needs more counts as several.
@@ -307,7 +307,7 @@ class _AdaptiveRun:
         return True
 
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:
-        """Enlarge the step, or the next chunk of largest steps, if the end of a chunk of `asked` steps allows it."""
+        """Enlarge the step if recent ones allow it; at the largest size, choose how many come next from `asked`."""
         # The next chunk grows from the number of steps asked for, not from a smaller one that ended at a sample of the
         # record: otherwise one short chunk would make the next ones short, and restarts cost accuracy.
         at = self.at

@@ -45,7 +45,7 @@ CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current  # the engine's name fo
 def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """Return the equilibrium near `start` under the plate's acceleration, or None; `start` if no body rotates."""
+    """Return the equilibrium near `start` as the ground plate accelerates, or None; `start` itself without rotation."""
     if model.kinematics is None:
         return start
     static_penetration = model.bearing_penetration or penetration
@@ -130,10 +130,10 @@ class _EquilibriumSolver:
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
         """Find coordinates in balance, moved from `begin` along `moved` (n, s), with reactions along `held` (n, t)."""
         # Newton's method is applied to the engine's own forces and their Jacobian. The unknowns are displacements along
-        # `moved` and forces along `held`, which hold the slow motions in place. The gap of every open contact must be
-        # zero, so that a contact that would have to pull carries no force. The matrix may be singular where friction
-        # alone holds a platform on a plane, hence least squares. Iterations continue below the bound of the residual
-        # until they no longer halve it, because of rounding.
+        # `moved` and forces along `held`, which hold the slow motions in place. A contact that would have to pull
+        # counts as open: it carries no force, and its gap is set to zero instead. The matrix may be singular where
+        # friction alone holds a platform on a plane, hence least squares. Iterations continue below the bound of the
+        # residual until they no longer halve it, because of rounding.
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf

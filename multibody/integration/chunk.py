@@ -51,7 +51,7 @@ def slip_change_ratios(
         x, y, z = accelerations[row, platform[0]], accelerations[row, platform[1]], accelerations[row, platform[2]]
         size = math.sqrt(x * x + y * y + z * z)
         if row > 0:
-            # the change of an acceleration within a step counts twice, because the next steps change by as much
+            # twice the change of the acceleration in this step counts, if larger: the next steps change it by as much
             dx, dy, dz = x - before_x, y - before_y, z - before_z
             size = max(size, 2.0 * math.sqrt(dx * dx + dy * dy + dz * dz))
         step_ratio[row] = per_change * size / max(smallest_loaded_slip(contact, row), corner)

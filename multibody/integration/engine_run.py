@@ -23,13 +23,13 @@ from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-# Acceleration (T, 3) of the plate as a function of times (T,), in units of the model.
+# Acceleration (T, 3) of the ground plate under the bearings as a function of times (T,), in units of the model.
 Ground = Callable[[Array], Array]
 
 # A value of a run below this share of its largest one is not the largest at any other level of accuracy either.
 SETTLED_FRACTION = 0.9
 
-# Time in which out-of-plane warping of the supports dies out after they close, over the square root of its compliance
+# Model time from a closing until the supports' warping has died out and its load is read, over sqrt(warping compliance)
 WARPING_RELAXATION = 20.0
 
 

@@ -39,17 +39,17 @@ SAFETY_OF_ROUNDING = 3.0
 # Noise of the contact force as a share of the bound of its rounding error, if the platform does not rotate (measured:
 # up to 0.27; up to 0.10 if it rotates).
 FORCE_NOISE_RATIO = 0.5
-FORCE_NOISE_RATIO_OF_TURNING = 0.2  # the same share if the platform rotates
+FORCE_NOISE_RATIO_OF_TURNING = 0.2  # noise of contact force over its bound of rounding error, if the platform rotates
 
-# Up to this force on the platform of a flat slider, as a multiple of Newton's residual, all runs may miss a force as
-# large as the residual, because the engine takes a step without an iteration (measured: up to 34).
+# Largest force on a flat slider's platform, over Newton's residual, up to which the error includes the whole residual:
+# the engine may take a step without an iteration and miss as much in all runs (measured: up to 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
 
 # Safety factor on how much bearings of finite stiffness change the peaks, if only a run in larger steps has shown it
 SAFETY_OF_BEARINGS = 2.0
 
-# Time from the start in which stiff links oscillate, as a multiple of the square root of the penetration (measured:
-# their peaks come at 1.7).
+# Time from the start in which a peak may come from oscillating stiff links, over the contact's response time, which is
+# the square root of its penetration in model units (measured: these peaks come at 1.7).
 STARTING_TIME = 4.0
 
 # Factor by which a level of accuracy reduces the error: smallest at stops, largest in smooth motion. A factor above
@@ -160,7 +160,7 @@ def impact_error_floor(before: int) -> float:
 
 
 def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
-    """Return errors (N,), after impacts at least a share of the peaks and, if levels scatter, the peaks' range."""
+    """Return errors (N,), raised after impacts to a share of the peaks, and to a peak's range where levels scatter."""
     if not run.impacts:
         return errors
     widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)

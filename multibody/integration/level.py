@@ -52,14 +52,14 @@ MAX_CONTACT_LAG = 0.3
 # would vibrate with stiff links on the slope of the sphere, and its damper would end this vibration at every level.
 # Where bodies rotate, the moment of the links also presses the supports, so that the time is shorter.
 MAX_CONTACT_RESPONSE_TIME = 0.25
-MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04  # the same where bodies rotate
+MAX_CONTACT_RESPONSE_TIME_OF_ROCKING = 0.04  # response time * angular frequency at most, if bodies rotate
 
 # Largest response time of the contact as a share of the duration, where the contact force changes: a slower contact has
 # not followed the change when the motion ends, and a run on a softer contact would not show that error.
 MAX_CONTACT_RESPONSE_TIME_OVER_DURATION = 0.05
 
-# Largest ratio of the change of contact force, in weights, to the peak, in units of g, for which a contact may be too
-# slow to follow the change: it is vertical, and adds to the horizontal acceleration as a square.
+# Largest ratio of the change of contact force, in weights, to the peak, in units of g, at which a contact may be too
+# slow to follow: a vertical acceleration a_z that it misses would change a horizontal peak a to sqrt(a^2 + a_z^2) only.
 MAX_NEGLIGIBLE_FORCE_CHANGE = 0.03
 
 # Relative tolerance of the forces in Newton's iteration at level 0. No level has one below MIN_NEWTON_TOLERANCE,
@@ -78,8 +78,8 @@ MAX_SQUARED_STEP_OVER_PENETRATION = 1e3
 MAX_ROUNDING_SHARE = 0.25
 MIN_PEAK = 0.2  # in units of g, smallest peak for which MAX_ROUNDING_SHARE holds
 
-# Largest tolerance that counts for rounding: a looser one permits no more, since rounding may grow a hundredfold at a
-# stop.
+# Largest tolerance in the bound on the rounding error of contact forces: a looser one permits no larger error, since it
+# may grow a hundredfold at a stop.
 MAX_TOLERANCE_FOR_ROUNDING = 1e-3
 
 # A loading below WEAK_LOADING, in units of g, hardly changes the contact force. Rounding is then compared with the
@@ -91,7 +91,7 @@ MAX_WEAK_PENETRATION = 4e-4  # largest penetration under the weight at a weak lo
 MIN_PEAK_AS_DIVISOR = 1e-300
 
 # Compliance of real bearings against out-of-plane warping of their ring, in pendulum radii under the weight: results
-# with openings hold for it. Supports that all stay closed may have COMPLIANCE_OF_CLOSED_SUPPORTS: load is then even.
+# with openings hold for it. If all stay closed, up to COMPLIANCE_OF_CLOSED_SUPPORTS makes warping carry little load.
 PHYSICAL_WARPING_COMPLIANCE = 4e-4
 COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4  # largest compliance against warping if all supports are closed, in pendulum radii
 
@@ -189,7 +189,7 @@ class Level:
         return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:
-        """Return a coarse level, of the same contact in steps `SCAN_RATIO` times as large, to scan the later motion."""
+        """Return the level with the same contact and `SCAN_RATIO` times the step, to search later motion for peaks."""
         return replace(
             self,
             step=SCAN_RATIO * self.step,
@@ -308,7 +308,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return the penetrations of softest and stiffest contact, in model units; slowest: longest response time."""
+    """Return penetrations of softest and stiffest contact, in model units; slowest: upper bound of response time."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
     # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that

@@ -56,7 +56,7 @@ MAX_WORK_SHARE_OF_TRIAL = 0.2
 # Largest ratio of the numbers of steps of two successive levels, to predict the work: steps become half as long.
 MAX_WORK_GROWTH = 2.0
 
-# Number of largest steps from the last large value of a run to the early stop of the next run.
+# Time from the last value near its largest in a run to the early stop of the next run, over the first level's step
 STEPS_AFTER_SETTLING = 20.0
 
 # Largest change of a peak between two levels at which a run may stop early, as a share of its excess over later values.
@@ -105,7 +105,7 @@ class LevelRuns:
         number = len(self.runs)
         if number == len(self.levels):
             return False
-        # one more run shows the error of a contact no stiffer than at the level before, and one that of stiff supports
+        # one run, one more for the error of a contact no stiffer than before, one more for that of stiff supports
         runs = 1.0 + self.shares_contact(number) + (self.real_bearings_run is not None)
         # one level alone has no error estimate, so that a second level is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
@@ -265,7 +265,7 @@ class LevelRuns:
         self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
-        """Soften supports and contact of all later levels as the warping load and the peaks of `run` require."""
+        """Soften later levels: supports for forces without resultant (warping) in `run`, contacts for small peaks."""
         done = len(self.runs)
         if run.lifts_off:
             self.max_warping_compliance = PHYSICAL_WARPING_COMPLIANCE
@@ -286,7 +286,7 @@ def _with_physical_warping_compliance(level: Level) -> Level:
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
-    """Return `level` with warping compliance <= `softest`: the error by warping load of `run` stays in tolerance."""
+    """Return `level` with supports as soft, up to `softest`, as forces without resultant (warping) in `run` require."""
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)
@@ -296,7 +296,7 @@ def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, so
 
 
 def _compute_work_until(run: EngineRun, stop: float, end: float) -> float:
-    """Return the number of engine steps that `run` would have taken up to `stop`, without the scan of later motion."""
+    """Return the number of engine steps that `run` would have taken up to `stop`, without searching later motion."""
     own = min(run.scanned_from, end)
     shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return shorter * run.work

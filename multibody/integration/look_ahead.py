@@ -35,7 +35,7 @@ QUIET_TIME_BEFORE_SCAN = 2.0 * math.pi
 
 
 def can_look_ahead(model: EngineModel, level: Level) -> bool:
-    """Return whether a scan in larger steps saves work and is possible: not with frictional heat or a dense record."""
+    """Return whether searching later motion in larger steps is possible and saves work: no heat, no dense record."""
     return (
         not (model.friction is not None and model.friction.law.heat)
         and float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
@@ -43,7 +43,7 @@ def can_look_ahead(model: EngineModel, level: Level) -> bool:
 
 
 def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
-    """Return `level`, or the coarser level of its scan where a run may look ahead; whole: look-ahead is not allowed."""
+    """Return the level of a run's longest steps: of its search for late peaks, or `level` if `whole` or no search."""
     return level.coarsen() if can_look_ahead(model, level) and not whole else level
 
 
@@ -83,7 +83,7 @@ def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineR
 
 
 def _begin_scan(run: EngineRun, model: EngineModel) -> EngineRun:
-    """Return an empty scan result whose largest values start at NEAR_PEAK_FRACTION of those of `run`."""
+    """Return an empty result for a search for later peaks, which count above NEAR_PEAK_FRACTION of those of `run`."""
     ahead = begin_run(model)
     ahead.peaks.value[:] = NEAR_PEAK_FRACTION * run.peaks.value
     ahead.max_displacement = NEAR_PEAK_FRACTION * run.max_displacement

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class PhasePair:
     """
-    One phase pair (2,), rad, of a scene on an assembled model.
+    Scene, assembled model and initial phases (2,), rad, of the ground motion for which the engine is run.
 
     initial: state from which the motion starts; None is at rest. in_full: whether every run without an early stop takes
     accurate steps to the end of the motion.
@@ -47,7 +47,7 @@ class PhasePair:
 
     @cached_property
     def ground(self) -> Ground:
-        """Acceleration of the plate as a function of time, in units of the model."""
+        """Acceleration of the ground plate under the bearings as a function of time, in units of the model."""
         units, acceleration = self.model.units, acceleration_of_ground(self.scene, self.phase)
         return lambda time: acceleration(time * units.time) / units.acceleration
 

@@ -43,8 +43,8 @@ MIN_IMPACT_SPEED = 1e-5
 # Force of the contact's damper at a closing, in weights, beyond which no peak counts until contact forces have settled.
 MAX_QUIET_FORCE = 1e-3
 
-# After a closing no peak is read until contact forces have settled: for this multiple of the square root of the
-# penetration, or for BEARING_SETTLING_TIME if that is longer.
+# After a closing no peak is read until contact forces have settled: for this multiple of the contact's response time,
+# the square root of its penetration in model units, or for BEARING_SETTLING_TIME if that is longer.
 CONTACT_SETTLING_TIME = 40.0
 BEARING_SETTLING_TIME = 0.04  # time in which real bearings spring back after a closing, in the model's unit of time
 

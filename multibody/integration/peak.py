@@ -161,7 +161,7 @@ class PeakReader:
                 self._update_largest(body, *_read_corner(time, size, slip, left, self._threshold, corners))
 
     def _update_largest(self, body: int, value: float, error: float, instant: float) -> None:
-        """Keep a value if it is the largest so far; the error covers every larger value that earlier errors allow."""
+        """Keep a value if it is a body's largest so far; the error covers the largest sum of value and error so far."""
         possible = max(value + error, self.value[body] + self.sampling_error[body])
         if value > self.value[body]:
             self.value[body], self.instant[body] = value, instant
@@ -188,7 +188,7 @@ def _read_parabola_maximum(
     time: Array, size: Array, row: int, first: int, last: int, others: tuple[int, int]
 ) -> tuple[float, float, float]:
     """
-    Return the maximum of the parabola through the highest sample and two others, or the sample itself near a corner.
+    Return the maximum of a parabola through the highest sample and two others, or the sample if slopes jump nearby.
 
     The result is value, error and instant.
     """
@@ -231,7 +231,7 @@ def _alternating_part(time: Array, size: Array) -> float:
 
 def _error_of_lone_sample(time: Array, size: Array, row: int, corners: list[int]) -> float:
     """
-    Return the error of a sample alone between two corners: its difference from the extrapolated samples before them.
+    Return error of a lone sample between two corners, slip at v_reg: its difference from extrapolated earlier samples.
 
     The error is zero at the beginning of the motion, and if there are other samples between the corners.
     """

@@ -36,8 +36,8 @@ MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096  # bounds of the steps in
 # Largest first step after a loading kink / (relaxation time of friction * allowed slip change, `Level.slip_change`)
 KINK_STEP_RATIO = 4.0
 
-# Largest step times the rate at which friction that depends on the slip speed changes this speed (`SpeedFriction`): as
-# a multiple of the level's slip_change, and at any level. From 2/3 on, errors of friction alternate and grow.
+# Step times the rate at which friction that depends on the slip speed changes this speed: at most the first constant
+# times the level's slip_change, and at most the second. At products from 2/3 on, errors of friction alternate and grow.
 FEEDBACK_PER_SLIP_CHANGE, MAX_STEP_TIMES_FEEDBACK = 2.0, 0.3
 
 # Largest number of steps, an even one, over which the rate of a gap is averaged.
@@ -103,7 +103,7 @@ class StepControl:
         return round(min(max(steps, MIN_SMALL_CHUNK_STEPS), MAX_SMALL_CHUNK_STEPS))
 
     def count_largest_steps(self, motion: EngineMotion) -> int:
-        """Return the number of largest steps to try after `motion`, until its slip speed needs smaller ones."""
+        """Return how many steps of the largest size to try after `motion`, until its slip speed needs smaller ones."""
         corner, level = self.model.corner, self.level
         if not math.isfinite(corner):
             return MAX_CHUNK_STEPS

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 # Damping ratio of the contact: at 1 its vibration along the normal dies out within a few of its periods.
 DAMPING_RATIO = 1.0
 
-# Rounding error of a position, in the model's unit of length; over the penetration, that of contact force, in weights
+# Rounding error of a position, in model units; divided by the contact's penetration it is that of its force, in weights
 POSITION_ROUNDING = 1e-15
 
 # Slip speed, in units of velocity, up to which the friction coefficient of a lubricated contact grows linearly with

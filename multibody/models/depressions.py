@@ -58,7 +58,7 @@ class Depressions:
         sinking = max([largest[place] for place in self.vertical], default=0.0)
         moved = turn * self._farthest
         height_in_rim = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)
-        return height_in_rim > 0.0  # if so, `turn` is also below 1 rad
+        return height_in_rim > 0.0  # if so, the rotation `turn` is also below 1 rad, so that no tilt is 90 degrees
 
     @cached_property
     def _farthest(self) -> float:

@@ -106,7 +106,7 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
     def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
-        """Return each step's relative change (T,): of springs, or of velocity over slip speed, weighted, if larger."""
+        """Return each step's relative change (T,): of springs or, if larger, of velocity over slip speed, weighted."""
         turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
         slip = np.maximum(motion.slip[1:], end)[:, self._mark_sliding(state)].min(axis=1, initial=math.inf)
         turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip

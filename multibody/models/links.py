@@ -178,7 +178,7 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Set a link's stiffness: `shear` (2, 2), `twist`, otherwise `stiff`; carried: mass above, also times x and y."""
+    """Set a link's stiffness: `shear` (2, 2), `twist`, `stiff` for axis and tilt; carried: mass m above, m x, m y."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear

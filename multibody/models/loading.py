@@ -15,7 +15,7 @@ from reference.problem import Scene, exponents
 
 class SymbolicGround:
     """
-    Acceleration of the plate as a symbolic expression, in units of the model, whose two phases can be changed.
+    Acceleration of the ground plate by harmonics as a symbolic expression, in model units, with two changeable phases.
 
     knots: instants at which steps must end; none here. near: distance within which an instant counts as a knot.
     decay_rate: decay rate of the harmonic that decays fastest, per unit of time.
@@ -43,7 +43,7 @@ class SymbolicGround:
         return True
 
     def accelerates(self, axis: int) -> bool:
-        """Return whether the plate is accelerated along `axis`."""
+        """Return whether the loading accelerates the ground plate along `axis`."""
         return bool(self.amplitudes[axis].any())
 
     def acceleration_along(self, axis: int, time: Any) -> Any:
@@ -61,11 +61,11 @@ class SymbolicGround:
         return sum(terms[1:], terms[0]) if terms else exudyn.symbolic.Real(0.0)
 
 
-Ground = SymbolicGround | RecordedGround  # acceleration of the plate, as the engine reads it
+Ground = SymbolicGround | RecordedGround  # acceleration of the ground plate for the engine: by harmonics or by a record
 
 
 def make_ground(mbs: Any, scene: Scene, units: Units) -> Ground:
-    """Return the acceleration of the plate for the engine, from the record or the harmonics of the scene."""
+    """Return the acceleration of the ground plate for the engine, from the record or the harmonics of the scene."""
     return RecordedGround(mbs, scene, units) if scene.recorded else SymbolicGround(scene, units)
 
 
@@ -83,7 +83,7 @@ def add_coordinate_load(mbs: Any, node: Any, coordinate: int, load: float = 0.0)
 
 
 class LoadedCoordinate(NamedTuple):
-    """Coordinate of a node, its mass, and the axis of the plate's acceleration that loads it."""
+    """Coordinate of a node, its mass, and the axis of the ground plate's acceleration that loads it."""
 
     node: Any
     coordinate: int
@@ -92,7 +92,7 @@ class LoadedCoordinate(NamedTuple):
 
 
 def load_coordinates(mbs: Any, ground: Ground, pushes: Iterable[LoadedCoordinate]) -> list[Any]:
-    """Add the load -m times the plate's acceleration to every coordinate, and return the symbolic expressions."""
+    """Add the load -m times the ground plate's acceleration to every coordinate; return the symbolic expressions."""
 
     def force(mass: float, axis: int) -> Any:
         """Return the inertial load -m a(t) on a coordinate, as the engine calls it."""

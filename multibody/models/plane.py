@@ -41,7 +41,7 @@ def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, law: C
 
 
 def set_plane_extent(mbs: Any, contact: Any, distance: float, height: float) -> None:
-    """Set the plane's triangle at `height` large enough for a platform that moves by `distance`, in units of length."""
+    """Set the triangle for the plane at `height`, large enough for a platform that moves `distance`, in model units."""
     extent = max(MIN_TRIANGLE_EXTENT, TRIANGLE_EXTENT_OVER_TRAVEL * distance)
     mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(extent, height))
 

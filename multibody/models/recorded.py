@@ -24,7 +24,7 @@ KNOT_TOLERANCE = 1e-6
 
 
 class RecordedGround:
-    """Acceleration of the plate from a record, in units of the model, with the methods of `SymbolicGround`."""
+    """Acceleration of the ground plate from a record, in model units, for the engine; harmonics: `SymbolicGround`."""
 
     decay_rate = 0.0
 
@@ -49,7 +49,7 @@ class RecordedGround:
         self._enter_interval(int(np.searchsorted(self._time, time + self.near, side="right")))
 
     def accelerates(self, axis: int) -> bool:
-        """Return whether the plate is accelerated along `axis`."""
+        """Return whether the record accelerates the ground plate along `axis`."""
         return bool(self._samples[:, axis].any())
 
     def acceleration_along(self, axis: int, time: Any) -> Any:

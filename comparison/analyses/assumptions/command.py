@@ -63,7 +63,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def _load_spatial_scene(name: str) -> Scene:
-    """Return a scene with phases and the data that the spatial model needs; raise SceneError for any other."""
+    """Return a scene of two loading harmonics with the data that the spatial model needs; else raise SceneError."""
     scene = load_scene(name)
     if scene.recorded:
         rule = "rings and heights are varied at phases, which a record has not: give a scene of two frequencies"

@@ -20,15 +20,15 @@ from comparison.wording import percent, word_difference
 from reference.problem import Scene
 
 NO_EFFECT = "no effect by symmetry"  # text in place of a change of amplification that a symmetry makes zero
-Base = Literal["the translational model", "the stated spatial model"]  # model that a change is relative to
+Base = Literal["the translational model", "the stated spatial model"]  # model that amplifications are compared with
 TRANSLATIONAL: Base = "the translational model"  # base of a change of amplification, as a sentence names it
-STATED: Base = "the stated spatial model"  # base of a change: spatial model, building as the scene states it
+STATED: Base = "the stated spatial model"  # model that amplifications are compared with: spatial, unvaried scene
 SHARE = CHANGE_LIMITS[0]  # largest relative change of a body's amplification with which an assumption holds
 
 
 @dataclass(frozen=True)
 class Change:
-    """Largest change of one body's amplification over the phase pairs, with sign and error, and its base model."""
+    """Largest change of a body's amplification over phase pairs, with sign and error; base: model it is relative to."""
 
     scene: str
     body: int
@@ -51,7 +51,7 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return a body's largest change of amplification over phase pairs, from `stated` or (None) translational model."""
+    """Return the largest change of a body's amplification over phases, from spatial `stated` or translational model."""
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
@@ -100,7 +100,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
-# `describe_range` fills in the sizes {holds} and {fails}, the direction and the sense of rotation.
+# `describe_range` fills phrases in WORDS with the sizes {holds} and {fails}, the {direction}, the {sense} of rotation.
 
 
 def describe_range(validity: ValidityRange) -> str:
@@ -173,7 +173,7 @@ def _word_worst(trial: DirectionTrial) -> str:
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
-    """Return a line each for oval, offset and yaw: change of amplification at the first size in the worst direction."""
+    """Return lines on oval ring, offset and turned bodies: amplification change at FIRST_SIZE in worst direction."""
     lines = []
     for key in DIRECTED:
         trials = [each for each in found.directions if (each.scene, each.key) == (scene.name, key)]
@@ -204,7 +204,7 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
 
 
 def assumption_lines(found: Validity, scene: Scene) -> list[str]:
-    """Return the text lines below the plots: worst directions, bars under load, variations without effect or value."""
+    """Return text below plots: quantities without effect on amplification, worst directions, bar shortening, errors."""
     blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
     lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
     cells = [cell for cell in found.cells if cell.scene == scene.name]

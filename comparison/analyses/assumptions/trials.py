@@ -30,14 +30,15 @@ DURATION = 6.0  # s, longest duration of motion computed: the loading is stronge
 CHANGE_LIMITS = (0.01, 0.05)  # relative changes of amplification up to which an assumption holds, strict and loose
 SUFFICIENT_ERROR = 0.2 * CHANGE_LIMITS[0]  # relative error of the amplification small enough for these limits
 DIRECTION_PHASES = ((2.0, 0.7),)  # rad, phase pair at which the directions of a variation are compared
-DIRECTION_V_REG = 1e-2  # m/s, ten times the study's v_reg: a third of its cost, the same worst direction is found
-# The search for the size at which a limit is exceeded ends once its bounds differ by less than this factor.
+# m/s, slip speed below which friction is linear where the worst direction of a variation is searched
+DIRECTION_V_REG = 1e-2  # ten times the study's: a third of its cost, the same worst direction is found
+# The search for the variation size at which a limit is exceeded ends when its bounds differ by at most this factor.
 BISECTION_RATIO = 1.25
 
 
 @dataclass(frozen=True)
 class Trial:
-    """Amplification mu and error, (M, N), of N bodies at M phase pairs in a varied scene (None: as stated); cost, s."""
+    """Amplification mu, error (M, N) at M phase pairs, N bodies; variation None: scene as stated; cost: processor s."""
 
     variation: Variation | None
     mu: Array
@@ -54,7 +55,7 @@ class Trial:
 
 @result
 class DirectionTrial:
-    """Change of amplification by a variation in one direction, to find the worst: at one phase pair, a large v_reg."""
+    """Amplification change in one direction, to find a variation's worst; one phase pair, friction linear to 1 cm/s."""
 
     scene: Annotated[Text, "name of the scene"]
     key: Annotated[Axis, "what varies"]
@@ -74,12 +75,12 @@ class TaskTrials:
     error_message: str = ""
 
 
-# Task arguments: scene, both engine models, variation or varied axes, tolerance, phase pairs, largest number of sizes
+# Task: scene, translational and spatial engine, variation or quantities, tolerance, phases, most sizes of each to try
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
-    """In a worker, compute amplifications for one variation, or sizes of each quantity in its worst direction."""
+    """In a worker, compute amplifications: for one variation, or for sizes of oval, offset, yaw in worst directions."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
     short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # keep its name as key
     pairs = np.array(phases)
@@ -112,7 +113,7 @@ def amplification_of(
     except SceneError as error:
         nothing = np.full((len(phases), len(scene.bodies)), np.nan)
         return Trial(variation, nothing, nothing, ("refused",) * len(phases), str(error), 0.0)
-    whole = {"full": True} if body_cannot_tilt(varied) else {}  # a reduced model would presume assumption (vi)
+    whole = {"full": True} if body_cannot_tilt(varied) else {}  # do not reduce to translation: it is assumption (vi)
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
@@ -120,7 +121,7 @@ def amplification_of(
 
 def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
     """
-    Compute each quantity's variation in every direction; return the changes, the largest of a quantity marked worst.
+    Return the change of amplification by varying each quantity in every direction; mark each quantity's `worst`.
 
     A direction without effect by symmetry is listed and not computed.
     """
@@ -186,7 +187,7 @@ def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: fl
 
 
 def compute_relative_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
-    """Return the relative change of amplification from `plain` (first M pairs) to `trial`, and its error, (M, N)."""
+    """Return relative change of amplification and its error, (M, N): from the first M pairs of `plain` to `trial`."""
     base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base
 

@@ -37,7 +37,7 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
-# rad, phase pairs computed; rotation changes the amplification most at the first in fig3-I, at the second in fig3-II
+# rad, phases of two harmonics; turning bodies change amplification most at the first in scene fig3-I, second in fig3-II
 PHASES = ((0.0, 0.0), (2.0, 0.7))
 MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
 SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation tried in its worst direction: by a study, by the command
@@ -45,7 +45,7 @@ SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation tried in its worst di
 
 @result
 class AssumptionCell:
-    """Change of amplification from the translational model to the spatial model of a varied scene; v_reg is 1 mm/s."""
+    """Change of amplification from translational to spatial model of a varied scene; friction linear below 1 mm/s."""
 
     scene: Annotated[Text, "name of the scene"]
     variation: Annotated[Variation, "what is varied"]
@@ -240,7 +240,7 @@ class Assumptions(MappedAnalysis[Validity]):
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
-        Yield task arguments in each scene with phases that both engine models apply to: a task per variation or group.
+        Yield task arguments in harmonic scenes with a spatial model: one task per variation or group of varied axes.
 
         First None, the translational model of the scene itself, then the variations of the spatial one, then groups of
         axes along whose worst direction sizes are tried: one task each. UNDER_LOAD is added where bars give way.
@@ -258,7 +258,7 @@ class Assumptions(MappedAnalysis[Validity]):
                 yield scene, (translational, spatial), what, tolerance, self.phases, self.sizes
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
-        """Return every variation's change of amplification and the validity ranges; None without both engine models."""
+        """Return each variation's amplification change, and validity ranges; None if no scene has a spatial model."""
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)

@@ -69,11 +69,12 @@ MANY = (  # variations that `phase-resonance assumptions` computes: ring, height
     *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # On the narrowest ring (0.5) buildings overturn.
     Variation(supports=3),
 )
-UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # effects of weight, tried on compliant bars
+# Variations of bars with axial stiffness: the weight above softens them; in the second they also shorten in sway
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))
 
 Axis = Literal["ring", "height", "oval", "offset", "yaw"]  # quantity of the building that is varied
 DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # varied in several directions to find the worst one
-# First size of each variation, at which its directions are compared (an angle also at half of it)
+# First size of each variation, at which its directions are compared; bodies are also turned by half this yaw
 FIRST_SIZE = {
     "oval": 0.5,  # share of the ring's radius
     "offset": 0.1,  # share of the ring's radius: about the accidental eccentricity of design codes, width / 20
@@ -81,9 +82,9 @@ FIRST_SIZE = {
 }
 # Smallest size of each variation; smaller ones are not tried, even if the assumption fails at this one
 SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}
-# Largest size of each variation; with larger ones supports lift off, or the building is a different one
+# Largest size tried of each variation; beyond it supports lift off, or the plan has little to do with the stated one
 LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}
-DIRECTIONS = 4  # number of directions compared in 180 degrees, or in 90 degrees where symmetry makes these enough
+DIRECTIONS = 4  # directions of an oval or offset tried for the worst: in 180 degrees, or in 90 where symmetry allows
 
 
 def with_size(variation: Variation, key: Axis, size: float) -> Variation:

@@ -39,11 +39,12 @@ from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPRE
 from reference.problem.symmetry import distinct_pairs
 
 MAX_GRID = 16  # largest number of phases alpha1, and as many alpha2, for the small-displacement equations
-SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # m/s, cutoff speeds
+# m/s, cutoff speeds: accelerations while sliding slower do not count as the peak in the amplification
+SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, regularization speeds of the friction law
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
 MAX_YIELDING_GRID = 8  # largest number of phases per axis, for exact equations with elastic-plastic friction
-OTHER_DAMPING = 0.05  # damping ratio of all links in a second curve over u_y of an undamped scene; of a damped one 0
+OTHER_DAMPING = 0.05  # damping ratio of links in an undamped scene's second curve over yield displacement; else 0 there
 # rad, phase pairs for the engine and the exact equations; no symmetry makes two of them equivalent
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
 ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harmonic: in these the loading is strongest
@@ -51,7 +52,7 @@ ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harm
 
 @result
 class ConditioningCurve:
-    """Statistics over phases of a body's amplification at falling cutoff, v_reg or yield displacement; 0: supremum."""
+    """Statistics over phases of a body's amplification at slip speeds or yield displacements v; 0: rigid, slip -> 0."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -93,14 +94,15 @@ def has_yielding_friction_below_links(scene: Scene) -> bool:
 
 class Question(NamedTuple):
     """
-    Model whose amplification is computed at ever smaller cutoff, v_reg or yield displacement, and keyword that sets it.
+    Question how one model's amplification depends on a slip speed or yield displacement set by keyword `argument`.
 
-    max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a grid. otherwise: whether the links
-    are damped by another ratio than the scene's.
+    argument: "cutoff", speed below which sliding counts for no peak; "regularization", slip speed below which friction
+    is linear; or "yield_displacement". max_grid: largest number of phases per axis, 0 for ENGINE_PHASES in place of a
+    grid. otherwise: whether the links are damped by another ratio than the scene's.
     """
 
     model: str
-    base: Mapping[str, Any]  # settings of the equations whose literal supremum the curve is compared with
+    base: Mapping[str, Any]  # settings of the equations whose limit at zero slip speed the curve is relative to
     side: ModuleType
     settings: Mapping[str, Any]
     argument: Literal["cutoff", "regularization", "yield_displacement"]
@@ -110,7 +112,7 @@ class Question(NamedTuple):
     otherwise: bool = False
 
     def speeds_of(self, scene: Scene) -> tuple[float, ...]:
-        """Return speeds, m/s, or yield displacements, m, the scene's own included, at which the model is computed."""
+        """Return the cutoff or regularization speeds, m/s, or yield displacements, m (also the scene's own), to try."""
         own = self.own_yield(scene)
         return self.speeds if own is None else tuple(sorted({*self.speeds, own}, reverse=True))
 
@@ -131,12 +133,12 @@ class Question(NamedTuple):
         return scene.with_values(links | {"name": scene.name})
 
     def choose_grid(self, study: Study) -> int:
-        """Return the number of phases per axis: the study's largest nested grid within `max_grid`, else `max_grid`."""
+        """Return the phases per axis: largest nested grid of the study's up to `max_grid`; without any, `max_grid`."""
         affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
         return max(affordable, default=self.max_grid)
 
     def answer(self, scene: Scene, phases: Array, speed: float) -> Any:
-        """Return the model's amplification at phases (P, 2), rad, and one speed, m/s, or yield displacement, m."""
+        """Return amplification at phases (P, 2), rad; speed: cutoff, regularization, m/s, or yield displacement, m."""
         if self.argument == "yield_displacement":
             return self.side.amplification(scene.with_yield_displacement(speed), phases, **self.settings)
         return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
@@ -151,7 +153,7 @@ SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # keyword
 OVER_YIELDS = Question(  # how the amplification depends on the yield displacement of friction: exact equations
     "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
 )
-# Models whose amplification at several cutoffs, v_reg or yield displacements is compared with the literal supremum
+# Models, and slip speeds or yield displacements at which to compare them with rigid friction at slip speed -> 0
 QUESTIONS = (
     Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, MAX_GRID),
     Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, MAX_GRID),
@@ -173,9 +175,10 @@ Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases pe
 
 class _Answers(NamedTuple):
     """
-    Amplification mu and error (S, P, N) of N bodies at S speeds and P phase pairs, and the literal supremum (P, N).
+    Amplification mu and error, (S, P, N): S slip speeds or yield displacements, P phase pairs, N bodies.
 
-    independent: pairs with a value that no symmetry relates. lost: the first status without a value.
+    supremum: (P, N), mu by rigid friction in the limit of zero slip speed. independent: pairs with a value that no
+    symmetry relates. lost: the first status without a value.
     """
 
     mu: Array
@@ -188,7 +191,7 @@ class _Answers(NamedTuple):
 
 
 class _SpeedStatistics(NamedTuple):
-    """Statistics of one body's amplification at one speed, as `ConditioningCurve` lists them; NaN if unknown."""
+    """Statistics over phases of a body's amplification at one slip speed or yield displacement; NaN if unknown."""
 
     mean: float = np.nan
     mean_error: float = np.nan
@@ -200,7 +203,7 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return curves of each body's amplification over cutoff, v_reg or yield displacement; suprema at 0 (not v_reg)."""
+    """Return bodies' curves over v_reg, or over cutoff or yield displacement and for rigid friction, slip -> 0."""
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
@@ -213,7 +216,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
-    """Return amplifications at every speed and literal suprema; NaN at phase pairs where one of them is missing."""
+    """Return amplifications at `speeds` and for rigid friction, slip -> 0; NaN at phase pairs where one is missing."""
     phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
@@ -231,7 +234,7 @@ def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], g
 
 
 def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
-    """Return the curve of one body: statistics over phases of its amplification, also relative to the supremum."""
+    """Return a body's curve: statistics over phases of its amplification, also relative to `answers.supremum`."""
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     over_supremum = mu / supremum - 1.0
@@ -275,7 +278,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
 def _fill_curve(
     task: Arguments, body: int, speeds: tuple[float, ...], rows: Sequence[_SpeedStatistics], pairs: int, reason: str
 ) -> ConditioningCurve:
-    """Return the curve of a body from its statistics by speed. rows: one per speed. reason: why there is no value."""
+    """Return a body's amplification curve. rows: statistics over phases at each of `speeds`. reason: why no value."""
     scene, number, grid = task
     question = QUESTIONS[number]
     columns: dict[str, Any] = dict(zip(_SpeedStatistics._fields, zip(*rows)))
@@ -298,14 +301,14 @@ def _fill_curve(
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Analysis of how the amplification depends on the smallest speed resolved; scenes with phases and dry friction."""
+    """Analysis of amplification by smallest slip speed that is resolved; only harmonic scenes with dry friction."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return for each task: scene, index of the model in QUESTIONS, number of phases per axis (0: few pairs)."""
+        """Return for each task: scene, index in QUESTIONS, number of phases per axis (0: only pairs ENGINE_PHASES)."""
         return [
             (scene, number, question.choose_grid(study))
             for scene in study.phased

@@ -19,13 +19,14 @@ NAMES = {  # names, in plots and tables, of the small-vibration and exact equati
 }
 # Index, in the palette of plots, of the color of a model's curve
 COLORS = {"exact": 0, "translational": 1, "spatial": 2}
-UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}  # unit of the varied speed or displacement; tables in this order
+# Units of cutoff speed, regularization speed of friction, and yield displacement; tables over them are in this order
+UNITS = {"v_c": "m/s", "v_reg": "m/s", "u_y": "m"}
 # Statistics over phases of the amplification, in the rows of the tables: key and name
 QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from the literal supremum"}
 
 
 def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
-    """Return plots per scene of platform amplification: small-vibration equations, engine, elastic-plastic friction."""
+    """Return plots per scene: platform amplification over slip speed (equations; engine), over yield displacement."""
     panels = []
     for scene in dict.fromkeys(curve.scene for curve in curves):
         every = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
@@ -56,7 +57,7 @@ def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Pan
 
 
 def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
-    """Plot mean and largest amplification mu_1 over the yield displacement; literal suprema are horizontal lines."""
+    """Plot mean and largest amplification mu_1 over yield displacement; horizontal: rigid friction, slip speed -> 0."""
     dampings = [*dict.fromkeys(curve.damping for curve in curves)]
     series: list[dict[str, Any]] = []
     ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]
@@ -75,7 +76,7 @@ def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
 
 
 def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) -> dict[str, Any]:
-    """Return the plot line of a statistic of the amplification over speed; a supremum is a dashed horizontal line."""
+    """Return the line of an amplification statistic over cutoff or regularization speed; dashed: its limit at zero."""
     values = replace_nan(getattr(curve, quantity))
     named = {"name": f"{name}, {_name_reading(curve)}", "color": color}
     if curve.reading == LITERAL_SUPREMUM:
@@ -84,12 +85,12 @@ def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) 
 
 
 def _name_reading(curve: ConditioningCurve) -> str:
-    """Return the name of the peak that a curve is of: "literal supremum", or "as integrated at" v_c, v_reg or u_y."""
+    """Name the peaks that count in a curve: at any slip speed ("literal supremum"), or "as integrated at v_c" etc."""
     return curve.reading if curve.reading == LITERAL_SUPREMUM else f"{curve.reading} at {curve.speed}"
 
 
 def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, Any]]:
-    """Return tables of amplification statistics by speed, one table for curves at the same speeds; supremum last."""
+    """Return amplification tables, one for curves at equal speeds or yield displacements; last: rigid, slip -> 0."""
     suprema = {_owner_of_curve(curve): curve for curve in curves if curve.reading == LITERAL_SUPREMUM}
     tables = []
     integrated = [curve for curve in curves if curve.reading != LITERAL_SUPREMUM]
@@ -105,17 +106,17 @@ def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, A
 
 
 def _place_of_table(table: tuple[str, tuple[float, ...]]) -> int:
-    """Return the place of a table in the order v_c, v_reg, u_y of its varied speed or displacement."""
+    """Return a table's place in the order cutoff speed v_c, regularization speed v_reg, yield displacement u_y."""
     return [*UNITS].index(table[0])
 
 
 def _owner_of_curve(curve: ConditioningCurve, model: str = "") -> tuple[str, int, str, int, float | None]:
-    """Return the key (scene, body, model, grid, damping) that pairs a curve with that of its literal supremum."""
+    """Return the key (scene, body, model, grid, damping) that pairs a curve with that of rigid friction, slip -> 0."""
     return curve.scene, curve.body, model or curve.model, curve.grid, curve.damping
 
 
 def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | None) -> dict[str, Any]:
-    """Return a table row: a statistic of the amplification at each speed and, if known, of the literal supremum."""
+    """Return a table row: an amplification statistic at each speed or displacement, then, if known, at slip -> 0."""
     write = signed if quantity == "relative_mean" else significant
     values = [*getattr(curve, quantity), *([] if supremum is None else getattr(supremum, quantity))]
     errors = getattr(curve, quantity.removesuffix("_mean") + "_error")
@@ -129,7 +130,7 @@ def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCu
     }
 
 
-FOUND = ResultField(  # field of summary.json with the result of this analysis
+FOUND = ResultField(  # field of summary.json: amplification by smallest slip speed that counts, and limit at zero speed
     Conditioning.key,
     list[ConditioningCurve],
     "mu over the smallest resolved speed, and its literal supremum; null if not computed",
@@ -137,7 +138,7 @@ FOUND = ResultField(  # field of summary.json with the result of this analysis
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
-    """Return the template variables of the report section on conditioning: its plots and tables."""
+    """Return template variables of the section on amplification at falling slip speeds: its plots and tables."""
     curves = FOUND.read_from(report.results)
     return {
         "conditioning_panels": conditioning_panels(curves),

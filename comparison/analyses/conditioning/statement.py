@@ -9,13 +9,13 @@ from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPRE
 
 # m/s, sliding speeds below which no instrument (first) and no computation (second) resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
-ILL_CONDITIONED_CHANGE = 1e-3  # relative difference at LOW_V_C from which the supremum is called ill-conditioned
+ILL_CONDITIONED_CHANGE = 1e-3  # amplification is ill-conditioned if slip below LOW_V_C changes it by this share
 MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
 
 
 def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return a sentence on the scene and body whose amplification at LOW_V_C is farthest from the literal supremum.
+    Return a sentence on the scene and body whose amplification changes most if sliding slower than LOW_V_C counts, too.
 
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
@@ -78,7 +78,7 @@ def _word_other_damping(curve: ConditioningCurve) -> str:
 
 
 def _word_range(curve: ConditioningCurve) -> str:
-    """Return in words, over yield displacements, the range of the mean amplification relative to the supremum."""
+    """Word the mean amplification's range over yield displacements, relative to rigid friction, slip speed -> 0."""
     low, high = (f(range(len(curve.v)), key=lambda place: curve.relative_mean[place]) for f in (min, max))
     least, most = (_write_size(curve.relative_mean[place], curve.relative_error[place]) for place in (low, high))
     return (
@@ -109,20 +109,20 @@ def speed_text(speed: float) -> str:
 
 
 def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
-    """Return whether the mean amplification is known at all three cutoff speeds that `conditioning_line` names."""
+    """Return whether mean amplification is known at cutoff speeds DEFAULT_V_C, LOW_V_C and LOWEST_V_C, m/s."""
     return curve.reading == AS_INTEGRATED and all(
         math.isfinite(_relative_mean_at(curve, v)[0]) for v in (DEFAULT_V_C, LOW_V_C, LOWEST_V_C)
     )
 
 
 def _relative_mean_at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
-    """Return the relative difference of the mean amplification at a speed from the literal supremum, and its error."""
+    """Return the mean relative difference of amplification at cutoff `speed`, m/s, from its limit at 0; and error."""
     place = curve.v.index(speed)
     return curve.relative_mean[place], curve.relative_error[place]
 
 
 def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) -> str:
-    """Say how much the engine's mean amplification changes from the last but one v_reg to the smallest, by model."""
+    """Say, by engine model, how mean amplification changes between the two smallest regularization speeds."""
     engines = [
         each
         for each in result
@@ -141,7 +141,7 @@ def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningC
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
-    """Return the mean amplification's relative change from the last but one speed to the last, and its error."""
+    """Return the mean amplification's relative change from a curve's second lowest slip speed to the lowest; error."""
     (before, after), errors = curve.mean[-2:], curve.mean_error[-2:]
     return after / before - 1.0, sum(errors) / before
 

@@ -72,7 +72,7 @@ def compute_demands(task: DemandTaskArguments) -> TaskDemands:
 
 
 class DemandSurfaces(MappedAnalysis[xr.Dataset]):
-    """Analysis that computes the demands (peak responses) at every phase pair of each model's surface."""
+    """Analysis that computes demands (peak responses) at all phase pairs where a model's amplification is computed."""
 
     key, stage, level = "demands", "demands", 2
     function = staticmethod(compute_demands)
@@ -131,7 +131,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
 
 def _models_with_own_motions(study: Study, scene: Scene) -> list[Model]:
-    """Return the models whose motions are computed; models that read the same motion as another are left out."""
+    """Return models with motions to compute: no user's, none that just counts other peaks, no SMALL_REGULARIZED."""
     models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
     return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 

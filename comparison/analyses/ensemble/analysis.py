@@ -71,7 +71,7 @@ class EnsemblePoints:
 
 
 MotionTaskArguments = tuple[Scene, Model, float]  # scene with its motion, model, relative error to aim at
-# Result of a task: demands, story forces, floor spectra, accelerations as integrated if demands are suprema, end, s
+# Task's demands, story forces, floor spectra, peak accelerations without slip below 1 mm/s (or empty), motion's end, s
 MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
@@ -127,7 +127,7 @@ class Ensemble:
             return MotionDemandsAtScale(member, model.key, found)
         numbers, forces, spectra, resolved, instant = found
         if model != EXACT and numbers.status != Outcome.OK:
-            # What another model computed up to an early end is not used.
+            # Demands up to an early end are used only from the exact equations; else status and end time remain.
             return MotionDemandsAtScale(member, model.key, numbers.status, instant=instant)
         values = collect_demand_values(member.scene, numbers, forces, resolved)
         return MotionDemandsAtScale(member, model.key, numbers.status, values, spectra, forces, instant)
@@ -156,7 +156,7 @@ def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
 
 
 def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
-    """Return peak accelerations as integrated by small-vibration or exact equations (demands: suprema); else none."""
+    """Return peak accelerations by SMALL or EXACT, dry friction, without slip below 1 mm/s (demands have it); or []."""
     scene, model, tolerance = task
     resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: EXACT_AS_INTEGRATED}.get(model.key)
     if resolved is None or not resolved.applies(scene):

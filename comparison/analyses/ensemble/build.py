@@ -38,7 +38,7 @@ def build_result(
     listed: Mapping[str, Motion] | None = None,
 ) -> result.EnsembleResult:
     """
-    Return the result of an ensemble: buildings, motions, statistics and curves of demands, extremes of the supports.
+    Return the result of an ensemble: buildings, motions, statistics and curves of demands, extreme support forces.
 
     listed: motions of the suite by name, with the factors and magnitudes that its list states.
     """
@@ -105,7 +105,7 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
 
 
 def describe_ground(member: EnsembleMember) -> dict[str, Any]:
-    """Return fields of `GroundMotion` at scale 1, factor included: files, step, peaks, digest, spectrum."""
+    """Return files, step, peaks, digest, spectrum of a ground motion at scale 1, times factors of list and target."""
     samples = member.scene.record / np.array([1.0, *[member.scale] * 3])
     origin = member.scene.excitation.origin if isinstance(member.scene.excitation, Record) else ()
     read, moving = describe_samples(member.motion, origin, samples), samples[:, 1:3][:, samples[:, 1:3].any(axis=0)]
@@ -121,7 +121,7 @@ def describe_ground(member: EnsembleMember) -> dict[str, Any]:
 def describe_structures(
     members: Sequence[EnsembleMember], displacements: Mapping[str, result.DemandAtScale]
 ) -> list[result.Structure]:
-    """Return structures with weight, periods and linear isolator. displacements: of isolators at the largest scale."""
+    """Return structures: weight, periods, isolator linearized at mean or median of `displacements` at largest scale."""
     found = []
     for name, own in group_rows_by(members, "structure").items():
         scene, isolator, stripe = own[0].scene, None, displacements.get(name)

@@ -126,7 +126,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
-        """Write and print results of the equations, choose the engine's motions by them; return the engine's tasks."""
+        """Print and write demands by the exact equations; choose motions by them for all other models; return tasks."""
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.find_missing(ensemble.make_engine_tasks(chosen))
         if further:

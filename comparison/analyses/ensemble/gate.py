@@ -26,7 +26,7 @@ def check_demands(
     stored: str | Path | None,
     within: float,
 ) -> list[str]:
-    """Return lines on demands beyond limits (`limits`, else the file's) or off stored values. Raises ValueError."""
+    """List demands beyond `limits` (else `source`'s) or off `stored` by more than share `within`. Raises ValueError."""
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
     members = list_members([make_family(with_bounds(data, bounds), str(source))])

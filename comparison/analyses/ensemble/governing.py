@@ -27,7 +27,7 @@ GOVERNING = {  # the engine computes the motion with the worst of each of these 
     "support_force_max": "largest support force",
     "support_force_min": "smallest support force",
 }
-GOVERNING_OF_LIMITS = {  # by demand that only the engine has: demands of the equations that tell which motions govern
+GOVERNING_OF_LIMITS = {  # demand that equations lack: those of theirs whose worst motions are taken to govern it
     "uplift": ("support_force_max", "support_force_min"),
     "support_displacement": ("displacement",),
 }
@@ -36,7 +36,7 @@ ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # 
 MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
 EXPECTED_GOVERNING_COUNT = 3  # assumed number of governing motions per structure while the equations are not solved
 
-# Motions that the engine is asked to compute: number per structure, names, or None for those that govern
+# Motions that the engine is asked to compute: number per structure, names, or None: those with a worst or median demand
 EngineRequest = int | tuple[str, ...] | None
 
 
@@ -80,7 +80,7 @@ def bound_motion_count(asked: EngineRequest, scene: Scene, motions: int) -> int:
 
 
 def choose_motions(points: Sequence[MotionDemandsAtScale], asked: EngineRequest) -> list[ChosenMember]:
-    """Choose the engine's motions by the equations' demands: at every scale if all are asked, else at the largest."""
+    """Choose the engine's motions by the exact equations' demands: all at every scale if asked, else at the largest."""
     if asked == MAX_ENGINE_MOTIONS:
         return [ChosenMember(point.member, (ASKED_REASON,)) for point in points]
     top = max((point.member.scale for point in points), default=0.0)

@@ -219,7 +219,7 @@ def _check_body(
 
 
 def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
-    """Say above which value (needed) demands unknown in `ended` motions break a mean limit; "" if every value does."""
+    """Word the mean `needed` of `ended` unknown demands above which a mean limit breaks; "" if any value breaks it."""
     theirs = "a value there" if ended == 1 else "a mean of theirs"
     return f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
 

@@ -60,7 +60,7 @@ def make_floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Pan
 
 
 def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return a function (or none) that plots the motions' spectra at scale 1, factor included, and the target."""
+    """Return a function (or none) to plot target and motions' spectra at scale 1, with factors of list and target."""
     return [partial(_ground_spectra, ensemble)] if ensemble.target or any(m.spectrum for m in ensemble.suite) else []
 
 

@@ -231,7 +231,7 @@ class EngineMotions:
 
 @result
 class GroundComponent:
-    """Peak acceleration and velocity of one component of a ground motion at scale 1, times its factor."""
+    """Peak acceleration and velocity of a component of a ground motion: record times `GroundMotion.factor`, scale 1."""
 
     axis: Annotated[str, "x, y or z"]
     peak: Annotated[float, "largest acceleration, m/s^2"]

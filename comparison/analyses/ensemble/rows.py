@@ -163,7 +163,7 @@ def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> 
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)
-    high = max(each.value + each.error for each, _ in places)  # upward error, not less than the downward one
+    high = max(each.value + each.error for each, _ in places)  # errors raise the largest no less than they lower it
     return Estimate(number.value, high - number.value), body
 
 

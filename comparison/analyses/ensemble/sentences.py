@@ -63,7 +63,7 @@ DEFINITIONS = (  # definitions of the demands, shown with their table
 )
 
 
-VERTICAL_MOTION = "Vertical ground motion, except where the record has z."  # entry of NOT_MODELED; a count is added
+VERTICAL_MOTION = "Vertical ground motion, except where the record has z."  # printed with the number of motions with z
 NOT_MODELED = (  # what no model has; docs/guide/building.md explains each, beginning with the same words
     "Sliding surfaces of unequal friction in one bearing: double pendulums whose surfaces differ, and triple "
     "pendulums.",
@@ -339,7 +339,7 @@ def word_support_motions(ensemble: EnsembleResult, supports: SupportExtremes) ->
 
 
 def displaced_weight_sentence(structure: Structure) -> str:
-    """Return sentences: which plate moves, and how the displaced weight loads the supports; "" without supports."""
+    """Return sentences: bearing part that moves with the platform, load by displaced weight; "" without supports."""
     building = structure.building
     if building is None or not building.supports:
         return ""

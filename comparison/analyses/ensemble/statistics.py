@@ -171,7 +171,7 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
             known = [each for each in at if each.forces and each.forces.support_max]
             places = at[0].member.scene.support_places
             if not known or places is None or (model and known[0].forces and known[0].forces.uplift is None):
-                continue  # no support forces, or only those of statics, which the equations have given
+                continue  # no support forces, or by statics only: these are listed for the exact equations alone
             for number in range(len(places)):
                 names = "support_min", "support_max", "uplift"
                 small, large, gaps = ([_support_estimate(each, key, number) for each in known] for key in names)

@@ -41,7 +41,7 @@ def print_equations(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def print_engine(console: Console, ensemble: EnsembleResult) -> None:
-    """Print the engine's motions, its ratios to the equations, support forces; if a part fails, one line says so."""
+    """Print engine motions, ratios of their demands to the equations', support forces; a line if a part fails."""
     parts: dict[str, Callable[[], None]] = {
         "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
         "table of models": partial(_print_model_ratios, console, ensemble),

@@ -27,7 +27,7 @@ MODEL_TITLES = {  # names of the models in the table of model ratios, by key
     SPATIAL.key: "spatial engine",
 }
 # Names of main-table demands without a row in the table of model ratios: each is a multiple of another demand, is zero
-# in most motions, or is the literal supremum, which engines do not compute.
+# in most motions, or is a peak that includes the limit of vanishing slip speed, which engines do not compute.
 DEMANDS_WITHOUT_MODEL_RATIO = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support", "platform acceleration, literal supremum", "floor acceleration, literal supremum",
@@ -190,7 +190,7 @@ def _word_largest_size(size: float) -> str:
 
 def model_ratio_sentence(ensemble: EnsembleResult) -> str:
     """
-    Return in words how much geometry, code, friction law and rotation of bodies change demands; "" without an engine.
+    Word how demands differ by geometry, program (equations, Exudyn), friction law, rotation; "" without an engine.
 
     Each is the largest over all motions and demands of the table. The smallest support force has a clause of
     its own: close to zero, a small force is a large share of it.

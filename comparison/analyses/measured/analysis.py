@@ -102,7 +102,7 @@ def phases_of_peak(peak: Measured) -> tuple[float, float]:
 
 
 def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[MeasuredQuantityKey]:
-    """Return measured quantities that a model computes at a phase pair: only amplification if it has a cutoff speed."""
+    """Return measured quantities that a model computes at a phase pair: only amplification if slow slip is left out."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()

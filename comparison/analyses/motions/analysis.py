@@ -134,7 +134,8 @@ class StoredMotion:
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
 
 
-Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]  # scene, model, tolerance, place, phases, rad
+# Arguments of a task: scene, model, relative error asked, place in the grid of phases, and phases there, rad
+Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]
 
 
 def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:
@@ -213,7 +214,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
 
 
 class Motions(MappedAnalysis[list[StoredMotion]]):
-    """Analysis that stores motions for the report, at phase pairs chosen by the surfaces of amplification."""
+    """Analysis that stores motions for the report: where models' amplification differs most, and evenly spread ones."""
 
     key, stage, needs_surfaces = "motions", "motions", True
     seconds = 4.0

@@ -118,7 +118,7 @@ FEATURE = Feature(
     Motions.key,
     scene_fields=(DEMANDS,),
     analysis=Motions(),
-    needs="surfaces",  # show motions only with surfaces, below which they stand
+    needs="surfaces",  # the page shows motions below the plots of amplification over the phases, only with these
     page_data=collect_motion_data,
     packed_data=encode_motions,
 )

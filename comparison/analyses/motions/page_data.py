@@ -47,7 +47,7 @@ from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
 
-MotionOffsets = dict[tuple[MotionPlace, str], int]  # by place and model of a motion: index of its first packed number
+MotionOffsets = dict[tuple[MotionPlace, str], int]  # motion's phase-grid place, model: index of its first packed number
 
 MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed time history, as a share of half its range
 SPECTRUM_DIGITS = 4  # significant digits of a floor spectrum on the page: more are invisible
@@ -112,7 +112,7 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Return for the page the places of the supports, and how far contact points move back per unit of displacement.
+    Return for the page support places, and how far contacts on the spheres move back per platform displacement.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.

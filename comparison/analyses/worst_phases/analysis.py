@@ -64,14 +64,14 @@ class LargestOverPhases:
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
-# Engine model for which no search is made, with the largest value on its phase grid
+# Engine model whose amplification is not searched for its maximum, with its largest amplification on the phase grid
 UnsearchedEngine = tuple[Model, GridMaximum]
-# Arguments of a task: scene, equations, engine, engine on its grid, quantity, body, engine tolerance, start phases, rad
+# Task: scene, equations, engine to search, engine not searched, quantity, body, engine tolerance, start phases, rad
 SearchTaskArguments = tuple[Scene, Model, Model | None, UnsearchedEngine | None, Quantity, int, float, Array | None]
 
 
 def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
-    """Return a body's largest amplification over all phases by a model, else by a later or, last, an earlier model."""
+    """Return a body's largest amplification over phases by a model, else by the nearest later or, last, earlier one."""
     searched = {
         worst.model: worst
         for worst in found
@@ -83,7 +83,7 @@ def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str,
 
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Return the searches to make: model of equations, engine model that solves the same (or None), quantity, body."""
+    """Return the searches to make: model of equations, engine model of the same equations or None, quantity, body."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -113,7 +113,8 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
-    stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}  # set by model
+    # Without definition of the peak and friction law: the model's key tells both
+    stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}
     worst = LargestOverPhases(scene.name, model.key, quantity, body, **stated)
     found = [worst]
     if engine is not None:
@@ -138,7 +139,7 @@ class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):
     function, without_value = staticmethod(search_worst_phases), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[SearchTaskArguments]:
-        """Yield the arguments of each search: by equations, and by the engine model that solves the same."""
+        """Yield arguments of each search: by a model of equations, and by the engine model of the same equations."""
         for scene in study.phased:
             for model, engine, quantity, body in _list_searches(study, scene):
                 starts = _starting_phases(study, surfaces, scene, model, quantity, body)

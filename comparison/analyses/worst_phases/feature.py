@@ -16,7 +16,7 @@ from reference.problem.readings import BOTH_READINGS
 
 
 def _word_kind(worst: LargestOverPhases) -> str:
-    """Return in words where a largest value lies (maximum, edge, jump, grid), or why there is none."""
+    """Return in words where the largest value over phases lies (smooth maximum, edge, jump, grid), or why unknown."""
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
@@ -33,14 +33,14 @@ def _word_kind(worst: LargestOverPhases) -> str:
 
 
 def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
-    """Return curves of a body's amplification over all phases: by small-vibration equations and by the last model."""
+    """Return distributions of a body's amplification over phases: small-vibration equations, most complete model."""
     (last,) = (line.second for line in scene.headlines if line.body == body)
     kept = (SMALL.key, SMALL_AS_INTEGRATED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 
 def _name_reading(report: Report, worst: LargestOverPhases) -> str:
-    """Return the name of the acceleration peak (literal supremum or as integrated); "" for a displacement."""
+    """Name the peak: any slip speed ("literal supremum"), resolved ("as integrated"), both; "" for a displacement."""
     if worst.quantity == "displacement":
         return ""
     (scene,) = (scene for scene in report.study.scenes if scene.name == worst.scene)

@@ -28,7 +28,7 @@ def main() -> None:
         print(f"  body {body}: mu from {low:.3f} to {high:.3f}")
 
     # equations and engine with the same friction law, at the phases where the top's amplification is largest
-    law, pair = 1e-3, phases[worst : worst + 1]  # v_reg, m/s, and worst phase pair, rad
+    law, pair = 1e-3, phases[worst : worst + 1]  # v_reg, below which friction is linear, m/s; worst phases, rad
     equations = reference.amplification(scene, pair, regularization=law)
     engine = multibody.amplification(scene, pair, regularization=law)
     print(f"phases {pair[0].round(3).tolist()} rad, like for like:")

@@ -51,7 +51,7 @@ class BenchmarkTable:
     cases: Sequence[BenchmarkCase]
 
     def tasks(self) -> list[Task]:
-        """Return one task for each benchmark and way to solve it: equations, smoothed equations, engine."""
+        """Return a task for each benchmark and way to solve it: equations, these with the engine's friction, engine."""
         return [self._task(case, side) for case in self.cases for side in MODEL_OF_SIDE]
 
     def collect(self, results: TaskResults) -> Benchmarks:
@@ -63,7 +63,7 @@ class BenchmarkTable:
         return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
-        """Return the task that solves one benchmark by `side`: equations, smoothed equations or engine."""
+        """Return the task that solves a benchmark by `side`: equations, these with the engine's friction, or engine."""
         seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
         return Task(
             solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
@@ -108,7 +108,7 @@ def halve_samples(motion: Trajectory) -> Trajectory:
 
 
 def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
-    """Return the result of a benchmark: published numbers beside those by equations, smoothed equations and engine."""
+    """Return published numbers beside those by equations, equations with the engine's friction, and the engine."""
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -137,7 +137,7 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
         return SideNumber(value, error, verdict, explain_deviation(side) if verdict == NOT_MET else "")
 
     def explain_deviation(code: str) -> str:
-        """Return why a number misses the published one: another model in the source, regularized friction, or ""."""
+        """Return why a number misses the published one: publication's model differs, regularized friction, or ""."""
         if case.difference:
             return MODEL_EXPLANATION
         (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]

@@ -25,7 +25,7 @@ COMPLEX_PROMINENCE = 0.25
 OTHER_PROMINENCES = 0.15, 0.35  # other prominences tried, to see whether the verdict depends on it
 MAX_CORNER_DISTANCE = np.pi / 4.0  # rad, a peak this close to a corner of the square of both phases is near it
 CORNER = (0.0, 0.0)  # rad, both phases at a corner of their square; the four corners are one point, as it is periodic
-# Functions that count peaks and valleys of an amplification surface: over periodic phases, as drawn, or on its profile
+# Functions that count peaks and valleys of amplification: over periodic phases, on [0, 2 pi]^2, over alpha1 - alpha2
 PEAK_COUNTS_BY_VIEW = {
     "periodic": counting.count_periodic_peaks_and_valleys,
     "drawn": counting.count_drawn_peaks_and_valleys,
@@ -93,7 +93,7 @@ def _list_curvatures(case: Evidence) -> list[tuple[int, bool, SharpestCurvature]
 
 
 def _describe_curvatures(case: Evidence) -> str:
-    """Return in words where each amplification is curved most: kind (fold, jump, smooth), power of the phase step."""
+    """Word where each amplification is curved most: fold, jump, smooth; n of its second difference ~ (phase step)^n."""
     words = (
         f"mu_{body} {'flat' if flat else f'{bend.kind} (h^{bend.exponent:.1f})'}"
         for body, flat, bend in _list_curvatures(case)

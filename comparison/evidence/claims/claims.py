@@ -40,7 +40,8 @@ _PEAKS_AND_VALLEYS = (
     " on the drawn profile over α_1 - α_2"
 )
 _SIMILAR = f"correlation over the phases at least {checks.MIN_CORRELATION:g}"  # rule in words: surfaces are similar
-_ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"  # rule: folds
+# Start of the rules on folds: one exists if the second difference falls like phase step h or slower, none if like h^2
+_ZOOM = "where it bends most on the grid, in a zoom of 32 times, the second difference falls like"
 # Scenes of the paper's figures
 _I, _II, _DRY, _WET = "fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"
 

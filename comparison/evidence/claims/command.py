@@ -38,7 +38,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def print_claims(console: Console, table: ClaimTable) -> None:
-    """Print the verdicts for both definitions of the peak (5.1), then reasons, and why a statement cannot hold."""
+    """Print verdicts for both peaks, any slip speed or above 1 mm/s; then reasons, and why a statement cannot hold."""
     grid = Table("about", "statement", *table.counts, box=None, pad_edge=False)
     for each in table.statements:
         grid.add_row(each.figure, each.says, *(each.verdicts[name].verdict for name in table.counts))

@@ -16,20 +16,21 @@ from reference.problem.symmetry import complete_surface
 SURFACE_TOLERANCE = 1e-3
 CURVATURE_TOLERANCE = 1e-6  # relative error of amplifications whose second differences tell a fold from a smooth curve
 FLAT_RANGE_RATIO = 0.05  # range of a surface divided by its mean, up to which it counts as flat: no resonance
-MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase pairs of motions computed
+MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase pairs for checks of displacements
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Findings on a scene by printed small-vibration equations (4.3)-(4.4), for one definition of the peak (5.1)."""
+    """Findings by the paper's small-vibration equations (4.3)-(4.4); peaks count at any slip speed or above cutoff."""
 
-    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # amplification (n, n, N), NaN if unknown
+    # Amplification (n, n, N): n phases alpha1, n phases alpha2, N bodies; NaN if unknown
+    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))
     error: float = float("nan")  # largest absolute error estimate of the amplification
     statuses: tuple[str, ...] = ()  # distinct outcomes of the phase pairs
-    bends: tuple[SharpestCurvature, ...] = ()  # sharpest curvature of each body's surface
+    bends: tuple[SharpestCurvature, ...] = ()  # sharpest curvature of each body's amplification over the phases
     # For each body, largest |x - y| of its displacements, divided by the largest displacement, at MOTION_PHASES
     apart: tuple[float, ...] = ()
-    swing: float = float("nan")  # largest (displacement of the platform / rho)^2, at MOTION_PHASES
+    swing: float = float("nan")  # largest (platform displacement / bearing radius rho)^2, at MOTION_PHASES
     resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s
     ground: SharpestCurvature | None = None  # sharpest curvature of the ground peak, divisor in (5.1)
     error_message: str = ""  # why nothing was computed, or ""
