@@ -68,6 +68,11 @@ def test_the_error_of_a_spectrum_counts_the_other_runs() -> None:
     exact = replace(motion, accuracy=Accuracy(np.zeros(1), (), (), 0.0))
     rising = np.zeros((101, 1, 3)) + motion.time[:, None, None]  # which every third sample has too, with both ends
     assert reference.floor_spectra(replace(exact, absolute_acceleration=rising), [0.3]).error.max() < 1e-9
+    kept = [np.union1d([0, 100], np.arange(first, 101, 3)) for first in range(3)]
+    coarse = [replace(exact, time=exact.time[k], absolute_acceleration=exact.absolute_acceleration[k]) for k in kept]
+    values = [reference.floor_spectra(each, [0.3]).acceleration for each in (exact, *coarse)]
+    changes = np.abs(np.array(values[1:]) - values[0])
+    np.testing.assert_allclose(reference.floor_spectra(exact, [0.3]).error, 2.0 * changes.max(axis=0), rtol=1e-9)
     rounded = alone.error - reference.floor_spectra(exact, [0.3, 0.9]).error
     np.testing.assert_allclose(rounded, 0.01 * alone.acceleration, rtol=1e-9)
 

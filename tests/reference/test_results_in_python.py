@@ -114,6 +114,8 @@ def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
     assert [patch.get_x() for patch in axes.patches] == [start for start, _ in motion.stick] != []
     for name, unit in (("position", "m"), ("velocity", "m/s"), ("absolute_acceleration", "m/s$^2$")):
         assert motion.plot(name, axes=plt.figure().add_subplot()).get_ylabel().endswith(f", {unit}")
+    priced = replace(motion, scene=motion.scene.with_values({"title": "from $5 to $6"})).plot()
+    assert priced.get_title() == r"from \$5 to \$6", "no formula"
     plt.close("all")
 
 

@@ -360,6 +360,7 @@ CSMIP = (
         ("a.NS2", KNET.format("4"), "y", 0.01 * 2000 / 8388608 * 1000),
         ("a.UD", KNET.format("U-D"), "z", 0.01 * 2000 / 8388608 * 1000),
         *(("a.ASC", ESM.format(letter), axis, 10.0) for letter, axis in zip("ENZ", "xyz")),
+        ("a.ASC", ESM.format("E").replace("cm/s^2", "g"), "x", 1000.0 * GRAVITY),
         ("a.V2", COSMOS, "x", 10.0),
         ("a.v2", CSMIP, "x", 10.0),
     ],
