@@ -54,8 +54,8 @@ STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
 # follow without vibrating
 VIBRATIONS_PER_TIME_SCALE = 10.0
 BASE_STEPS = 20_000  # part of the limit of steps in a run that does not depend on the scene
-MAX_STEPS = 3_000_000  # largest limit of steps in a run without BASE_STEPS; about 30 s for two bodies
-PARTS_PER_THREAD = 8  # number of slices of the phase pairs per thread, so that no thread waits long for another
+MAX_STEPS = 3_000_000  # largest limit of steps in a run, not counting BASE_STEPS; it takes about 30 s for two bodies
+PARTS_PER_THREAD = 8  # slices of the loading's phase pairs per thread, so that no thread waits long for another
 
 
 @require_scene
@@ -70,9 +70,9 @@ def amplification(
     full: bool = False,
 ) -> Amplification:
     """
-    Return the amplification mu_i (5.1) of every body i, from rest, by the paper's equations, with error estimates.
+    Return amplifications mu_i (5.1) from rest, peak absolute over peak ground acceleration, by the paper's equations.
 
-    By default the amplification is the literal supremum of (5.1). ``cutoff=1e-3`` gives it as integrated.
+    All have error estimates. By default each is the literal supremum of (5.1); ``cutoff=1e-3`` gives it as integrated.
 
     Parameters
     ----------
@@ -127,7 +127,8 @@ def amplification(
     True
     """
     pairs, shape = flat_phases(phases)
-    # Two cases are not reduced to one axis: (4.6) as printed, which distinguishes directions, and friction that yields
+    # A plane motion is turned and computed along x alone, but not with the paper's misprinted condition for rest (4.6),
+    # which distinguishes directions, or with friction that yields before it slides.
     flat = not full and rest_condition == "consistent" and is_planar(scene).allowed and not scene.dry_friction.elastic
     moving, axes = (turn_loading_to_x(scene), 1) if flat else (scene, 2)
     system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
@@ -143,7 +144,7 @@ def amplification(
         summed = system.small and not full and is_linear(scene).allowed
 
         def solve(part: slice) -> float:
-            """Compute the amplifications at a slice of the phase pairs, into `found`; return the time it took, s."""
+            """Compute amplifications at a slice of pairs of loading phases, into `found`; return the time taken, s."""
             return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
 
         cost = _solve_on_threads(solve, len(pairs), alone=summed)
@@ -154,7 +155,7 @@ def amplification(
 
 
 class _PointAnswers(NamedTuple):
-    """Results at M phase pairs for N bodies, which the runs fill in."""
+    """Results at M pairs of the loading's initial phases for N bodies, which the runs fill in."""
 
     mu: Array  # (M, N), amplification of each body
     error: Array  # (M, N), estimated error of each amplification
@@ -181,7 +182,7 @@ def _solve_points(
     summed: bool,
     full: bool,
 ) -> float:
-    """Compute the results at a slice of the phase pairs (M, 2), rad, into `found`; return the time it took, s."""
+    """Compute results at a slice of pairs of loading phases (M, 2), rad, into `found`; return the time it took, s."""
     begin = time.thread_time()
     ground = ground_peak(scene, pairs[part])
     shaken = ground >= LEAST_ACCELERATION
@@ -204,7 +205,7 @@ def _solve_points(
 
 
 def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) -> float:
-    """Call `solve` for slices of `count` phase pairs, on all threads unless `alone`; return the sum of times, s."""
+    """Call `solve` for slices of `count` loading phase pairs, on all threads unless `alone`; return sum of times, s."""
     threads = numba.get_num_threads()
     if alone or threads == 1 or count < 2:
         return solve(slice(0, count))
@@ -214,7 +215,7 @@ def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) 
 
 
 def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
-    """Return a linear scene's peaks, a motion per harmonic superposed; run only motions that may end early (4.1)."""
+    """Return a linear scene's peaks by superposed harmonics; run only motions that may reach travel or rim (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))

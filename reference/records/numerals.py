@@ -11,7 +11,8 @@ from reference.records.samples import MAX_ACCELERATION, RecordError
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-MAX_LINE, MAX_CELL = 1000, 100  # longest part of a line that is searched for words, longest number, both in letters
+# Characters: part of a line searched for words (a longer CSV line is an error); longest number (longer: an error)
+MAX_LINE, MAX_CELL = 1000, 100
 MAX_HEADER_LINES = 100  # number of lines at the start of a record file in which its header is searched for
 # Number of m/s^2 in each unit of acceleration
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
@@ -123,9 +124,9 @@ def holds_numbers(line: str) -> bool:
 
 def read_values(lines: Sequence[str], first: int, count: int, stated: str) -> tuple[list[float], tuple[str, ...]]:
     """
-    Return the `count` numbers in a record's data lines, and notes on what was ignored or split. Raises RecordError.
+    Return `count` numbers of data lines, notes on lines ignored or numbers split; stated: the count in header's words.
 
-    first: line number in the file of lines[0]. stated: the count in the header's words, for the error.
+    first: line number in the file of lines[0]. Raises RecordError, which quotes `stated` if the count is wrong.
     A line with words behind the last value ends the data.
     """
     values = parse_plain_lines(lines)

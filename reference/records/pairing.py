@@ -13,7 +13,7 @@ MAX_NAMED = 20  # largest number of files that an error message names
 
 
 class SuiteError(ValueError):
-    """Error for an invalid suite of ground motions, or a motion it lacks: the scene's key, and the rule it breaks."""
+    """Error for an invalid suite of ground motions or a motion it lacks: names the scene file's key and the fault."""
 
     def __init__(self, key: str, rule: str) -> None:
         """Set the key of the scene's `record` whose entry is wrong, and the rule that this entry breaks."""

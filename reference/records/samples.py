@@ -27,13 +27,13 @@ MAX_ACCELERATION = 1e300  # m/s^2, largest sample that is accepted: it stays fin
 MIN_INTERVAL = 1e-9  # s, shortest time between two samples of a record that is accepted
 # Shapes of accelerations that an error message asks for
 ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
-STEP_MISMATCH = 1e-6  # largest relative difference in sampling interval between the files of one motion
-TIME_MISMATCH = 0.01  # largest difference in sampling times between two files of one motion, as share of the interval
+STEP_MISMATCH = 1e-6  # a larger relative difference in sampling interval between two files of a motion is an error
+TIME_MISMATCH = 0.01  # share of the interval: a larger difference in time between two files of a motion is an error
 
 
 class RecordError(ValueError):
     """
-    Error for a file that cannot be read as a record: one line with the place in the file, its text, and the rule.
+    Error for a file that is no readable record: one line with the place in the file, the text there, what it must be.
 
     said: the error in words. proposal: the end of the message, which says what to write in the scene file instead.
     """
@@ -65,7 +65,7 @@ class RecordSamples:
 def make_even_samples(
     format: str, step: float, values: Array, word: str = "", notes: tuple[str, ...] = ()
 ) -> RecordSamples:
-    """Return samples (m/s^2) along one direction, named by `word`, at a constant time step, s. Raises RecordError."""
+    """Return samples, m/s^2, at a constant step, s, of the direction that the file calls `word`. Raises RecordError."""
     if not step >= MIN_INTERVAL:
         raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
     axis, time = axis_of_word(word), step * np.arange(len(values), dtype=float)

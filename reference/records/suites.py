@@ -50,7 +50,7 @@ RECORD_SUFFIXES = (".csv", ".at2")  # suffixes of files that count as records, w
 OTHER_SUFFIXES = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
 # Matches names of the lists that a record database adds to a download; these files are not records
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)  # files listed as "search results"
-NAMED_KINDS = ("texts", "other files")  # kinds of ignored files that are told by name, not only counted
+NAMED_KINDS = ("texts", "other files")  # kinds of ignored files that a suite's description lists by file name
 # Suffixes of ignored files of kind "texts": documents that come with records
 TEXT_SUFFIXES = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
 MAX_FILES = 10_000  # largest number of files in the folder of a suite
@@ -123,14 +123,14 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
 
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
-    """Return the error for an unreadable motion, with its line of motions.csv or its folder as the place to mend."""
+    """Return an unreadable motion's error with text `rule`; its place: a line of the list motions.csv or a folder."""
     folder = motion.folder or next(iter(motion.files.values())).parent
     place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
 
 
 def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
-    """Return an error's text, which proposes a line for motions.csv in place of one for a scene file."""
+    """Return an error's text, advice on the scene file replaced, if possible, by a line for the list motions.csv."""
     if isinstance(error, OSError):
         return str(error.strerror or error)
     said, proposal = error.said, _propose_file_options(file) if error.proposal else None
@@ -149,7 +149,7 @@ def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) 
 
 def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
     """
-    Return the header of motions.csv, a motion's line with proposed options, and a text on options that are guesses.
+    Return header and a motion's line for the list motions.csv, with reading options, and a text on those only guessed.
 
     Raises RecordError for a name that no line can hold.
     """
@@ -222,7 +222,7 @@ def _pair_records(records: Sequence[Path]) -> list[Motion]:
 
 
 def propose_motion(files: Sequence[Path]) -> str:
-    """Return a text that proposes motions.csv for the first file of plain numbers, found in `files`; "" if none is."""
+    """Return advice to list the first file of plain numbers in motions.csv, with step and unit; "" if there is none."""
     for file in files:
         if (proposal := _propose_file_options(file)) is None:
             continue

@@ -30,18 +30,21 @@ from reference.solver.rows import Row, combine_columns, put, row
 from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Workspace
 
-# Columns of the matrix from stages to channels (eigenbasis of A), real parts first, and of the matrix back
+# Columns of the matrix from stage values to channels (eigenbasis of the collocation matrix), real parts first
 TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
-FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))  # channels to stages
-# Transforms to channels of two functions of time in a step: a constant 1, and the elapsed share of the step
+# Columns of the matrix back, from channels (eigenbasis of the collocation matrix) to the stages of a step
+FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
+# Transforms to the collocation matrix's eigenbasis of two functions over a step: 1, and the elapsed share of the step
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# Matrices, one a channel j, that send numbers at the stages to channel j alone and back to the stages (complex)
+# Complex matrix for each eigenvector j of the collocation matrix: it keeps j's part of stage values (`set_feedback`)
 _CHANNEL_RESPONSES = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
-CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (  # parts of _CHANNEL_RESPONSES, transposed for compiled code
+# Real and imaginary parts of _CHANNEL_RESPONSES, a matrix per collocation eigenvector, transposed for compiled code
+CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (
     np.array([columns_as_rows(part) for part in parts])
     for parts in zip(*((through.real, through.imag) for through in _CHANNEL_RESPONSES))
 )
-# Largest rounding error of an acceleration from the transform to channels and back, relative to the loads (3e-13)
+# Largest rounding error of an acceleration from the transform to the collocation matrix's eigenbasis and back, over the
+# forces (3e-13): a step error within rounding does not fail a step (`step_error`)
 CHANNEL_ROUNDING = float(
     np.finfo(float).eps * exact_product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max()
 )
@@ -49,13 +52,13 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coefficient that couples body i to the body below for one collocation eigenvalue; root: h times it."""
+    """Return minus the lower neighbor's acceleration factor in body i's equation; root: h * collocation eigenvalue."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return the coefficient that couples body i to the body above for one collocation eigenvalue; root: h times it."""
+    """Return minus the upper neighbor's acceleration factor in body i's equation; root: h * collocation eigenvalue."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 
@@ -68,11 +71,11 @@ def reciprocal(number: complex) -> complex:
 
 @compiled
 def eliminate_chain(system: System, work: Workspace, h: float) -> None:
-    """Eliminate the bodies above the platform from a step of length h, s: set work.inverse and work.gain (work.py)."""
-    # In channel j only neighboring bodies are coupled (see above), so elimination from the top down takes one pivot
-    # d_i = e_i + L b_i per body. Here e_i = 1 + L c_i e_{i+1} / d_{i+1} replaces the usual difference
+    """Eliminate upper bodies from step equations (length h, s): set work.inverse (1 / pivot), work.gain (response)."""
+    # For each collocation eigenvector j only neighboring bodies are coupled: L b_i is `coupling_below`, L c_i
+    # `coupling_above`. So elimination from the top down takes one pivot d_i = e_i + L b_i per body. Here
+    # e_i = 1 + L c_i e_{i+1} / d_{i+1} (`upper`; `inverse` is 1 / d_i) replaces the usual difference
     # 1 + L c_i - L^2 c_i b_{i+1} / d_{i+1}, in which a stiff link would cancel all digits of the inertia.
-    # `upper` is e_i, `inverse` 1 / d_i.
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         for j in range(CHANNELS):
@@ -118,7 +121,7 @@ def transform_from_channels(values: Row) -> Row:
 
 @compiled
 def set_chain_loads(system: System, work: Workspace, h: float) -> None:
-    """Set the loads on the bodies above the platform in a step, and the platform's drive as if it kept its velocity."""
+    """Set loads on upper bodies, and the platform's driving acceleration (link, ground) if it kept its velocity."""
     # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
     # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
     # channels a constant is ONES_IN_CHANNELS and the elapsed time h NODES_IN_CHANNELS. `carried` is the part that

@@ -20,7 +20,7 @@ from numpy.polynomial import legendre
 
 STAGES = 7  # number of collocation points (stages) in one time step
 ROW_LENGTH = STAGES + 1  # numbers in a row (rows.py): one for each stage, and an unused one
-CHANNELS = (STAGES + 1) // 2  # number of channels: A's real eigenvalue has one, each conjugate pair of them has one
+CHANNELS = (STAGES + 1) // 2  # number of collocation eigenvectors kept (channels): the real one, one per conjugate pair
 GUESSED_DIGITS = 3  # number of decimals kept of LAPACK's eigenvalues and roots, which are only first guesses
 EIGENVALUE_ITERATIONS = 12  # number of iterations that refine a guessed eigenvalue or node until only rounding is left
 
@@ -95,14 +95,14 @@ def _defect_polynomial() -> np.ndarray:
 
 # Coefficients of the interpolation error's shape in a step: polynomial in its share theta, 1 at start, 0 at the stages
 DEFECT_POLYNOMIAL = _defect_polynomial()
-# Weights by which stage accelerations give the error, over h, of stage velocities extrapolated to the step's start
+# Weights: a weighted sum of stage accelerations, times step length, is the error of velocity extrapolated to its start
 VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
 # Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from the start of a step (theta = 0)
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 
 def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the eigenvalues of A, one per conjugate pair, and the matrices to A's eigenbasis (channels) and back."""
+    """Return the collocation matrix's eigenvalues, one per conjugate pair, and matrices to its eigenbasis and back."""
     # A has one real eigenvalue and three conjugate pairs. The numbers in the channels of a pair are conjugate, so one
     # channel is kept and counted twice. LAPACK's eigenvalues are rounded to GUESSED_DIGITS and refined by inverse
     # iteration; the inverse of the eigenvectors gets one step of Newton's method (X <- 2 X - X V X), which makes it
@@ -110,7 +110,7 @@ def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     guesses = np.round(np.linalg.eigvals(A), GUESSED_DIGITS)
     kept = sorted((complex(guess) for guess in guesses if guess.imag >= 0.0), key=lambda guess: guess.imag)
     values, vectors = zip(*(_eigenpair_near(guess) for guess in kept))
-    # A complex channel that is kept counts twice, since its conjugate is left out
+    # A complex eigenvector that is kept counts twice in the matrix back to stages, since its conjugate is left out
     doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]
     others = [vector.conj() for vector, factor in zip(vectors, doubled) if factor == 2.0]
     every = np.stack([*vectors, *others], axis=1)
@@ -120,7 +120,7 @@ def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
-    """Return the eigenvalue of A nearest to a guess, and its eigenvector, scaled so that its largest entry is 1."""
+    """Return the collocation matrix's eigenvalue nearest to a guess, and its eigenvector, whose largest entry is 1."""
     shifted = A - guess * np.eye(STAGES)
     vector = _solve_linear(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())

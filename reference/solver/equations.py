@@ -34,7 +34,7 @@ def exact_acceleration(
     radius: float,
 ) -> tuple[Number, Number, Number, Number]:
     """
-    Return (ax, ay, reaction N / m1, inertia determinant) of the platform by the exact equations (3.9)-(3.13).
+    Return (ax, ay, reaction N / platform mass m1, inertia matrix determinant) by the exact equations (3.9)-(3.13).
 
     With n = -p / rho the inward normal, M = m_sum / m1 and s the slip vector, Newton's law
         a_h = f + R (n_h - s),   a_z = -pressure + (R / M) (n_z - s_z),   R = N / m1
@@ -67,7 +67,7 @@ def small_acceleration(
     radius: float,
 ) -> tuple[Number, Number, Number, Number]:
     """
-    Return (ax, ay, reaction N / m1, 1) of the platform by the small equations (4.3) as printed in the paper.
+    Return (ax, ay, reaction N / platform mass m1, 1 as determinant) by the paper's small-vibration equations (4.3).
 
     Friction is mu [M (g + zeta'') w - u (p . w) / rho], mu its coefficient. As in the paper, terms with xi'' p are
     kept, and those with the acceleration and the spring force, which are of the same order, are left out.
@@ -87,7 +87,7 @@ def vertical_motion(
     px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number, radius: float
 ) -> tuple[Number, Number, Number]:
     """Return height above the sphere's lowest point, m, vertical velocity and acceleration (2.1), (3.4)-(3.5)."""
-    depth = sqrt(radius * radius - px * px - py * py)  # depth is -Delta of (3.3)
+    depth = sqrt(radius * radius - px * px - py * py)  # depth below the sphere's center: -Delta of (3.3)
     vz = (px * vx + py * vy) / depth
     az = (vx * vx + vy * vy + vz * vz + px * ax + py * ay) / depth
     return (px * px + py * py) / (radius + depth), vz, az

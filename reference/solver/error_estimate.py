@@ -29,27 +29,28 @@ TOLERANCE_RATIO = 30.0  # ratio of the coarser run's tolerance to the finer run'
 # Share of the two runs' difference in a peak that counts as error of the finer run (1 / 30 would be expected). Where
 # friction yields or depends on the velocity, the error falls by less between two runs, and all of it counts.
 DIFFERENCE_FRACTION, DIFFERENCE_FRACTION_VARYING_FRICTION = 0.4, 1.0
-# Smallest relative errors that are stated for a peak, since closer agreement of two runs is chance. The third replaces
-# the second where friction yields or depends on the velocity: stiff creep needs shorter steps (measured: up to 0.015).
-MIN_ERROR_PER_STEP_TOLERANCE = 5e-4  # part of the smallest stated error, as share of the tolerance inside a step
+# Least relative errors stated for a peak, since closer agreement of two runs is chance. Where friction yields or varies
+# with speed, the third replaces MIN_ERROR_FRACTION: stiff creep needs shorter steps (measured: up to 0.015).
+MIN_ERROR_PER_STEP_TOLERANCE = 5e-4  # added to a peak's relative error, as share of a step's error tolerance
 MIN_ERROR_FRACTION = 0.007  # smallest stated error, as share of the tolerance that the user requests
 MIN_ERROR_FRACTION_VARYING_FRICTION = 0.07  # smallest stated error / tolerance if friction yields or varies with speed
 READING_ERROR_FACTOR = 2.0  # factor on the interpolation error at a peak, since the step before may add as much
 ROUNDING_ERROR = 1e-12  # relative rounding error of a peak at any tolerance: some hundred steps of some ten operations
-# Bounds on the tolerance inside a step: relative error of accelerations; looser ones would save few steps
-MAX_STEP_TOLERANCE = 1e-5  # upper bound on the tolerance inside a step
-MIN_STEP_TOLERANCE = 1e-11  # lower bound on the tolerance inside a step
+# Bounds on the relative error of accelerations that the finer run permits in a step; looser ones would save few steps
+MAX_STEP_TOLERANCE = 1e-5  # largest tolerance of the finer run for accelerations in a step, a relative error
+MIN_STEP_TOLERANCE = 1e-11  # smallest tolerance for accelerations in a step, a relative error: no run has a tighter one
 # Ratio of tolerance inside a step to the requested one of a peak: step errors are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
-# Factor on the tolerance inside a step where friction yields: otherwise both runs may miss a slide within a step
+# Factor on a step's tolerance where friction yields elastically: without it, both runs may miss a slide within a step
 YIELDING_TOLERANCE_FACTOR = 0.01
 # Share of RunSettings.period for which the coarser run goes on after the finer run's last peak: its own may be later
 EVENT_MARGIN = 0.01
 
-FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first room of a StepRecord: steps, plus steps per ground sample
-# With heating, runs repeat until peaks and mean k_T change by less than MAX_SETTLED_CHANGE of the tolerance. They also
-# end when a change below the tolerance is more than MIN_CONTRACTION_RATIO of the one before: it is then the error of
-# the steps. Early changes may grow, since runs agree up to an instant that comes later with each run.
+FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps that memory is first allocated for, plus steps per ground sample
+# With heating, a run is repeated with friction's temperature factor k_T from the run before, until peaks and mean k_T
+# change by less than MAX_SETTLED_CHANGE of the tolerance. It also ends when a change within the tolerance is more than
+# MIN_CONTRACTION_RATIO of the change before: time steps then cause it. Changes of the first runs may grow, since runs
+# agree up to an instant that comes later with each run.
 MAX_SETTLED_CHANGE, MIN_CONTRACTION_RATIO = 0.02, 0.5
 MAX_HEATED_RUNS = 30  # largest number of runs that are repeated to find the temperature factor of friction, k_T
 SMALLEST_VALUE = 1e-300  # m/s^2, smallest divisor of relative changes of peaks, so that nothing is divided by zero
@@ -66,14 +67,14 @@ class RunPeaks(NamedTuple):
     instant: Array  # (M,) s, time at which the run ended
     steps: Array  # (M,) number of steps of the last run
     reach: Array  # (M,) m, largest horizontal displacement of the platform
-    last_peak: Array  # (M,) s, end of the last step with an acceleration near the largest
+    last_peak: Array  # (M,) s, end of the last step with acceleration >= 0.9 of the largest: the coarser run ends later
 
 
 def peaks_at(
     system: System, phases: Array, settings: RunSettings, tolerance: float, until: Array | None = None
 ) -> RunPeaks:
     """
-    Return the peaks of one run from rest for every phase pair (M, 2), rad, with this tolerance inside the time steps.
+    Return peak accelerations of a run from rest for each pair of loading phases (M, 2), rad; tolerance: inside steps.
 
     The errors are estimates from this run alone: interpolation at the peak, and drift of the steps before it. Runs that
     do not end early make no step beyond `until` (M,), s, by default the end of the motion.
@@ -81,7 +82,7 @@ def peaks_at(
     rest = np.zeros((len(system.below), 2))
     settings = settings._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        (pair,) = phases  # with heating one phase pair is run at a time, as each has its own temperature factor k_T
+        (pair,) = phases  # with heating one pair of loading phases is run at a time: each has its own factor k_T
         return record_run(rest, rest, system, pair, settings)[0]
     return peaks_from(rest, rest, system, phases, settings, allocate_record(0, len(rest)), until)
 
@@ -95,7 +96,7 @@ def peaks_from(
     record: StepRecord,
     until: Array | None = None,
 ) -> RunPeaks:
-    """Return the peaks of one run from x and v (N, 2) per phase pair (M, 2), rad; store its steps in `record`."""
+    """Return a run's peak accelerations from x, v (N, 2) per pair of loading phases (M, 2), rad; fill `record`."""
     count, bodies = len(phases), len(x)
     value, error = np.empty((count, bodies)), np.empty((count, bodies))
     ends = np.empty((len(RunPeaks._fields) - 2, count))
@@ -109,9 +110,9 @@ def record_run(
     x: Array, v: Array, system: System, phase: Array, settings: RunSettings
 ) -> tuple[RunPeaks, StepRecord, System]:
     """
-    Return the peaks of one run from x and v (N, 2), its steps, and the system with friction's temperature factor k_T.
+    Return a run's peak accelerations, steps, system with friction's temperature factor k_T; phase: loading's two, rad.
 
-    With heating, the run is repeated until its k_T no longer changes; the last change counts as error.
+    x, v (N, 2): start. With heating, the run is repeated until k_T no longer changes; the last change counts as error.
     """
     # The number of steps is known only afterwards: a run that outgrows its record is made again with a larger one.
     # With heating, k_T as a function of time follows from the heat of the run before. The first run has the k_T of
@@ -141,7 +142,7 @@ def record_run(
 
 def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole: bool = False) -> RunPeaks:
     """
-    Return each phase pair's peak accelerations, to the relative tolerance of `settings`, with estimated errors.
+    Return peak accelerations and error estimates for pairs of loading phases, to the relative tolerance of `settings`.
 
     With `whole` all runs go to the end of the motion; otherwise they end where no peak, displacement or outcome can
     change any more (look_ahead.py).
@@ -151,7 +152,7 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
     # Where the error misses the tolerance, the finer run becomes the coarser one of the next pair. A run that cannot be
     # finished is tried again, too, with a tighter tolerance: it may pass where a looser one stumbled. If the tighter
     # one fails instead, the peaks of the pair before remain, with their error and the status "tolerance not met".
-    # Looking ahead supports only the consistent condition for rest, no heat and no friction that yields.
+    # Runs can end early (look_ahead.py) only with the friction-cone condition for rest, no heat, no yielding friction.
     early = not whole and system.rest_condition == CONSISTENT and not len(system.heat) and system.law != YIELDING
     settings = settings._replace(early=early)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * settings.tolerance, MIN_STEP_TOLERANCE))

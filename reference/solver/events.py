@@ -59,7 +59,7 @@ def locate_onset(system: System, work: Workspace) -> float:
 
 @compiled
 def expand_drive(work: Workspace) -> None:
-    """Set work.powers to the coefficients of drive and ground acceleration as polynomials over a step at rest."""
+    """Set work.powers: polynomials over a rest step of the driving (link minus ground) and the ground acceleration."""
     for axis in range(2):
         set_coefficients(row(work.free, axis), work.powers[axis])
     for axis in range(3):
@@ -124,7 +124,7 @@ def speed_excess(work: Workspace, theta: float) -> float:
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """Return the quantity at share theta that turns positive at events; way: 1 for a rise through 0, -1 for a fall."""
+    """Return way (1: rise, -1: fall) times an event's quantity at share theta: force or speed excess, or polynomial."""
     if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
@@ -132,7 +132,7 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """Return the first share of a step behind `begin` with `event_value` > 0; start: value at `begin`, over `way`."""
+    """Return the first share of a step behind `begin` with `event_value` > 0; start: event's quantity at `begin`."""
     # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
     # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
     # no more than the largest change from point to point. Then a golden-section search looks for a positive value
@@ -198,9 +198,9 @@ def locate_crossing(system: System, work: Workspace, event: int, way: float, low
 @compiled
 def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
-    Set work.edges to start and end, in theta, of each part of the step in which the tested quantity is >= 0.
+    Set work.edges to start and end of each part of a step with the quantity of `event` >= 0; return their number.
 
-    With `way` = -1: in which it is <= 0. Return the number of parts. start: the quantity of `event` at theta = 0.
+    Edges are in theta, the share of the step. With `way` = -1: parts with <= 0. start: the quantity at theta = 0.
     """
     parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:

@@ -89,7 +89,7 @@ def set_harmonic_step_factors(system: System, work: Workspace, h: float) -> None
 
 @compiled
 def next_ground(system: System, work: Workspace, t: float) -> Ground:
-    """Return ground acceleration and k_T at t: the time given to set_harmonics, then one step later at every call."""
+    """Return ground acceleration and temperature factor k_T at t: time of set_harmonics, one step later per call."""
     if system.record.shape[0] > 0:
         return record_acceleration_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
@@ -104,7 +104,7 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_ground_at_stages(system: System, work: Workspace) -> None:
-    """Set ground acceleration and k_T at the stages of a step; `set_harmonics` must have been called for its start."""
+    """Set ground acceleration and temperature factor k_T at a step's stages, after `set_harmonics` at its start."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest

@@ -23,15 +23,15 @@ from reference.support.build_cache import cache_on_disk
 
 # Number of Newton iterations that find when the slider begins or stops covering the center of the concave surface
 NEWTON_STEPS = 8
-# Where pieces of time end behind a kink of friction power, as shares of a step: graded for changes like a root of time
+# Cuts of time in the heat integral after a kink of friction power, in shares of a step: k_T changes like a root of time
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
-MIN_PIECE = 1e-10  # length of the shortest piece of time, as share of the duration of the motion
+MIN_PIECE = 1e-10  # share of the motion's duration: a cut of time (heat integral) closer to the last is left out
 # Time since a piece of heating, in its lengths, beyond which its effect on the temperature is integrated by quadrature,
 # and beyond which by moments (sum, mean time, variance) of its heat. The latter holds for blocks of pieces as well.
-FAR_DISTANCE = 4.0  # piece lengths, beyond which quadrature is used
-BLOCK_DISTANCE = 30.0  # time since a piece or block of heating, in its lengths, beyond which its moments are used
+FAR_DISTANCE = 4.0  # time since a piece of heating began, over its length: beyond it, quadrature gives its effect
+BLOCK_DISTANCE = 30.0  # time since a block of heating began, over its length: beyond it the moments of its heat suffice
 MAX_LAST_CHANGE = 1e-14  # change of the temperature factor k_T below which its iteration in a piece of time ends
-MAX_ITERATIONS = 50  # largest number of iterations for k_T in a piece of time
+MAX_ITERATIONS = 50  # most iterations for friction's temperature factor k_T in a piece of time; then the last is kept
 NODE_WEIGHTS = A[-1].copy()  # quadrature weights of the collocation nodes in a piece of time of length 1
 
 
@@ -184,7 +184,7 @@ def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficie
 
 @cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
-    """Set k_T, friction's temperature factor, at S nodes of K pieces of time; power: at k_T = 1, times Heat.rise."""
+    """Set temperature factor k_T at S nodes of K time pieces; power: Heat.rise * friction power at k_T = 1."""
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))

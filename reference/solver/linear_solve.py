@@ -27,7 +27,7 @@ def _ones_where(chosen: NDArray[np.bool_]) -> Array:
     return ones
 
 
-# Masks for the columns of a matrix: 1 above the diagonal, on it or below it, and 0 elsewhere
+# Mask for the columns of a matrix: 1 above the diagonal, 0 on it and below it
 ABOVE_DIAGONAL = _ones_where(_PLACES[:, None] > _PLACES)
 IDENTITY = _ones_where(_PLACES[:, None] == _PLACES)  # mask for matrix columns: 1 on the diagonal, else 0
 BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)  # mask for matrix columns: 1 below the diagonal, else 0

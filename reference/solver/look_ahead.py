@@ -49,9 +49,9 @@ LARGE_FRACTION = 0.85
 MIN_DISTANCE_TO_SINGULARITY = 0.1
 MAX_SLOW_STEPS = 2.0  # a slide counts as near its stop if friction would stop it within this number of rough steps
 DIRECTION_MARGIN = 0.35  # rad, uncertainty of a slide's direction near its stop in a rough run
-MIN_SURE_DRIVE = 0.5  # smallest ratio of drive to friction limit at which a rough run knows the drive's direction
+MIN_SURE_DRIVE = 0.5  # frictionless acceleration / friction limit: if less, a rough run admits all slip directions
 MAX_HELD_DRIVE = 0.8  # largest ratio of squared drive to squared friction limit at which friction surely holds
-LOOK_AHEAD_DELAY = 0.25  # share of RunSettings.period from the last large acceleration until a rough run looks ahead
+LOOK_AHEAD_DELAY = 0.25  # share of RunSettings.period from the last value >= 0.9 of the peak to a rough run to the end
 
 
 @compiled
@@ -84,7 +84,7 @@ def rough_step_length(system: System, settings: RunSettings) -> float:
 
 @compiled
 def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
-    """Return the time, s, at which a rough run with steps h, s, meets a large acceleration or displacement, or inf."""
+    """Return when, s, a rough run of steps h, s, reaches 0.85 of the largest acceleration or displacement; or inf."""
     bodies = work.x.shape[0]
     for i in range(bodies):  # x1, v1 keep the state here, as the next accurate step sets them anew
         for axis in range(2):
@@ -103,7 +103,7 @@ def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
 
 @compiled
 def make_rough_step(system: System, work: Workspace, time: float, h: float) -> bool:
-    """Make one rough step of length h, s; return True if an acceleration or displacement may become large in it."""
+    """Make one rough step h, s; return True if it may reach 0.85 of the largest acceleration or displacement."""
     move_at_velocity(work, 0.5 * h)
     ground = next_ground(system, work, time + 0.5 * h)
     set_chain_acceleration(system, work, ground)
@@ -217,7 +217,7 @@ def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) ->
 @compiled
 def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground, friction: float) -> float:
     """
-    Return a bound on the absolute acceleration, m/s^2, of a slide with velocity v under the drive g, until it stops.
+    Return a bound on a slide's absolute acceleration, m/s^2, up to its stop; v: velocity, g: frictionless acceleration.
 
     The direction of the slide turns from that of v to that of g (stop_arc.py), and friction, m/s^2, with it.
     """

@@ -59,9 +59,9 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
     # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
     # (`set_motion_at_stages`). These give ground, springs and dampers (`set_drive_at_stages`): a fixed-point iteration
     # for the chain, which converges as the chain hardly moves in it. The forces give the platform's acceleration along
-    # and across its direction (`set_path_acceleration`), Newton's method corrects the directions, which turn fast; ln S
-    # follows from them (`correct_turning`). Slopes are kept while the changes fall fast. Two iterations are always
-    # fresh: the guess is a straight line.
+    # and across its direction (`set_path_acceleration`), Newton's method corrects the directions, which turn fast; the
+    # log speed follows from them (`correct_turning`). Derivatives are kept while the changes fall fast. The first two
+    # iterations always compute them anew: the guess is a straight line.
     guess_near_stop(system, work, h)
     set_harmonics(system, work, work.time)
     before, slow = 0.0, True
@@ -126,7 +126,7 @@ def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
-    """Set ground, upper bodies, drive at the stages; return the largest change of an upper body's velocity, m/s."""
+    """Set stage accelerations: ground, upper bodies, platform drive; return the largest upper velocity change, m/s."""
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0

@@ -29,8 +29,8 @@ NEWTON_ITERATIONS = 6  # number of Newton iterations from the best of SEARCH_POI
 IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # number of components x, y or x, y, z; NumPy integers: see system.py
 # SEARCH_POINTS as an array of rows of ROW_LENGTH numbers; the first points fill up the last row
 SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
-MAX_RATE = 60.0  # largest response rate of friction, 1/s, times step length, s, that counts: faster ones add no error
-SETTLED_FRACTION = 0.9  # an acceleration or displacement above this share of the largest so far counts as near it
+MAX_RATE = 60.0  # cap on friction's rate of response to speed, 1/s, times step, s, in a peak's interpolation error
+SETTLED_FRACTION = 0.9  # above this share of the largest so far, an acceleration or displacement puts off an early end
 
 
 @compiled
@@ -144,7 +144,7 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best, the largest squared accelerations, to those in part of a step; return True if one gets near."""
+    """Raise work.best, largest squared accelerations, to those in part of a step; return True if one is >= 0.9 peak."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
 
-Row: TypeAlias = Any  # type hint of a row, a value that exists only in compiled code
+Row: TypeAlias = Any  # type hint of a row: eight floats, as one per stage of a step and a spare; only in compiled code
 Number: TypeAlias = Any  # a float, or a row of floats
 
 _VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)  # type of a row in the machine code: a vector of doubles
@@ -39,7 +39,7 @@ Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # type hint of a functio
 
 
 class _RowType(types.Type):  # type: ignore[misc]
-    """Type of a row for the compiler numba."""
+    """Type, for the compiler numba, of a row: eight floats with which the processor computes at once."""
 
     def __init__(self) -> None:
         """Set the name of the type."""
@@ -48,10 +48,10 @@ class _RowType(types.Type):  # type: ignore[misc]
 
 @register_model(_RowType)
 class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
-    """Model that tells numba how a row is stored: as a vector of machine code."""
+    """Model that tells numba how a row (eight floats, computed at once) is stored: as a vector of machine code."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
-        """Set the machine code's type of a row."""
+        """Set the machine code's type of a row: a vector of eight floats."""
         super().__init__(manager, kind, _VECTOR)
 
 
@@ -120,7 +120,7 @@ def _lower_by_instruction(name: str) -> Lower:
 def _lower_one_by_one(operation: Any) -> Lower:
     """Return a generator of machine code that applies a function to each stage's number; the last place becomes 0."""
     # exp, expm1 and log are functions of the C library for one float: called for each number, they give the same bits
-    # as at an instant.
+    # as in the calculation for a single instant, which uses floats.
 
     def lower_call(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         """Generate machine code that calls the function for every number of a row."""

@@ -48,16 +48,16 @@ from reference.solver.work import (
 )
 
 # Lengths of time below are in units of RunSettings.period, the time in which forces change.
-FIRST_STEP = 0.02  # length of the first step of a run, in periods
-NEGLIGIBLE_REMAINDER = 1e-8  # periods before the end of a run within which a failure still counts as finished
-HOLDING_TIME = 1e-6  # periods for which rest or creep is kept, whatever the force, on the border of two phases
+FIRST_STEP = 0.02  # length of the first step of a run, as share of RunSettings.period, the time in which forces change
+NEGLIGIBLE_REMAINDER = 1e-8  # share of RunSettings.period: a run that fails this close to its end counts as finished
+HOLDING_TIME = 1e-6  # share of RunSettings.period: duration forced on rest or creep where two phases each end at once
 RIM_SQUARED_FRACTION = 0.998  # squared displacement over the rim's, rho^2, above which a run that fails has reached it
 # Largest number of successive phases of zero length: after more of them the state counts as on the border of two
 # phases, each of which ends at once in favor of the other.
 MAX_IDLE_PHASES = 4
-# Ratio of inertia determinant to that without friction below which a run that fails has come to Painleve's paradox
+# Inertia matrix determinant over that without friction, below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # share of the loading's velocity: a slower slide that cannot go on counts as rest
+MAX_CRAWL_SPEED = 1e-8  # share of loading acceleration * period / 2 pi: a slower slide that cannot go on counts as rest
 
 
 @compiled
@@ -144,7 +144,7 @@ def integrate(system: System, work: Workspace, settings: RunSettings, record: St
 
 @compiled
 def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> None:
-    """Set phase pair m, and the positions x and velocities v at the start of its motion."""
+    """Set the initial phases of the loading in run m, and positions x and velocities v at the start of its motion."""
     work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
     for i in range(x.shape[0]):
         for axis in range(2):
@@ -154,7 +154,7 @@ def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> Non
 
 @compiled
 def set_results(work: Workspace, code: int, peaks: Array, reading_errors: Array, ends: Array, m: int) -> None:
-    """Write outcome, peaks and their errors of phase pair m's run into the result arrays."""
+    """Write outcome, peak accelerations and their errors of run m, with its loading phases, into the result arrays."""
     ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
     ends[4, m] = work.last_peak
     for i in range(peaks.shape[1]):
@@ -168,7 +168,7 @@ def integrate_runs(
     until: Array, peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
     """
-    Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, until (M,), s, or an early end.
+    Follow the motion from x, v (N, 2) for every pair of loading phases (M, 2), rad, until (M,), s, or an early end.
 
     Fill peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), m/s^2, their errors inside
     their steps with the drift of the steps before. Fill ends (5, M): outcome (system.py), instant (s) and number of

@@ -121,7 +121,7 @@ def change_contact(system: System, work: Workspace, record: StepRecord, contact:
 
 @compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
-    """Follow the motion under friction that yields to the first step beyond `until`, s; see `integrate` (run.py)."""
+    """Follow a motion, friction elastic below its limit, until a step passes `until`, s: see `integrate`, run.py."""
     # The checks of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)

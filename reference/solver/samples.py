@@ -18,8 +18,8 @@ MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP = 4, 48  # bounds on the number of 
 class SampledMotion(NamedTuple):
     """Motion of N bodies at T instants: displacements, velocities, accelerations and the contact's reaction."""
 
-    x: Array  # (T, N, 2) m, horizontal displacements relative to the plate
-    v: Array  # (T, N, 2) m/s, horizontal velocities relative to the plate
+    x: Array  # (T, N, 2) m, horizontal displacements relative to the ground
+    v: Array  # (T, N, 2) m/s, horizontal velocities relative to the ground
     total: Array  # (T, N, 3) m/s^2, absolute acceleration; its vertical part is the same for all bodies
     reaction: Array  # (T,) N/kg, reaction of the contact over the platform's mass
 

@@ -26,7 +26,7 @@ ERROR_ORDER = 7.0  # power of the step length with which the estimated error of 
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
 # before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
-FATAL_STEP = 1e-9  # shortest step before an outcome such as reaching the rim
+FATAL_STEP = 1e-9  # share of RunSettings.period: a shorter step with an outcome such as the rim ends the run with it
 MIN_STEP = 1e-16  # a step whose equations have no solution is shortened down to this length, in RunSettings.period
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
@@ -87,7 +87,7 @@ def remaining_time(system: System, work: Workspace, settings: RunSettings) -> fl
 
 @compiled
 def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the time, s, of the next kink of loading or k_T (a step across it loses its order), or the run's end."""
+    """Return time, s, of the next kink of loading or temperature factor k_T (steps across lose order), or the end."""
     after, end = work.time + negligible_time(system, settings), work.end
     for kinks in (system.record, system.kinks):
         k = next_knot(kinks, after)
@@ -98,7 +98,7 @@ def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
 
 @compiled
 def propose_plain_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the next step's length, s: as proposed by the last step, but not beyond a kink of the loading or k_T."""
+    """Return the next step's length, s: as the last proposed, up to a kink of loading or temperature factor k_T."""
     return min(min(work.length, remaining_time(system, work, settings)), next_kink(system, work, settings) - work.time)
 
 
@@ -131,7 +131,7 @@ def length_factor(error: float, tolerance: float) -> float:
 
 @compiled
 def step_duration(work: Workspace, contact: int, h: float) -> float:
-    """Return the approximate duration, s, of a step of length h, which near a stop is a length in stretched time."""
+    """Return the approximate duration, s, of a step of length h, near a stop in stretched time (dt = speed dtau)."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 
@@ -146,7 +146,7 @@ def is_too_short(work: Workspace, contact: int, settings: RunSettings, h: float,
 
 @compiled
 def set_length(work: Workspace, contact: int, h: float) -> None:
-    """Set the length of the next step: in stretched time near a stop, in s otherwise."""
+    """Set the length of the next step: in stretched time tau (dt = speed dtau) near a stop, in s otherwise."""
     if contact == STOPPING:
         work.stretched_length = h
     else:

@@ -155,7 +155,7 @@ def correct_accelerations(work: Workspace, axes: int) -> float:
 
 @compiled
 def set_platform_motion(work: Workspace, h: float, axes: int) -> None:
-    """Set the platform's position, velocity and drive at the stages from its accelerations there."""
+    """Set the platform's stage position, velocity, driving acceleration (link minus ground) from its accelerations."""
     a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
         velocity = position = broadcast_like(0.0, row(NODES_ROW, ()))
@@ -196,7 +196,7 @@ def classify_unsolved_step(system: System, work: Workspace) -> int:
 def vertical_acceleration(
     system: System, px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number
 ) -> Number:
-    """Return the vertical acceleration of all bodies relative to the plate (2.2); zero for small vibrations (4.3)."""
+    """Return the vertical acceleration of all bodies relative to the ground (2.2); zero for small vibrations (4.3)."""
     if system.small:
         return broadcast_like(0.0, px)
     _, _, az = vertical_motion(px, py, vx, vy, ax, ay, system.radius)
@@ -230,10 +230,10 @@ def step_error(system: System, work: Workspace, tolerance: float, weight: float)
     # by the interpolation error of the step, which falls like h^7: Radau IIA has no stage at theta = 0. This defect is
     # the error of the step.
     # By rounding, the defect is at least FORCE_ROUNDING of the forces, plus CHANNEL_ROUNDING if there are bodies above,
-    # solved in the eigenbasis. No shorter step would reduce an error of that size, so it counts as the tolerance at
-    # most.
-    # On a plane the platform's acceleration relative to the plate counts as well: without a restoring force no absolute
-    # acceleration shows an error of the position.
+    # solved in the collocation matrix's eigenbasis. No shorter step would reduce an error of that size, so it counts as
+    # the tolerance at most, and the step passes.
+    # On a plane surface (infinite radius) the platform's acceleration relative to the ground counts as well: without a
+    # restoring force no absolute acceleration shows an error of the position.
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
     load = max(load, row_maximum(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))

@@ -16,7 +16,7 @@ Complex = NDArray[np.complex128]
 
 # Integer codes of the friction laws (contact/friction.py)
 SET_VALUED, REGULARIZED, LUBRICATED, YIELDING = 0, 1, 2, 3
-# Integer codes of the condition for rest: that of the friction cone, or (4.6) as printed in the paper
+# Integer codes of the condition for rest: tangential force <= static friction limit, or (4.6) with the paper's misprint
 CONSISTENT, PRINTED = 0, 1
 # The integers below are NumPy's, since numba compiles a function anew for every literal integer it is called with.
 PLATFORM = np.int64(0)  # index of the platform among the bodies
@@ -29,15 +29,15 @@ SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...
 
 
 class System(NamedTuple):
-    """Scene for compiled code; stiffness and damping of the links are divided by the mass that they act on."""
+    """Scene (bodies, isolator, loading) for compiled code; link stiffness and damping are over the mass they act on."""
 
     small: bool  # True for the small-vibration equations (4.3), False for the exact ones (3.9)
     law: int  # friction law: SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
-    rest_condition: int  # condition for rest: CONSISTENT or PRINTED
+    rest_condition: int  # condition for rest: CONSISTENT (friction cone) or PRINTED ((4.6) with the paper's misprint)
     # Friction coefficient at speed 0, or f_c in s/m of a lubricated contact; only contact/friction.py reads it
     friction: float
     rise: float  # increase of the friction coefficient from rest to high speed
-    rate: float  # s/m, rate of that increase with the speed; 0 where the coefficient is constant
+    rate: float  # s/m, rate at which the friction coefficient goes to its high-speed value; 0 where it is constant
     exponent: Any  # exponent n of (N / W)^n in the friction coefficient; None if neither load nor heat changes it
     stiffness: float  # 1/s^2, elastic stiffness of friction that yields, over m1; infinite for any other friction
     v_reg: float  # m/s, speed below which friction is linear in the speed, under the regularized law
@@ -52,6 +52,7 @@ class System(NamedTuple):
     amplitudes: Array  # (3, 2), m/s^2, amplitudes of the two harmonics along x, y, z
     exponents: Complex  # (2,), 1/s, complex exponents -decay + i frequency of the two harmonics
     record: Array  # (K, 4), s and m/s^2, samples of a recorded motion, linear between them; (0, 4) without a record
+    # Temperature at first; its rise per friction power, times m1; displacement at which the slider uncovers the center
     heat: Array  # (3,) fields of Heat: initial, degrees C; rise times m1, K s^2.5/m^2; cover, m; (0,) without heating
     k_t: Array  # (K, 3 + S) pieces of friction's temperature factor k_T: start, length, s, coefficients; K = 0 unheated
     kinks: Array  # (J, 1) s, times from which k_T, the temperature factor of friction, changes like a root of time
@@ -65,8 +66,8 @@ class Ground(NamedTuple):
     """Acceleration of the ground, m/s^2, and temperature factor of friction at one instant."""
 
     x: float  # m/s^2, acceleration of the ground along x, xi'' of (5.3)
-    y: float  # m/s^2, along y, eta''
-    z: float  # m/s^2, along the vertical, zeta''
+    y: float  # m/s^2, acceleration of the ground along y, eta''
+    z: float  # m/s^2, acceleration of the ground along the vertical, zeta''
     k_t: float  # factor by which temperature changes the friction coefficient
 
 
@@ -87,7 +88,7 @@ class StepRecord(NamedTuple):
     """Up to T time steps of one motion, for `trajectory` (samples.py); T is 0 if only the peaks are wanted."""
 
     start: Array  # (T,) s, time at the start of each step
-    length: Array  # (T,) s, length of each step; near a stop its length in stretched time
+    length: Array  # (T,) s, length of each step; near a stop in stretched time tau (dt = speed dtau)
     contact: Array  # (T,) state of the contact in each step
     x: Array  # (T, N, 2) m, positions of the bodies at the start of each step
     v: Array  # (T, N, 2) m/s, velocities of the bodies at the start of each step
@@ -97,8 +98,8 @@ class StepRecord(NamedTuple):
     clock: Array  # (T, S) s, time at the stages of steps near a stop
     total: Array  # (T, N, 3, S) m/s^2, absolute accelerations of the bodies at the stages of each step
     reaction: Array  # (T, S) N/kg, reaction of the contact over m1 at the stages of each step
-    sticks: Array  # (T, 2) s, start and end of every interval of rest, of creep below v_reg, or of elastic contact
-    counts: NDArray[np.int64]  # (2,) numbers of steps and of such intervals, those for which there is no room included
+    sticks: Array  # (T, 2) s, start and end of intervals of rest, creep (friction linear in speed) or elastic contact
+    counts: NDArray[np.int64]  # (2,) numbers of steps and of intervals as in `sticks`, those without room included
 
 
 class RunSettings(NamedTuple):
@@ -114,7 +115,7 @@ class RunSettings(NamedTuple):
 
 
 def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
-    """Pack a scene for compiled code; v_reg, m/s, selects the regularized friction law, None the set-valued law."""
+    """Pack a scene (bodies, isolator, load) for compiled code; v_reg, m/s: regularized friction; None: set-valued."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
         _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)

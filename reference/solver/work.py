@@ -18,19 +18,20 @@ from reference.solver.compiled.by_reference import ByReference, empty_structure,
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
-# Row numbers in Workspace.stage: position, velocity, drive (x row, then y row); reaction / m1, squared speed, inertia
-# determinant
+# Row numbers in Workspace.stage: position, velocity, driving acceleration (link minus ground): x row, then y row each;
+# reaction / platform mass, squared speed, inertia matrix determinant
 POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
-# First row numbers in Workspace.slopes of derivatives of (ax, ay) by position, velocity and drive, each by x, then y
+# First row numbers in Workspace.slopes: derivatives of (ax, ay) by position, velocity, driving acceleration; x, then y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
-# Row numbers in Workspace.turning: slip direction, speed, time near a stop, and accelerations with their derivatives
+# Row numbers in Workspace.turning, near a stop: slip direction, log speed, time, acceleration along and across slip,
+# their derivatives by direction, full / horizontal speed, speed, cosine and sine of direction, d ALONG / d log speed
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
-# Row numbers in Workspace.shear, elastoplastic friction (contact/yielding.py; x row, then y row): position, velocity,
-# drive, friction force, acceleration, rate of the force. The acceleration and the rate each have four derivatives in
-# Workspace.shear_slopes. One row each: the squared force minus the squared friction limit, the velocity along the
-# force, m/s, and the friction limit.
+# Row numbers in Workspace.shear, elastoplastic friction (contact/yielding.py), x row, then y row: position and velocity
+# (ARGUMENTS), driving acceleration (link, ground), friction force, acceleration (MOTION), rate of the force. The last
+# two have their derivatives in Workspace.shear_slopes. One row each: squared (force / friction limit) minus 1 (EXCESS),
+# the velocity along the force, m/s, and the friction limit.
 ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, FRICTION_LIMIT = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # largest number of separate parts of one step in which accelerations count for the peaks
 SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics over a step
@@ -68,12 +69,12 @@ class Workspace:
     squared_start_speed: float  # m^2/s^2, squared sliding speed at the start of the step
     # Proposal for the next step
     length: float  # s, length of the next step in time
-    stretched_length: float  # length of the next step near a stop, in stretched time (near_stop.py)
-    fitting_length: float  # length, in stretched time, with which the last step would just have met the tolerance
+    stretched_length: float  # length of the next step near a stop, in stretched time tau (dt = speed dtau)
+    fitting_length: float  # length in stretched time (dt = v dtau) that would just have met the last step's tolerance
     max_growth: float  # largest ratio of the next step's length to the present one
     hold_time: float  # s, time for which rest or creep is kept whatever the force; 0 if forces decide
     # State of the contact in the present phase
-    first_log_speed: float  # logarithm of the speed at which stretched time (near_stop.py) began
+    first_log_speed: float  # logarithm of the speed at which stretched time (dt = speed dtau) began
     early_rest: float  # s, time by which the phase of rest begins before the platform has stopped
     # Step that is being solved
     x1: Array  # (N, 2) m, positions of the bodies at the end of the step
@@ -82,17 +83,17 @@ class Workspace:
     ground: Array  # (4, L) at the stages: ground acceleration, m/s^2, and k_T, the temperature factor of friction
     total: Array  # (N, 3, L) m/s^2, absolute accelerations of the bodies at the stages
     free: Array  # (2, L) m/s^2, driving acceleration of the platform if it kept its velocity
-    feedback: Array  # (2, S, L) change of the drive at all stages per platform acceleration at each stage (chain.py)
+    feedback: Array  # (2, S, L) change of link force on the platform / m1 at all stages per its acceleration at each
     inverse: Complex  # (N, 2, CHANNELS) inverse pivots of the eliminated bodies above the platform (chain.py)
     load: Complex  # (N, 2, CHANNELS) right sides of the equations of the bodies above the platform (chain.py)
-    channels: Array  # (L,) one number in every channel (chain.py): real parts, then imaginary parts
-    gain: Complex  # (2, CHANNELS) response of the platform's drive to its own acceleration, through the bodies above
+    channels: Array  # (L,) stage values in the collocation matrix's eigenbasis (channels): real, then imaginary parts
+    gain: Complex  # (2, CHANNELS) response of the link force on the platform to its acceleration, through upper bodies
     stage: Array  # (9, L) state of the platform at the stages, in the rows POSITION to DETERMINANT
     slopes: Array  # (12, L) derivatives of the platform's acceleration at the stages, in row BY_POSITION and following
     matrix: Array  # (2 S, 2, L) matrix of Newton's method for the platform, by columns (linear_solve.py)
     residual: Array  # (2, L) right side of Newton's equations, then their solution, the correction
     turn_matrix: Array  # (S, 1, L) matrix of Newton's method for the slip directions near a stop
-    pivots: Array  # (2 S,) row exchanges in the LU factors of these matrices
+    pivots: Array  # (2 S,) row exchanges in the LU factors of `matrix` or `turn_matrix`
     positions: Array  # (N, 2, L) m, positions of the bodies at the stages of a step near a stop
     velocities: Array  # (N, 2, L) m/s, velocities of the bodies at the stages of a step near a stop
     turning: Array  # (12, L) slip direction, speed, time at the stages near a stop, in rows DIRECTION and following
@@ -104,7 +105,7 @@ class Workspace:
     defect: Array  # (N,) m/s^2, error of each body's acceleration extrapolated from the stages to the step's start
     force: Array  # (2,) m/s^2, friction force over m1 at the start of the step, if friction yields
     shear: Array  # (15, L) motion and friction at the stages if friction yields, in rows ARGUMENTS to FRICTION_LIMIT
-    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and force rate by 8 arguments; last, both themselves
+    shear_slopes: Array  # (9, 4, L) derivatives of acceleration, friction rate by 8 rows from ARGUMENTS; last: values
     shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method if friction yields
     shear_right: Array  # (4 S,) right side of Newton's equations if friction yields, then their solution
     shear_pivots: Array  # (4 S,) row exchanges in the LU factors of shear_matrix
@@ -119,11 +120,11 @@ class Workspace:
     end: float  # s, end of the run, at most the duration of the motion
     steps: float  # number of steps made so far in the run
     best: Array  # (N,) m^2/s^4, largest squared absolute acceleration of each body so far
-    reading_error: Array  # (N,) m/s^2, error of each largest acceleration: interpolation in its step, and drift before
+    reading_error: Array  # (N,) m/s^2, error of each largest acceleration: interpolation in its step, + `drift` so far
     drift: Array  # (N,) m/s^2, error that the steps so far have left in the bodies' fastest vibration
     squared_reach: float  # m^2, largest squared displacement of the platform so far
-    last_peak: float  # s, end of the last step with an acceleration near the largest so far
-    last_large: float  # s, end of the last step with an acceleration or a displacement near the largest so far
+    last_peak: float  # s, end of the last step with an acceleration >= 0.9 of the largest so far
+    last_large: float  # s, end of the last step with an acceleration or displacement >= 0.9 of the largest so far
     look_time: float  # s, time after which the run looks ahead for larger peaks, or ends if its end is given
 
 

@@ -76,7 +76,7 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
     folder = build_folder(Path(sources))
 
     def decorate(function: Callable[..., Any]) -> Any:
-        """Return the function for compilation by numba, which stores the compiled code in the folder."""
+        """Return the function for compilation by numba, which stores the compiled code in the cache, `folder`."""
         before = config.CACHE_DIR
         config.CACHE_DIR = str(folder or "")
         try:

@@ -26,7 +26,7 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-# Prefix of names of temporary files and staging directories (a user's file may have it too: only MARK_FILE is proof)
+# Prefix of temporary files and staging directories (a user's may have it too: only MARK_FILE proves a directory ours)
 TEMPORARY_PREFIX = ".phase-resonance-"
 MARK_FILE = "staging.json"  # file in a staging directory that names the program and the path for which it was made
 CHUNK_BYTES = 2**20  # number of bytes of a file that are read at once

@@ -12,9 +12,9 @@ MAX_LETTERS = 300  # largest number of letters of a path or key that an error me
 MAX_ERRORS = 50  # largest number of errors of one file that a message lists; it only counts the others
 # Smallest similarity (difflib) of an unknown key to a valid one for "did you mean ...?": other words share less
 MIN_SPELLING_SIMILARITY = 0.7
-# First words of the rules in error messages about a missing key, a missing table and an unknown key
+# First words of what an error message says is wrong: about a missing key, a missing table and an unknown key
 IS_REQUIRED, IS_MISSING, IS_UNKNOWN = "this key is required", "the table [", "unknown key; "
-# Rules in errors about keys that users know from other programs
+# What error messages tell users to write in place of keys that they know from other programs
 YIELDING_HINT = (
     "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
     "or yield_displacement = 0.001, m"

@@ -20,8 +20,8 @@ from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalizati
 from numba.core.typing import Context
 from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
-# Compiler passes of numba that change nothing in a part: it has no whole-array expressions, inner functions, branches
-# on None or functions that numba inlines before their types are known, and no variable whose end must be marked.
+# Compiler passes of numba that change nothing in a part (function for compiled callers only): it has no whole-array
+# expressions, inner functions, branches on None, functions inlined before types are known, or variable ends to mark.
 UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
 PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # Python's operators as functions
 
@@ -30,7 +30,7 @@ class _NoEnvironment:
     """Stand-in for numba's code generator, which would store the Python objects that a function's wrapper needs."""
 
     def set_env(self, name: str, environment: object) -> None:
-        """Do nothing: no Python code calls a part, so that it needs no Python objects."""
+        """Do nothing: a part (function for compiled callers only) needs no Python objects: Python never calls it."""
 
 
 class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
@@ -40,7 +40,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
     _whole: Any = None
 
     def finalize(self) -> None:
-        """Finish the part's code, but do not link, optimize or translate it to machine code: its callers do this."""
+        """Finish a function for compiled callers; they, not this, link and optimize it and make it machine code."""
         self._raise_if_finalized()
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == Linkage.external:
@@ -48,7 +48,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        """Return the code of this part and of all parts that it calls, each once, to be linked into its caller."""
+        """Return code of this part (function for compiled callers only) and all it calls, each once, to be linked."""
         if self._whole is None:
             whole = self._final_module.clone()
             libraries = [self]
@@ -64,13 +64,13 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         return self._whole
 
     def get_pointer_to_function(self, name: str) -> int:
-        """Return 0, as a part has no machine code of its own."""
+        """Return 0, as a part (function that only compiled code calls) has no machine code of its own."""
         return 0
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _LowerAsPart(LoweringPass):  # type: ignore[misc]
-    """Compiler pass that makes numba generate code into a `_PartLibrary`, without counting references to arrays."""
+    """Compiler pass: numba puts code in a `_PartLibrary`, to link into a caller, without counting array references."""
 
     _name = "as_part"
 
@@ -79,7 +79,7 @@ class _LowerAsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        """Direct the function's code into a `_PartLibrary`, reference counting off; return False: nothing rewritten."""
+        """Put code in a `_PartLibrary`, to link into a caller, no reference counts; return False: nothing rewritten."""
         context = state.targetctx  # numba makes one for every function, so that it may be changed here
         state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
         context.nrt = NRTContext(context, True)  # code that reads fields of structures still needs this object
@@ -104,19 +104,19 @@ class _RememberedFunctions(Context):  # type: ignore[misc]
         return self._known[func, args]
 
 
-remembered_functions = cache(_RememberedFunctions)  # returns the same lookup again for the same context of numba
+remembered_functions = cache(_RememberedFunctions)  # one `_RememberedFunctions` for each typing context of numba
 
 
 class PartCompiler(CompilerBase):  # type: ignore[misc]
-    """Compiler for parts: the passes of numba without those that a part does not need, and `_LowerAsPart`."""
+    """Compiler of functions for compiled callers only: numba's passes without needless ones, plus `_LowerAsPart`."""
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a Python function as a part; look up the signatures of called functions only once."""
+        """Compile a function that only compiled code will call; look up signatures of called functions only once."""
         self.state.typingctx = remembered_functions(self.state.typingctx)
         return super().compile_extra(func)
 
     def define_pipelines(self) -> list[Any]:
-        """Return the passes by which numba compiles a part, in their order."""
+        """Return the passes, in order, by which numba compiles a part: a function that only compiled code calls."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED_PASSES]
         passes.add_pass_after(_LowerAsPart, AnnotateTypes)

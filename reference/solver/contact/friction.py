@@ -45,7 +45,7 @@ def viscous_factor(system: System) -> float:
 
 @compiled
 def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the static friction limit for normal force `reaction`, both over m1 (m/s^2), at temperature factor k_t."""
+    """Return the static friction limit at normal force `reaction`, both over m1, m/s^2, at temperature factor k_t."""
     return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
@@ -102,7 +102,7 @@ def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Numbe
 @compiled
 def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return (squared tangential force minus squared static friction limit, reaction) at rest, by the small equations.
+    Return (squared tangential force - squared static friction limit, reaction) at rest, by small-vibration equations.
 
     With the friction coefficient mu, Mf = mu (R I - u p^T / rho), R = M (g + zeta''), F_3 = f - R p / rho and
     Mf^-1 = adj / det, the first is |adj F_3|^2 - det^2, so that nothing is divided by a small number.
@@ -135,7 +135,7 @@ def squared_rest_excess_as_printed(system: System, load: Load) -> Number:
     friction = scale_by_load(system, load.k_t, reaction, static_coefficient(system))
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
-    # The printed equation has the spring force, here f + u, with the opposite sign.
+    # Equation (4.6) in the paper has the spring force, f + u (drive + ground acceleration), with the opposite sign.
     gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius
     gy = -(2.0 * load.uy + load.fy) + reaction * load.py / system.radius
     return gx * gx + gy * gy - lx * lx - ly * ly

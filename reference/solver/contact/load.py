@@ -20,7 +20,7 @@ from reference.solver.system import Load, System
 
 MAX_ITERATIONS = 40  # largest number of Newton iterations for the reaction of the contact
 LAST_CHANGE = 1e-8  # relative change of the reaction below which its iteration ends: the next is below rounding
-# Largest residual of the equation for the reaction, over the normal drive: with a larger one no solution was found
+# Largest residual of the equation for the reaction, over the load along the normal: above it no solution was found
 MAX_MISFIT = 1e-7
 
 
@@ -52,7 +52,8 @@ def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number
 scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
 """Return a number proportional to the cold friction coefficient under the weight, corrected for k_T and reaction."""
 
-scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)  # for derivatives of the acceleration
+# Multiplies slip by (relative change of friction force / that of the reaction), for derivatives of the acceleration
+scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)
 """Return a slip vector component times (relative change of friction force / relative change of reaction)."""
 
 
@@ -73,7 +74,7 @@ def elasticity(system: System, reaction: Number) -> Number:
 def _acceleration_of_given_slip(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant) for a slip vector that does not depend on the reaction."""
+    """Return (ax, ay, reaction / m1, inertia matrix determinant) for a slip vector independent of the reaction."""
     pressure = system.gravity + load.uz
     return exact_acceleration(
         load.px, load.py, load.fx, load.fy, pressure, squared_speed, sx, sy, system.mass_ratio, system.radius
@@ -84,7 +85,7 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant), by Newton's method, if friction depends on the reaction."""
+    """Return (ax, ay, reaction / m1, inertia matrix determinant) by Newton's method, if friction varies with load."""
     # A friction coefficient that falls with the load (n < 0) makes the equation for R nonlinear. The derivative of this
     # equation takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's
     # paradox). If the iteration ends far from a solution, no acceleration exists either: the determinant is set to -1,
@@ -112,6 +113,6 @@ def _acceleration_of_load(
     return load.fx + reaction * (nx - sx), load.fy + reaction * (ny - sy), reaction, determinant
 
 
-# Solves the exact equations for acceleration and reaction, with a variant for friction that varies with load or heat
-exact_equations = choose_variant("exponent", _acceleration_of_given_slip, _acceleration_of_load)  # (3.9)-(3.13)
-"""Return (ax, ay, reaction / m1, inertia determinant) by the exact equations."""
+# Solves the exact equations (3.9)-(3.13) for acceleration and reaction, also for friction that varies with load or heat
+exact_equations = choose_variant("exponent", _acceleration_of_given_slip, _acceleration_of_load)
+"""Return (ax, ay, reaction / platform mass, inertia matrix determinant) by the exact equations (3.9)-(3.13)."""

@@ -26,7 +26,7 @@ ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which rounding
 
 @compiled
 def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
-    """Return the platform's position and drive (equations.py) and the ground's acceleration at a step's start."""
+    """Return the platform's position and driving acceleration (link minus ground), and the ground's, at step start."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
@@ -38,7 +38,7 @@ def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
 
 @compiled
 def load_at_stages(work: Workspace) -> Load:
-    """Return the platform's position and drive (equations.py) and the ground's acceleration at a step's stages."""
+    """Return the platform's position and driving acceleration (link minus ground), and the ground's, at the stages."""
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
@@ -61,7 +61,7 @@ def slip_factor(system: System, contact: int, squared_speed: Number) -> Number:
 def solve_platform_acceleration(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return the platform's (ax, ay, reaction / m1, inertia determinant) for a slip vector sx, sy (equations.py)."""
+    """Return platform (ax, ay, reaction / m1, inertia matrix determinant) for a slip vector sx, sy (equations.py)."""
     if system.small:
         pressure = system.gravity + load.uz
         reaction = system.mass_ratio * pressure
@@ -77,7 +77,7 @@ def solve_platform_acceleration(
 def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia determinant, squared speed) of the platform at a nonzero velocity."""
+    """Return platform (ax, ay, reaction / m1, inertia matrix determinant, squared speed) at a nonzero velocity."""
     squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, squared_speed)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, squared_speed, factor * vx, factor * vy)
@@ -102,7 +102,7 @@ def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     else:
         excess, reaction = squared_rest_excess_exact(system, load)
     if system.rest_condition == PRINTED:
-        # Where (4.6) as printed releases a platform that friction can hold, no motion begins.
+        # The paper's condition for rest (4.6) may release a platform that friction can hold: it counts as at rest here.
         excess = min(excess, squared_rest_excess_as_printed(system, load))
     limit = static_limit(system, load.k_t, reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

@@ -27,7 +27,7 @@ from reference.solver.work import (
 @compiled
 def set_slopes(system: System, contact: int, work: Workspace) -> None:
     """
-    Set the derivatives of the platform's acceleration with respect to position, velocity and drive, at the stages.
+    Set stage derivatives of the platform's acceleration by position, velocity, driving acceleration (link, ground).
 
     `stage` holds the reaction, determinant and speed there. Rows of work.slopes: from BY_POSITION, BY_VELOCITY and
     BY_DRIVE on (ax, ay) by x, then by y.
@@ -45,7 +45,7 @@ def set_slopes(system: System, contact: int, work: Workspace) -> None:
 
 @compiled
 def factor_slope(system: System, contact: int, factor: Row, squared_speed: Row) -> Row:
-    """Return the derivative of `slip_factor` (platform.py) with respect to the squared sliding speed, s^3/m^3."""
+    """Return the derivative of friction / (normal force * velocity) by the squared sliding speed, s^3/m^3."""
     bend = -0.5 * factor / squared_speed if contact == SLIDING else broadcast_like(0.0, squared_speed)
     if system.rate > 0.0 and contact != LUBRICATED_SLIDING:
         speed = sqrt(squared_speed)

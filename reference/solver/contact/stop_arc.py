@@ -18,7 +18,7 @@ from reference.solver.system import Load, System
 SAMPLES_PER_TURN = 48  # number of slip directions, per full circle, at which the acceleration is sampled
 # First stride, rad, of the search, from the present direction, for the one in which a slide turns no further
 FIRST_STRIDE = 1e-3
-GOLDEN_SECTIONS = 20  # number of golden sections, which narrow a peak's direction to 1e-4 of the distance of samples
+GOLDEN_SECTIONS = 20  # golden sections that find the slip direction of peak acceleration to 1e-4 of the sampled spacing
 # A squared acceleration between two sampled directions exceeds the largest sampled one by at most this share
 MAX_RISE_BETWEEN_SAMPLES = 0.1
 # Largest ratio of sideways to driving acceleration that counts as rounding, so that the slide does not turn
@@ -47,7 +47,7 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return the direction, rad, a slide turns to from `angle` at a stop; no_turn: ratio sideways / drive neglected."""
+    """Return direction, rad, a slide turns to from `angle` at stop; no turn if sideways / driving force <= no_turn."""
     # The direction turns one way until its turning vanishes: at the first zero of the sideways acceleration that way.
     # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
     # up to the distance of two samples, and ends at the first change of sign, or after a full turn.

@@ -48,7 +48,7 @@ def yielding_motion(
     system: System, contact: int, load: Load, vx: Number, vy: Number, qx: Number, qy: Number
 ) -> tuple[Number, Number, Number, Number, Number, Number, Number, Number, Number]:
     """
-    Return the motion of the platform and of its friction force q, elastic or plastic.
+    Return nine values: acceleration, reaction, rate of friction force q, elastic (below its limit) or plastic (at it).
 
     In order: ax, ay, reaction / m1, inertia determinant, the rates of q along x and y, the limit of |q|, |q| itself
     (both m/s^2, of full vectors in the tangent plane), and the velocity along q, m/s.

@@ -68,10 +68,10 @@ from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 # Rounding error of the platform's acceleration, a difference of forces over m1, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
 MAX_VIBRATION_ANGLE = 5.0  # rad, phase angle of the upper bodies' fastest vibration per step; larger steps damp it
-# An error of DRIFT_SHARE * angle^7 * (interpolation error at the step's start) stays in a free vibration that turns by
-# `angle`, rad, in a step. The vibration's size is that interpolation error / (2 DRIFT_SHARE angle^7) (decisions/0002).
+# A step leaves DRIFT_SHARE * angle^7 * (interpolation error at its start) as error in a free vibration that turns by
+# `angle`, rad. All add up to at most its size: interpolation error / (2 DRIFT_SHARE angle^7) (decisions/0002).
 DRIFT_SHARE = 6e-8
-# Smallest phase angle, rad, of steps whose drift is counted: a hundred steps below it add less than 1e-3 of a tolerance
+# Turn of the fastest vibration in a step, rad, up to which its error is left out: 100 such add < 1e-3 of a tolerance
 MIN_DRIFT_ANGLE = 2.0
 # Factor on the tolerance of Newton's method for a slide whose friction depends on the speed
 VARYING_NEWTON_FRACTION = 1e-3
@@ -194,7 +194,7 @@ def begin_contact_phase(system: System, work: Workspace, contact: int, settings:
 
 @compiled
 def propose_length(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Return the length of the next step, s, or in stretched time (near_stop.py); 0 if stretched time is to begin."""
+    """Return the next step's length, s, or stretched (dt = speed dtau) near a stop; 0 if stretched time is to begin."""
     if contact == SLIDING:
         return propose_sliding_length(system, work, settings)
     if contact == STOPPING:
@@ -258,8 +258,8 @@ def mark_counted_parts(
     Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
     # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); this time is not rest.
-    # A creep may begin or end above v_reg by the accuracy of an event, where its linear law has more friction than any
-    # slide. Both would add an acceleration to the peaks that the motion does not have.
+    # Creep (friction linear in speed, to v_reg) may begin or end above v_reg by the accuracy of an event, where it has
+    # more friction than any slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:
         level, start2 = system.v_reg * system.v_reg, squared_speed_in_state(system, work)
         if max(start2, row_maximum(row(work.stage, SQUARED_SPEED))) > level:

@@ -48,28 +48,28 @@ from reference.solver.work import SQUARED_SPEED, VELOCITY, Workspace
 # The first step of a slide from rest is at most this number of periods times the 7th root of the tolerance
 MAX_FIRST_STEP = 0.57
 CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if the present one had to be shortened
-# A slide goes on in stretched time (near_stop.py) if it would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME
-# periods, and until then the fastest vibration of the bodies above turns by no more than MAX_CHAIN_ANGLE.
-STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them goes on in stretched time
+# A slide goes on in stretched time (dt = speed dtau), which resolves its turn, if it would stop in STOP_WITHIN_STEPS
+# steps or STOP_WITHIN_TIME periods, and until then the upper bodies' fastest vibration turns at most MAX_CHAIN_ANGLE.
+STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them goes on in stretched time (dt = speed dtau)
 STOP_WITHIN_TIME = 0.05  # periods: a slide that would stop within them goes on in stretched time (dt = speed dtau)
-MAX_CHAIN_ANGLE = 0.5  # rad, largest phase angle of the upper bodies' fastest vibration up to the stop
+MAX_CHAIN_ANGLE = 0.5  # rad: if the upper bodies' fastest vibration turns further up to a stop, time is not stretched
 # Longest step as share of the time to the stop: a longer one would end where the slip direction turns fast
 MAX_WAY_TO_STOP = 0.55
 # Smallest cosine of the angle between velocities at two successive stages: below it the step is not smooth, and fails
 MIN_TURN_COSINE = 0.3
-LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which a slide has reached v_reg
-NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: below this squared speed at a stage, a passage of v_reg is looked for
+LEVEL_TOLERANCE = 1e-9  # relative distance of squared speed from v_reg^2, creep's limit, at which a slide becomes creep
+NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: below this squared speed at a stage, onset of creep (v_reg) is sought
 # A slide slower than this share of (friction deceleration * step length) aligns with the force within the step
 STIFF_SPEED_FRACTION = 0.03
-# Smallest acceleration, as share of the drive, in the first guess of a slide, which needs a direction
+# Share of the driving acceleration (link, ground) to which a slide's smaller first guess is raised, for a direction
 MIN_ACCELERATION_FRACTION = 1e-12
 # Largest share by which the squared drive may exceed the squared friction limit while a slide need not begin yet
 BARELY_SLIPPING_EXCESS = 1e-4
-# A slide that cannot begin with a step of NEGLIGIBLE_STEP periods, or of NEGLIGIBLE_RESPONSE times the time in which
-# friction responds to the speed, moves nothing: rest replaces it for NEGLIGIBLE_HOLD periods. A slide that passes v_reg
-# within the share NEGLIGIBLE_STEP of a step begins at v_reg.
-NEGLIGIBLE_STEP = 1e-6  # periods: a slide that fails in a shorter step moves nothing; also the share of a step, above
-NEGLIGIBLE_RESPONSE = 1e-3  # share of friction's response time: a slide that fails in a shorter step moves nothing
+# A slide from rest that cannot begin with a step of NEGLIGIBLE_STEP periods, or NEGLIGIBLE_RESPONSE times the time in
+# which friction responds to speed, moves nothing: rest replaces it for NEGLIGIBLE_HOLD periods. A slide that slows to
+# v_reg, where creep begins, within the share NEGLIGIBLE_STEP of a step creeps from the start of this step.
+NEGLIGIBLE_STEP = 1e-6  # periods: rest replaces a slide that fails in a shorter step; also the share of a step, above
+NEGLIGIBLE_RESPONSE = 1e-3  # times friction's response time: rest replaces a slide that fails in a shorter step
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest that replace a slide which moves nothing
 MAX_LENGTH_RATIO = 3.0  # a step shorter than 1 / MAX_LENGTH_RATIO of the last one takes no first guess from that
 
@@ -106,10 +106,10 @@ def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> Non
 def propose_sliding_length(system: System, work: Workspace, settings: RunSettings) -> float:
     """Return the length of the next step, s; 0 if the slide is so near its stop that near_stop.py takes over."""
     # Close to a stop the direction of slip turns like a power of the speed (T6 of docs/theory.md), which no polynomial
-    # in time resolves. So a slide that would stop within a step or two goes on in stretched time (near_stop.py), unless
+    # in time resolves. So a slide that would stop within a step or two goes on in stretched time (dt = v dtau), unless
     # the chain would vibrate in the time left: stretched time solves the chain by iteration. A step of a slide that
-    # stops later ends well before its stop; without MAX_WAY_TO_STOP a third of the plain steps of fig3-I missed the
-    # tolerance, up to 300 times over (docs/decisions/0001-stretched-time.md).
+    # stops later ends well before its stop; without MAX_WAY_TO_STOP a third of the steps in plain time in the built-in
+    # scene fig3-I missed the tolerance, up to 300 times over (docs/decisions/0001-stretched-time.md).
     h: float = propose_plain_length(system, work, settings)
     vx, vy = work.v[0, 0], work.v[0, 1]
     speed = sqrt(vx * vx + vy * vy)
@@ -160,7 +160,7 @@ def guess_slide(system: System, work: Workspace, h: float) -> None:
 @compiled
 def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
     """
-    Set the first guess of a slow slide's stage accelerations, in the directions that the drive there does not turn.
+    Set the first guess of a slow slide's stage accelerations, in the directions in which the forces no longer turn it.
 
     A light platform under a tower turns by hundreds of rad/s where it begins to slide.
     """
@@ -176,7 +176,7 @@ def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> None:
-    """Set the stage accelerations of a slow slide along given directions (ex, ey): those of drive minus friction."""
+    """Set a slow slide's stage accelerations along directions (ex, ey) from link forces, ground motion and friction."""
     # Where friction rises steeply with the speed, an iteration that begins at a lower speed than the step's does not
     # leave the steep part. Linearized about the start, friction damps the speed at the rate `damping`. An implicit
     # Euler step of length nodes * h then has the acceleration at the start over 1 + nodes * h * damping.
@@ -233,7 +233,7 @@ def recover_failed_slide(system: System, work: Workspace, settings: RunSettings,
 
 @compiled
 def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Return the step's length up to where the slide has slowed to v_reg (0: at its start), and next contact state."""
+    """Return the step's length up to where the slide slows to creep, at v_reg (0: at its start), and next contact."""
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2

@@ -12,9 +12,9 @@ from reference.solver.step_control import begin_from_state
 from reference.solver.system import CREEPING, SLIDING, System
 from reference.solver.work import SQUARED_SPEED, Workspace
 
-LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from v_reg^2 at which creep has reached v_reg
-EARLY_CROSSING = 1e-6  # share of a step: if v_reg is crossed earlier, the phase counts as begun at v_reg
-NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: above this squared speed at a stage, a passage of v_reg is looked for
+LEVEL_TOLERANCE = 1e-9  # relative distance of squared speed from v_reg^2, creep's limit, at which it becomes a slide
+EARLY_CROSSING = 1e-6  # share of a step: creep that reaches v_reg, its limit, earlier becomes a slide at step start
+NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: above this squared speed at a stage, the end of creep (v_reg) is sought
 MAX_FIRST_DECAY = 2.0  # longest first step of creep, in times in which friction makes the velocity decay
 
 
@@ -28,7 +28,7 @@ def begin_smooth(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def limit_step_to_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
-    """Return the step's length up to where creep reaches v_reg (0: at its start), and the next contact state."""
+    """Return the step's length up to where creep becomes a slide, at v_reg (0: at its start), and next contact."""
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact

@@ -26,47 +26,47 @@ FIRST_STEP = 1.0  # change of slip direction, rad, or of ln v, for which the len
 MIN_FIRST_ACCELERATION = 1e-3
 MAX_GROWTH = 2.0  # largest ratio of a step to the length with which the last one would just have met the tolerance
 MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the upper bodies' fastest vibration in one step
-# A slide that speeds up again returns from stretched to plain time once speed / acceleration exceeds both these times.
-LEAVING_TIME_FRACTION = 0.3  # share of the length of a plain step
-MIN_LEAVING_TIME = 0.05  # share of RunSettings.period: least speed / acceleration to end stretched time if speed grows
-# Speed below which a platform that friction can hold may count as stopped: this number times the loading's velocity
-# times the square root of the tolerance
+# A slide that speeds up again leaves stretched time (dt = v dtau) once speed / acceleration exceeds both times below.
+LEAVING_TIME_FRACTION = 0.3  # share of a step in plain time: stretched time ends only at longer speed / acceleration
+MIN_LEAVING_TIME = 0.05  # share of RunSettings.period: stretched time (dt = v dtau) ends only at longer v / v'
+# Speed below which a platform that friction can hold may count as stopped: this number * square root of the relative
+# tolerance of accelerations * (loading's acceleration * RunSettings.period / 2 pi)
 MAX_STOPPED_SPEED = 0.03
 # Largest jump of an acceleration, as share of the tolerance, that dampers may cause when a stop sets the speed to zero
 MAX_DAMPED_JUMP = 0.01
-# While a slide's direction turns before its stop (on the arc, contact/stop_arc.py), an acceleration may become a peak.
+# While a slide's direction turns before its stop (the arc of contact/stop_arc.py), an acceleration may become a peak.
 # Then the slide is followed down to MIN_FOLLOWED_SPEED. No peak is possible below DECISIVE_ARC_FRACTION of the
-# platform's peak so far, or below DECISIVE_RISE_FRACTION of the squared peak of a body above, on which the arc acts by
+# platform's peak so far, or below DECISIVE_RISE_FRACTION of the squared peak of a body above, on which the turn acts by
 # its vertical acceleration alone.
-MIN_FOLLOWED_SPEED = 1e-10  # share of the loading's velocity: slower slides are not followed
-DECISIVE_ARC_FRACTION = 0.97  # share of its peak that the platform's acceleration in a turn before a stop must exceed
-DECISIVE_RISE_FRACTION = 0.999  # share of an upper body's squared peak that a value in a turn before a stop must exceed
-# Smallest rise of a squared acceleration along the arc, as share of the squared peak, that may make a new peak
+MIN_FOLLOWED_SPEED = 1e-10  # share of (loading's acceleration * period / 2 pi): slower slides are not followed
+DECISIVE_ARC_FRACTION = 0.97  # share of the platform's peak: with more in the turn to its stop, a slide is followed
+DECISIVE_RISE_FRACTION = 0.999  # share of an upper body's squared peak: with more in the turn, a slide is followed
+# Share of an upper body's squared peak: if its squared acceleration rises by less in the turn, no slide is followed
 NEGLIGIBLE_RISE = 1e-9
-LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
-EARLY_CROSSING = 1e-9  # share of a step: if v_reg is crossed earlier, the phase counts as begun at v_reg
-# Forces count as constant until the stop if it is nearer than this number times the period times the square root of
-# the tolerance
+LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg, the limit of creep, at which a slide becomes creep
+EARLY_CROSSING = 1e-9  # share of a step: a slide that slows to v_reg, the limit of creep, earlier creeps at step start
+# Forces count as constant until the stop if it is nearer than this number * RunSettings.period * square root of the
+# relative tolerance of accelerations
 MAX_FROZEN_TIME = 0.01
 # Largest change of friction until rest, as share of its rise from rest to high speed, that counts as none
 NEGLIGIBLE_FRICTION_RISE = 1e-12
-# A slide leaves the phase of stopping, as its speed hardly changes, if its stop is this many times later than the time
-# within which the phase begins
+# A slide leaves the phase of stopping, as its speed hardly changes, if the time to its stop is this many times the one
+# (STOP_WITHIN_STEPS, STOP_WITHIN_TIME) below which a slide enters this phase
 MIN_STEADY_TIMES = 2.0
 MAX_STRAIGHT_TURN = 1e-6  # ratio of sideways acceleration to friction below which a slide counts as straight
-# Speed, as share of the loading's velocity, below which a straight slide that friction cannot hold reverses
+# Share of (loading's acceleration * period / 2 pi): at lower speed a straight slide that friction cannot hold reverses
 MAX_TURNING_POINT_SPEED = 1e-12
 NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of slip directions ends Newton's method
-# Bounds on the change of ln v in one step, as time and position are integrals of v and v^2 over stretched time, whose
-# error the accelerations do not show where forces stay constant. With these bounds it stays below 1e-8 of the time and
-# the distance to the stop at the start of the step.
+# Bounds on the change of ln v in a step: time, position are integrals of v and v^2 over stretched time (dt = v dtau),
+# whose error the accelerations do not show where forces stay constant. With both bounds below, this error is less than
+# 1e-8 of the time and the distance to the stop at the start of the step.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
 LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of later steps' bounds on log speed change, per decrease of log speed so far
 
 
 @compiled
 def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> None:
-    """Prepare a phase of stopping, in stretched time (near_stop.py): set accelerations and the first step's length."""
+    """Prepare a phase of stopping in stretched time (dt = v dtau): set accelerations and the first step's length."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -79,7 +79,7 @@ def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> No
 
 @compiled
 def propose_stretched_length(system: System, work: Workspace) -> float:
-    """Return the next step's length in stretched time (near_stop.py), which resolves time, position and vibration."""
+    """Return the next step's length in stretched time (dt = v dtau), which resolves time, position and vibration."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
@@ -91,7 +91,7 @@ def propose_stretched_length(system: System, work: Workspace) -> float:
 
 @compiled
 def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
-    """Return the step's length to the next kink of loading or k_T, or to v_reg (0: at its start), and next contact."""
+    """Return the step's length to a kink of loading or temperature factor, or creep at v_reg (0: now); next contact."""
     limit = next_kink(system, work, settings)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * settings.period:
         portion = locate_level_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
@@ -175,10 +175,10 @@ def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -
     """Return REST or SLIDING if the platform has stopped, else STOPPING; set work.early_rest: time left to slide, s."""
     # A platform that friction can hold (excess <= 0) has stopped when the remaining slide changes nothing: its speed
     # and the time left are small (both bounds go with the root of the tolerance, since the distance to the stop is
-    # quadratic in speed and time), the dampers feel no jump, friction is that of rest, and the peaks on the arc are
-    # known. Under a cutoff the arc does not count; the slide is integrated to below v_c. A platform that friction
-    # cannot hold turns back if it goes straight against the drive. Otherwise its direction turns past the stop, and the
-    # slide goes on.
+    # quadratic in speed and time), the dampers feel no jump, friction is that of rest, and the peaks in the turn before
+    # the stop are known. If only speeds above a cutoff v_c count, this turn does not; the slide is integrated to below
+    # v_c. A platform that friction cannot hold turns back if it goes straight against the driving force. Otherwise its
+    # direction turns past the stop, and the slide goes on.
     unit = settings.unit * settings.period / (2.0 * pi)
     speed = exp(work.log_speed)
     if speed > MAX_STOPPED_SPEED * sqrt(settings.tolerance) * unit:

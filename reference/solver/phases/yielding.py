@@ -106,7 +106,7 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def set_motion(system: System, work: Workspace, contact: int) -> None:
-    """Set accelerations and friction force rates at the stages from motion, drive and force there, in work.shear."""
+    """Set stage accelerations and friction rates, in work.shear, from motion, driving acceleration and friction."""
     shear, ground = work.shear, work.ground
     load = Load(
         row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, DRIVE_ARGUMENT), row(shear, DRIVE_ARGUMENT + 1),
@@ -155,7 +155,7 @@ def set_yielding_residual(system: System, work: Workspace, contact: int, h: floa
 
 @compiled
 def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
-    """Set derivatives of acceleration and force rate with respect to motion, drive and force, by differences."""
+    """Set derivatives of acceleration and friction rate by differences in motion, driving acceleration and friction."""
     shear, slopes = work.shear, work.shear_slopes
     for k in range(4):
         put(slopes, (8, k), row(shear, MOTION + k))
