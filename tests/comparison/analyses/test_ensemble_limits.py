@@ -348,6 +348,11 @@ def test_demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_erro
     with_errors = ensemble_of({("displacement", None): (0.30, 0.51, 0.43)}, error=0.004)
     assert "not met" not in str([word_check(each) for each in compare_with_stored(with_errors, with_errors, 0.0)])
     assert compare_with_stored(with_errors, ensemble_of(MOVED, error=0.007), 0.0)[1].verdict == "met"
+    larger = ensemble_of({("displacement", None): (0.30, 0.51, 0.43)}, error=0.002)  # by 0.01 of 0.5, errors of 0.004
+    verdicts = [
+        compare_with_stored(larger, ensemble_of(MOVED, error=0.002), share)[1].verdict for share in (0.01, 0.015)
+    ]
+    assert verdicts == ["not met", "met"]
 
 
 def test_a_name_of_a_stored_ensemble_does_not_reach_the_terminal_as_it_is() -> None:
