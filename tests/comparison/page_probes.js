@@ -66,7 +66,7 @@ globalThis.probe = {
     const box = element("div"), x = [1, 2, 3, 4], y = [10, -1, null, 30], low = [-5, 1, 1, 20], high = [20, 2, 2, 40], all = name => [...box.querySelectorAll(name)];
     const one = { name: "a", x, y, low, high, marks: 1, color: 0, titles: ["p", "q", "r", "s"] };
     drawPlot(box, { x: { title: "v_reg, m/s" }, y: { log: true, range: [1, 100] }, legend: false, series: [one, { ...one, low: [5, 1, 1, 20], band: true, marks: false }] });
-    return { titles: all("polygon.mark title").map(each => each.textContent), legends: all(".legend").length, text: box.innerHTML, path: all("g path")[0].getAttribute("d"),
+    return { titles: all("polygon.mark title").map(each => each.textContent), legends: all(".legend").length, text: box.innerHTML, bars: all("line.line").map(bar => bar.getAttribute("y1") - bar.getAttribute("y2")), path: all("g path")[0].getAttribute("d"),
       around: all("polygon.area")[0].getAttribute("points").split(" ").map(point => point.split(",")[0]), shifts: all("tspan[dy]").map(each => each.getAttribute("dy")) };
   },
   ranges: () => [[3, 3], [-2, 1, 4, null]].map(values => [true, false].map(log => rangeOf({ log }, values))),

@@ -53,6 +53,8 @@ def test_a_plot_with_logarithms_has_marks_bands_and_bars_where_they_belong(visit
     assert told["around"] == told["around"][::-1], "there along the top, and back"
     assert told["shifts"] == ["3", "-3"], "down to the index, and up again"
     assert "NaN" not in told["text"]
+    first, last = told["bars"]  # from 1, the lower end of the axis, to 20, and from 20 to 40
+    assert first / last == pytest.approx(np.log(20.0) / np.log(2.0), rel=0.02)
     assert visit.page.evaluate("probe.corner()") == pytest.approx([2.0 * np.pi] * 2), "the square is closed"
 
 

@@ -46,8 +46,11 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
         surfaces["mu"].loc[{**model, **place}], surfaces["error"].loc[{**model, **place}] = 1.0, 0.0
     row = alike()
     assert (row.ratio, row.beyond_error) == (pytest.approx(2.0), pytest.approx(1.0 - 1.0 / row.asked))
+    assert row.numerical_error == pytest.approx(0.05 * (1.0 - 1.0 / row.asked))
     surfaces["error"].loc[{**second, "alpha1": 0.0}] = np.nan
-    assert (alike().beyond_error, np.isnan(alike().ratio)) == (1.0, True), "a share of those that state an error"
+    row = alike()
+    assert row.beyond_error == 1.0, "a share of those that state an error"
+    assert np.isnan([row.ratio, row.numerical_error]).all(), "of all, which is not known"
 
 
 def test_a_budget_without_a_step_does_not_close() -> None:
