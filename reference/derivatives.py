@@ -1,4 +1,4 @@
-"""Derivatives of a computed quantity by values of the scene, for either side, and kinks near these values."""
+"""Derivatives by values of the scene of a quantity that either program computes, and its kinks near these values."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from reference.support.arguments import quote
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]  # function of a scene whose derivatives are computed
 
-STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # steps of central differences, as shares of the key's value; twice each is used too
-FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # relative changes of the key's value at which kinks are looked for
-RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)  # evaluations of the quantity for one key
+STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # steps of central differences, over the varied scene value; twice each is used too
+FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # relative changes of the scene value at which kinks are looked for
+RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)  # evaluations of the quantity for one varied scene value
 # A kink is looked for if the mean slope over a finite change differs from the derivative by at least this share of the
 # largest slope. Both differ by less for smooth quantities that vary as x^n up to n = 10, for changes of x by 5 %.
 MIN_CONTRADICTION = 0.05
 MAX_HALVINGS = 12  # the interval that contains a kink is halved at most this many times
-KINK_WIDTH = 1e-4  # an interval around a kink is halved down to this share of the key's value
+KINK_WIDTH = 1e-4  # an interval around a kink is halved down to this share of the scene value
 # Share of a kink's change of slope, or of a jump, that must remain when its interval shrinks: a smooth curve keeps less
 MIN_REMAINING_SHARE = 0.25
 MIN_SHRINKING = 0.125  # a kink is found if its interval shrinks to this share of its first width; else errors hide it

@@ -220,7 +220,7 @@ def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: Run
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
     peaks = RunPeaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
-    if ends.any():  # only a run tells whether and when the motion ends
+    if ends.any():  # the limit of travel or the rim may be reached: only time integration tells whether and when
         for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
             whole[ends] = ran
     return peaks

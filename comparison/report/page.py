@@ -113,7 +113,7 @@ def is_drawn(bars: Waterfall) -> bool:
 
 
 def word_measurements(results: Results) -> str:
-    """Return the statement on what measurements validate, with what this study adds, without the final full stop."""
+    """Return what measurements of a frame validate, then how models meet this study's own; no final full stop."""
     return "; ".join([VALIDATED_BRIEFLY, *results.measurement_clauses])
 
 
@@ -213,7 +213,7 @@ def make_content_policy(script: str, style: str) -> str:
     """Return the page's content security policy: only its own script and style, by hash, and embedded pictures."""
 
     def digest(text: str) -> str:
-        """Return the hash by which the policy names a script or style of the page."""
+        """Return the hash by which the page's content security policy admits a script or style."""
         return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
 
     allowed = {"script-src": digest(script), "style-src": digest(style), "img-src": "data:"}

@@ -77,12 +77,12 @@ def why_not_spatial(scene: Scene) -> str:
 
 
 def has_only_planar_unloaded_bars(scene: Scene) -> bool:
-    """Return whether a scene states the stiffness of unloaded bars, but not the data that the spatial model needs."""
+    """Return whether a scene gives bars without softening by weight, but not the data that the spatial model needs."""
     return scene.has_unloaded_bars and not has_spatial_data(scene)
 
 
 def has_spatial_unloaded_bars(scene: Scene) -> bool:
-    """Return whether a scene states the stiffness of unloaded bars and the data that the spatial model needs."""
+    """Return whether a scene gives bars without softening by weight, and the data that the spatial model needs."""
     return scene.has_unloaded_bars and has_spatial_data(scene)
 
 
@@ -272,7 +272,7 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
-    """Return the pair of models for `effect`, relative to `base`; where: end of its key, if several show `effect`."""
+    """Return the pair of models that differ by `effect`, a share of mu of `base`; where: end of its key, or ""."""
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
@@ -455,7 +455,7 @@ def _soften_model(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-# Models of Exudyn with bars softened by the weight that they carry, for scenes that state stiffnesses of unloaded bars
+# Models of Exudyn with bars softened by the weight that they carry, for scenes that give bars without this softening
 SOFTENED_TRANSLATIONAL = _soften_model(TRANSLATIONAL, has_only_planar_unloaded_bars)
 SOFTENED_SPATIAL = _soften_model(SPATIAL, has_spatial_unloaded_bars)  # spatial model, bars softened by weight
 

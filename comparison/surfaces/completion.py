@@ -192,7 +192,7 @@ def bound_share_beyond_error(held_out: int) -> float:
 def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """Return by body the completed surface, or why none, of each model on part of the phases or, if spatial, on few."""
+    """Return by body the surface over all phases, or why none, of models run at part of them or (spatial) at few."""
     if scene.recorded:
         return []
     listed = []

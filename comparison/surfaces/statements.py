@@ -212,7 +212,7 @@ def word_limit_check(limits: int, broken: int, unchecked: Mapping[str, Sequence[
 
 
 def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
-    """Return which pairs of models of which scenes have no limit; "" if all have one."""
+    """Return in words, by scene, the pairs of models whose difference has no acceptance limit; "" if all have one."""
     without_limit = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
     groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(without_limit, lambda each: each[0])]
     listed = "; ".join(f"{', '.join(pairs)} of {name_some(scenes, MAX_NAMED_SCENES)}" for pairs, scenes in groups)

@@ -44,8 +44,8 @@ MAX_SLIP_CHANGE = 0.14
 # Largest penetration of the contact under the weight at accuracy level 0, as a share of the pendulum radius rho.
 MAX_PENETRATION = 1e-6
 
-# Largest response time of the contact, as a share of the relaxation time of friction, at level 0, unless rounding needs
-# a softer contact: below it each level halves the contact's error (measured).
+# Largest response time of the contact at accuracy level 0, over the relaxation time of friction: longer only where
+# rounding needs a softer contact. At smaller ratios each level halves the contact's error (measured).
 MAX_CONTACT_LAG = 0.3
 
 # Largest response time of the contact at level 0, times the largest angular frequency of the motion. A slower contact
@@ -76,7 +76,7 @@ MAX_SQUARED_STEP_OVER_PENETRATION = 1e3
 
 # Largest share of the tolerance that rounding of the forces may take for a peak of at least MIN_PEAK.
 MAX_ROUNDING_SHARE = 0.25
-MIN_PEAK = 0.2  # in units of g, smallest peak for which MAX_ROUNDING_SHARE holds
+MIN_PEAK = 0.2  # in units of g; for a smaller peak acceleration rounding may exceed MAX_ROUNDING_SHARE of the tolerance
 
 # Largest tolerance in the bound on the rounding error of contact forces: a looser one permits no larger error, since it
 # may grow a hundredfold at a stop.
@@ -90,8 +90,8 @@ MAX_WEAK_PENETRATION = 4e-4  # largest penetration under the weight at a weak lo
 # Smallest peak, in units of g, by which the penetration is divided, so that it stays finite.
 MIN_PEAK_AS_DIVISOR = 1e-300
 
-# Compliance of real bearings against out-of-plane warping of their ring, in pendulum radii under the weight: results
-# with openings hold for it. If all stay closed, up to COMPLIANCE_OF_CLOSED_SUPPORTS makes warping carry little load.
+# Displacement of a real bearing out of the plane of all (warping) under its share of the weight, over pendulum radius.
+# Results hold for it if a support opens. Else it is up to COMPLIANCE_OF_CLOSED_SUPPORTS: warping carries little load.
 PHYSICAL_WARPING_COMPLIANCE = 4e-4
 COMPLIANCE_OF_CLOSED_SUPPORTS = 1e4  # largest compliance against warping if all supports are closed, in pendulum radii
 
@@ -308,7 +308,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return penetrations of softest and stiffest contact, in model units; slowest: upper bound of response time."""
+    """Return penetrations, model units, of softest and stiffest usable contact; slowest: bound on its response time."""
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
     # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that

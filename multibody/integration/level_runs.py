@@ -118,7 +118,7 @@ class LevelRuns:
         return number > 0 and self.levels[number].penetration >= self.levels[number - 1].penetration
 
     def run_next_level(self) -> EngineRun:
-        """Run the model at the next level of accuracy, and adjust all later levels to the result."""
+        """Run the model at the next level of accuracy; by its result, adapt supports and contact of later levels."""
         # The run at the level may be replaced in three cases. 1. If supports may rattle, the first run is a trial with
         # a share of the work, and fails: rattling on stiff springs would use up all work. 2. The run stopped early,
         # and its largest values do not confirm those of the run before, so that a later value may be larger: the level

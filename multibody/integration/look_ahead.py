@@ -91,7 +91,7 @@ def _begin_scan(run: EngineRun, model: EngineModel) -> EngineRun:
 
 
 def _comes_near_largest(ahead: EngineRun, run: EngineRun, time: float) -> bool:
-    """Return whether the scan `ahead` came near a largest value of `run`, or near the opening of a contact."""
+    """Return whether scan `ahead` nears `run`'s largest accelerations or displacement, or a contact nearly opens."""
     return bool(
         (ahead.peaks.value > NEAR_PEAK_FRACTION * run.peaks.value).any()
         or ahead.max_displacement > NEAR_PEAK_FRACTION * run.max_displacement

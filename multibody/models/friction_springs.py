@@ -97,7 +97,7 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "dynamicFriction", factor * self.law.largest)
 
     def coefficient_ratios(self, state: EngineState) -> list[float]:
-        """Return the ratios (K,) of the contacts' friction coefficients to the scene's: large for a contact at rest."""
+        """Return contact friction coefficients / the scene's, (K,): 1 in a slide; at rest large, so that they stick."""
         return [1.0 if slides else RESTING_COEFFICIENT_RATIO for slides in self._mark_sliding(state)]
 
     def set_slide_end(self, end: float) -> None:

@@ -201,7 +201,8 @@ class ImpactLaw:
             across, along = turned[link][:, :2].T, turned[link][:, 2]
             stretch = rows[3 * link]
             stretch[below : below + 3], stretch[above : above + 3] = -along, along
-            # along (w x lever) = w (lever x along); the link's axis turns with the mean of both angular velocities w
+            # Stretch rate by an angular velocity w: along . (w x lever) = w . (lever x along). The link's axis turns
+            # with the mean w of both bodies, which adds half of shift . (w x along) = -w . (shift x along) for each.
             turn = -0.5 * np.cross(shift, along)
             stretch[below + 3 : below + 6] = -np.cross(levers[0], along) + turn
             stretch[above + 3 : above + 6] = np.cross(levers[1], along) + turn

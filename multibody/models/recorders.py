@@ -15,7 +15,7 @@ def add_recorders(
     contact_nodes: list[Any],
     contacts: list[Any],
 ) -> Recorders:
-    """Add sensors for the motion of nodes and linear bodies and for gap, slip, force and normal of contacts."""
+    """Add sensors: motion of nodes and `linear` (objects of linear equations); gap, slip, force, normal of contacts."""
     kind = exudyn.OutputVariableType
 
     def sense_node(node: Any, quantity: Any) -> Any:
@@ -31,12 +31,12 @@ def add_recorders(
         return mbs.AddSensor(sensor)
 
     def sense_body(body: Any, quantity: Any) -> Any:
-        """Return a new sensor that keeps a quantity of a linear body in memory."""
+        """Return a new sensor that keeps a quantity of an object with linear equations in memory."""
         sensor = items.SensorBody(bodyNumber=body, outputVariableType=quantity, storeInternal=True, writeToFile=False)
         return mbs.AddSensor(sensor)
 
     def add_motion_sensors(quantity: Any) -> list[Any]:
-        """Add a sensor of a quantity of motion for every node and linear body, and return the sensors."""
+        """Add a sensor of a quantity of motion for every node and object with linear equations; return the sensors."""
         return [sense_node(node, quantity) for node in nodes] + [sense_body(body, quantity) for body in linear]
 
     return Recorders(

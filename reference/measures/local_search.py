@@ -42,8 +42,8 @@ FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a search region's half w
 PROMISE_FACTOR = 2.0  # a search ends if its best value is below the highest by more than this times its square's range
 LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0  # rounds, and factor on a search's gain in them: it ends if below the best by more
 MAX_MERGED_WIDTH = 0.04  # rad: two searches within one square of at most this half width have found the same maximum
-JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square in which a search follows a jump
-JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # number of squares in which a search follows a jump, and of grids in each square
+JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square of phases in which a jump of a surface is followed
+JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # numbers: squares of phases in which a jump is followed, ever finer grids in each
 FALL_DIRECTIONS = 32  # number of directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
 # Ratio of falls at NEAR_ and FAR_DISTANCE above which a maximum is a kink, a jump (parabola 0.01, edge 0.1, jump 1)

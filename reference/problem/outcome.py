@@ -1,4 +1,4 @@
-"""Named outcomes of one phase pair, shared by both sides, and advice for those that are not ok."""
+"""Named outcomes of one phase pair, shared by reference solver and engine, and advice for those that are not ok."""
 
 from __future__ import annotations
 

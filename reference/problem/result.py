@@ -1,4 +1,4 @@
-"""Results of both sides: amplification factors, trajectories, and the basis of their errors."""
+"""Results of reference solver and engine: amplification factors, trajectories, and the basis of their errors."""
 
 from __future__ import annotations
 

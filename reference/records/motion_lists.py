@@ -199,7 +199,7 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
 
 
 def _name_in_list(file: Path, folder: Path | None) -> str:
-    """Return the name of a file as motions.csv in `folder` states it; folder None: the folder of the file."""
+    """Return a file's path as motions.csv in `folder` states it: relative if inside it; folder None: its name only."""
     if folder is None:
         return file.name
     return str(file.relative_to(folder) if file.is_relative_to(folder) else file)

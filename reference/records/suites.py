@@ -130,7 +130,7 @@ def _refuse_motion(motion: Motion, rule: str) -> SceneError:
 
 
 def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
-    """Return an error's text, advice on the scene file replaced, if possible, by a line for the list motions.csv."""
+    """Return an error's text; the line that it proposes for a scene file becomes, if possible, one for motions.csv."""
     if isinstance(error, OSError):
         return str(error.strerror or error)
     said, proposal = error.said, _propose_file_options(file) if error.proposal else None

@@ -202,7 +202,7 @@ def bound_held_acceleration(
 
 @compiled
 def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) -> tuple[float, float]:
-    """Return the slip vector (friction over normal force) at the start of a rough step; zero at rest."""
+    """Return friction over normal force, as a vector along slip, at the start of a rough look-ahead step; 0 at rest."""
     if squared_speed == 0.0:
         return 0.0, 0.0
     contact = SLIDING

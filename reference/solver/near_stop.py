@@ -126,7 +126,7 @@ def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
-    """Set stage accelerations: ground, upper bodies, platform drive; return the largest upper velocity change, m/s."""
+    """Set stage accelerations (platform: without contact force); return upper bodies' largest velocity change, m/s."""
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0

@@ -1,4 +1,4 @@
-"""What is said of the assumptions: every sentence is worded here from a result with reading, base, sign and error."""
+"""All sentences on the assumptions, from signed changes of amplification, errors, peak definition, model compared."""
 
 import math
 from collections.abc import Sequence

@@ -75,7 +75,8 @@ class TaskTrials:
     error_message: str = ""
 
 
-# Task: scene, translational and spatial engine, variation or quantities, tolerance, phases, most sizes of each to try
+# Arguments of a task: scene; translational, spatial engine; variation, quantities to vary, or None (scene as stated);
+# relative error asked; phase pairs; largest number of sizes to try for each quantity
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 

@@ -249,7 +249,7 @@ def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: 
 def _statistics_at_speed(
     mu: Array, error: Array, over_supremum: Array, over_supremum_error: Array, answers: _Answers, grid: int
 ) -> _SpeedStatistics:
-    """Return statistics over P phase pairs of the amplification mu and of over_supremum, mu / supremum - 1, (P,)."""
+    """Return statistics over P phase pairs of a body's mu, (P,), and over_supremum, mu / (limit for slip -> 0) - 1."""
     known = np.isfinite(mu)
     if not known.any():
         return _SpeedStatistics()
@@ -301,7 +301,7 @@ def _fill_curve(
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Analysis of amplification by smallest slip speed that is resolved; only harmonic scenes with dry friction."""
+    """Analysis of how amplification depends on the smallest resolved slip speed; harmonic scenes, dry friction only."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0

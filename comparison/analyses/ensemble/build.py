@@ -105,7 +105,7 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
 
 
 def describe_ground(member: EnsembleMember) -> dict[str, Any]:
-    """Return files, step, peaks, digest, spectrum of a ground motion at scale 1, times factors of list and target."""
+    """Return files, step, peaks, digest, spectrum of a motion times factors of its list and target, without scale."""
     samples = member.scene.record / np.array([1.0, *[member.scale] * 3])
     origin = member.scene.excitation.origin if isinstance(member.scene.excitation, Record) else ()
     read, moving = describe_samples(member.motion, origin, samples), samples[:, 1:3][:, samples[:, 1:3].any(axis=0)]

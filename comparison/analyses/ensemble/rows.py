@@ -159,7 +159,7 @@ def find_largest_over_bodies_by_motion(
 
 
 def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
-    """Return the largest number and its body, or NaN if one is unknown; its error: how far all errors may raise it."""
+    """Return the largest value and its body; its error: largest (value + error) minus it. NaN, None if any unknown."""
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)

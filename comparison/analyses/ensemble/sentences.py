@@ -271,7 +271,7 @@ def restoring_sentence(ensemble: EnsembleResult) -> str:
 
 
 def supremum_sentence(places: Collection[str], differing: Collection[str]) -> str:
-    """Say at which floors the literal supremum of acceleration equals the value as integrated; "" if at none."""
+    """Return a sentence: floors where peak acceleration as integrated and in the limit v -> 0+ agree; "" if at none."""
     if len(differing) == len(places):
         return ""
     where = "At the floors that are left out" if differing else "At every floor"

@@ -39,7 +39,7 @@ NUMERICAL_OUTCOMES = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOL
 # A finer run confirms a result only if its own error is at most the result's, or this share of the tolerance asked.
 CONFIRMING_ERROR_SHARE = 0.1
 RELATIVE_ROUNDING = 1e-12  # Two amplifications whose relative difference is smaller count as equal.
-# Groups of extremes that --reduced also computes with Exudyn's models
+# Groups of extreme cases that --reduced also computes with Exudyn's models
 GROUPS_QUICK_BY_ENGINE = {"lubrication, s/m", "start at the friction limit", "outside the rules"}
 STAGE = "extremes"  # name under which the terminal shows the progress of these tasks
 # s, processor time after which a model at an extreme, with finer runs, is stopped: twice the slowest on a busy machine
@@ -264,7 +264,7 @@ def _entry_of_failure(cell: MatrixCell, failed: TaskResult) -> MatrixEntry:
 
 
 def select_quick(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:
-    """Return extremes that the reference equations compute in under 1 s, with Exudyn's models only in a few groups."""
+    """Return extreme cases that the equations compute in under 1 s, with Exudyn's models only in a few groups."""
     chosen = [
         replace(
             row,

@@ -4,10 +4,10 @@ _ENGINE = "translational", "spatial"  # keys of the models of Exudyn
 # Texts used more than once in CAUSES: why a model does not reach the accuracy asked, or the end of such a text
 _LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
 _QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"  # part of _FRICTION, _RELAXATION
-_FRICTION = f"friction stops so light a platform {_QUICK}"  # cause: a light platform
+_FRICTION = f"friction stops so light a platform {_QUICK}"  # why Exudyn misses the accuracy with a light platform
 # Cause if v_reg, the sliding speed below which friction is linear, is so small that the contact cannot follow a stop
 _RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
-_LIGHT = (  # cause: a platform much lighter than the bodies above it
+_LIGHT = (  # why the equations miss the accuracy with a platform much lighter than the bodies above: rounding errors
     "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
     "rounding of those which balance at its start"
 )

@@ -32,8 +32,8 @@ from comparison.evidence.extremes.scenes import (
 
 Phases = tuple[tuple[float, float], ...]  # phase pairs (alpha1, alpha2), rad
 
-USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs at which most extremes are computed
-# rad, phase pairs that are extremes themselves: by symmetry, forces or velocities vanish or coincide
+USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs at which most extreme cases are computed
+# rad, phase pairs that are extreme cases themselves: by symmetry, forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
 # Largest number of Exudyn's steps for a phase pair of long motions or stiff links (translational model only), in place
 # of MAX_WORK, which is too small for them
@@ -59,7 +59,7 @@ class ExtremeCase:
 
     @property
     def name(self) -> str:
-        """Return the name of this extreme: the quantity and its extreme value."""
+        """Return the name of this extreme case: the quantity and its extreme value."""
         return f"{self.group} {self.title}"
 
 

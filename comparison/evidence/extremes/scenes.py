@@ -1,4 +1,4 @@
-"""Baseline scene of the extremes and its variations, with the tables and keys of a scene file."""
+"""Baseline scene of the extreme test cases and its variations, as tables and keys of a scene file."""
 
 import math
 from collections.abc import Sequence

@@ -145,7 +145,7 @@ class TradeOff:
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
-        """Yield task lists: accurate solution per set of equations; per method and value: runs, solution to match."""
+        """Yield lists of tasks: the questions' reference solutions; for each setting, its runs and their reference."""
         questions = {question.key: question for question in list_questions(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)

@@ -105,7 +105,7 @@ def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, 
     return {**line, "dash": "5 3"} if entries[0].model_error else line
 
 
-TRADES = ResultField(  # results field: error against compute time, which a command left next to the report
+TRADES = ResultField(  # results field: error against compute time, read from the file that the command `tradeoff` wrote
     "tradeoff",
     list[SceneTrade],
     trade.STORED.word_field("error against compute time for every model and parameter"),

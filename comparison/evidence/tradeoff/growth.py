@@ -26,8 +26,8 @@ BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies for which the proc
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion for which the processor time is measured
 PHASE_PAIRS = "phase pairs"  # quantity with which the processor time grows: number of phase pairs per call
 PHASE_PAIR_COUNTS = (1, 4, 16, 64, 256)  # numbers of phase pairs in one call for which the processor time is measured
-PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs per call while bodies or duration vary, by program
-TALL_DURATION = 5.0  # s, duration of motion while the number of bodies varies
+PHASE_PAIRS_OF_SIDE = {"reference": 16, "engine": 1}  # phase pairs per call timed over bodies or duration, by program
+TALL_DURATION = 5.0  # s, duration of motion where the growth of cost with the number of bodies is measured
 # Factor by which the loading is multiplied when bodies are added, or friction would hold the platform at rest
 TALL_LOADING_FACTOR = 3.0
 TALL_STOREY_HEIGHT = 1.0  # m, vertical distance of the bodies that are added; the ring of supports grows with them

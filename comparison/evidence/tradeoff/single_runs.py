@@ -1,4 +1,4 @@
-"""Single runs of either side with a numerical parameter at a given value; without a second run there is no error."""
+"""Single runs of equations or engine at a given numerical parameter; without a second run there is no error."""
 
 from collections.abc import Callable
 from dataclasses import replace

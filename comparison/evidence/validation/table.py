@@ -1,4 +1,4 @@
-"""Table of measured quantities compared with those of both sides, as the data of a file and of the report."""
+"""Table of measured quantities compared with those of equations and engine, as data of a file and of the report."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

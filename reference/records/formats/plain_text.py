@@ -92,7 +92,7 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
 
 
 class Proposal(NamedTuple):
-    """Options that a scene may state to read a plain text, columns counted from 1; missing: those to be guessed."""
+    """Options that a scene may state to read a plain text; `missing`: those of step, unit that are only guessed."""
 
     step: float
     unit: str
@@ -212,7 +212,7 @@ def _read_rows(
 def _column_values(
     rows: Sequence[tuple[int, list[float]]], column: int | None, counted: bool, propose: Callable[[], str]
 ) -> list[float]:
-    """Return values of `column`, from 1, or for 0 or None all in file order. Raises RecordError for unfit lines."""
+    """Return values in `column` (first: 1); for 0 or None, all in file order. Raises RecordError for unfit lines."""
     if column:
         for number, row in rows:
             if len(row) < column:

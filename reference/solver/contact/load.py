@@ -20,7 +20,7 @@ from reference.solver.system import Load, System
 
 MAX_ITERATIONS = 40  # largest number of Newton iterations for the reaction of the contact
 LAST_CHANGE = 1e-8  # relative change of the reaction below which its iteration ends: the next is below rounding
-# Largest residual of the equation for the reaction, over the load along the normal: above it no solution was found
+# Largest residual of the equation for the contact's normal force, over its right side: above it no solution was found
 MAX_MISFIT = 1e-7
 
 

@@ -68,10 +68,10 @@ from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 # Rounding error of the platform's acceleration, a difference of forces over m1, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
 MAX_VIBRATION_ANGLE = 5.0  # rad, phase angle of the upper bodies' fastest vibration per step; larger steps damp it
-# A step leaves DRIFT_SHARE * angle^7 * (interpolation error at its start) as error in a free vibration that turns by
-# `angle`, rad. All add up to at most its size: interpolation error / (2 DRIFT_SHARE angle^7) (decisions/0002).
+# A step in which a free vibration turns by `angle`, rad, adds DRIFT_SHARE * angle^7 * d to its error, d: interpolation
+# error at the step's start. The sum counts up to the vibration's size, d / (2 DRIFT_SHARE angle^7) (decisions/0002).
 DRIFT_SHARE = 6e-8
-# Turn of the fastest vibration in a step, rad, up to which its error is left out: 100 such add < 1e-3 of a tolerance
+# Turn of the fastest vibration, rad, up to which a step's error in it is left out: 100 such add < 1e-3 of a tolerance
 MIN_DRIFT_ANGLE = 2.0
 # Factor on the tolerance of Newton's method for a slide whose friction depends on the speed
 VARYING_NEWTON_FRACTION = 1e-3

@@ -44,7 +44,7 @@ DECISIVE_RISE_FRACTION = 0.999  # share of an upper body's squared peak: with mo
 # Share of an upper body's squared peak: if its squared acceleration rises by less in the turn, no slide is followed
 NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg, the limit of creep, at which a slide becomes creep
-EARLY_CROSSING = 1e-9  # share of a step: a slide that slows to v_reg, the limit of creep, earlier creeps at step start
+EARLY_CROSSING = 1e-9  # share of a step: a slide that slows to v_reg (limit of creep) within it creeps from step start
 # Forces count as constant until the stop if it is nearer than this number * RunSettings.period * square root of the
 # relative tolerance of accelerations
 MAX_FROZEN_TIME = 0.01
