@@ -212,7 +212,7 @@ def motion_list_text(motions: Iterable[Motion]) -> str:
     Raises RecordError for a name that a line of the list cannot hold.
     """
     motions = list(motions)
-    stating, rated = any(motion.options for motion in motions), any(motion.magnitude for motion in motions)
+    stating, rated = any(motion.options for motion in motions), any(motion.magnitude is not None for motion in motions)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([*COLUMNS, *OPTION_COLUMNS * stating, *[MAGNITUDE_COLUMN] * rated])
