@@ -100,6 +100,15 @@ def test_the_rate_of_slip_may_jump_at_the_corner(chunks: int, corner: float) -> 
     assert peaks.sampling_error[0] < 5e-4
 
 
+def test_instants_of_both_sides_that_differ_are_an_error() -> None:
+    """Slip speeds that pass 1 at 0.506 by the samples before and at 0.514 by those behind, or the other way."""
+    time = 0.02 * np.arange(24.0, 28.0)
+    for before, behind in ((0.506, 0.514), (0.514, 0.506)):
+        slip = 1.0 + np.where(time < 0.51, time - before, 2.0 * (time - behind))
+        found = _read_corner(time, 1.0 + time, slip[:, None], 1, 1.0, [1])
+        assert found == pytest.approx((1.51, 0.5 * 0.008, 0.51))
+
+
 @CHUNKS
 def test_a_sample_between_corners_has_the_change_as_error(chunks: int) -> None:
     """Steps that are longer than corners are apart resolve neither: levels then agree by accident."""

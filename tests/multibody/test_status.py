@@ -135,6 +135,7 @@ def test_a_tolerance_out_of_reach_gives_the_error_reached() -> None:
     result = multibody.amplification(scene, [PHASE], tolerance=1e-9)
     assert result.status[0] == Outcome.TOLERANCE_NOT_MET
     assert ((result.error / result.mu > 1e-9) & (result.error / result.mu < 1e-4)).all()
+    assert multibody.trajectory(scene, PHASE, tolerance=1e-9).status == Outcome.TOLERANCE_NOT_MET
     motion = multibody.trajectory(scene, PHASE)
     largest = np.linalg.norm(motion.absolute_acceleration[:, 0, :], axis=1).argmax()
     assert result.instant[0] == pytest.approx(motion.time[largest], abs=2e-3), "in s: that of the peak"

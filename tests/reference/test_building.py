@@ -78,13 +78,14 @@ def test_the_lines_of_a_building_have_its_numbers_with_their_units() -> None:
 def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
     scene = shear_building()
     scenes = [scene.with_values({"excitation.scale": scale, "name": f"job {scale:g}"}) for scale in (2.0, 4.0, 1.0)]
-    stiffer = scene.with_values({"bodies.1.stiffness": [1e9, 1e9], "name": "other"})
+    stiffer = scene.with_values({"bodies.1.stiffness": [1e9, 1e9], "excitation.scale": 3.0, "name": "other"})
     lines = word_buildings([describe_building(each) for each in (*scenes, stiffer)])
     assert lines[0].startswith("Building job 2, job 4, job 1: 6 bodies")
     assert lines[6] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
     still = replace(describe_building(scene), ground_peak=0.0)
     assert word_buildings([still, describe_building(scene)])[-1].endswith(": 0 to 1.41 m/s^2 = 0 to 0.144 g")
     assert lines[7].startswith("Building other: 6 bodies")
+    assert lines[-1] == "  peak of the ground: 4.24 m/s^2 = 0.432 g"
     assert len(lines) == 14
     kinds = [scene.with_values({"bodies.0.mass": mass, "name": f"{mass:g} kg"}) for mass in (100, 300, 400, 500, 600)]
     ends = {3: "  peak of the ground: 1.41 m/s^2 = 0.144 g", 4: "and 1 more kind of buildings"}

@@ -14,6 +14,7 @@ from reference.measures import local_search
 from reference.measures.local_maxima import find_local_maxima
 from reference.measures.local_search import ComputedPhases, LocalSearch
 from reference.problem import Amplification, Scene, builtin_scenes, phase_grid
+from reference.problem.readings import describe_law
 from reference.problem.symmetry import find_half_turns
 
 Array = NDArray[np.float64]
@@ -124,7 +125,9 @@ def test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted(monkeypatch:
     assert (again.climbs, again.reached) == (3, 2), "across the ends of the phases"
     shifted = scene_with(monkeypatch, lambda phases: hills(phases - np.pi))
     law = {"equations": "small", "regularization": None, "cutoff": 1e-3}
-    assert all(0.0 <= phase < 2.0 * np.pi for phase in reference.worst_phases(shifted, tolerance=1e-7, **law).phases)
+    told = reference.worst_phases(shifted, tolerance=1e-7, **law)
+    assert all(0.0 <= phase < 2.0 * np.pi for phase in told.phases)
+    assert told.law == describe_law(shifted, None, 1e-3) != describe_law(shifted, None)
     assert asked[0] == law | {"tolerance": 1e-4}, "the grid"
     assert asked[-1] == law | {"tolerance": 1e-7}
 
