@@ -75,6 +75,10 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     ]
     both = join_results(parts)
     assert (both.seconds, both.step, both.error_message) == (6.0, pytest.approx(0.2), "no")
+    better = replace(good, question="small", seconds=0.5 * good.seconds, most=tuple(0.5 * each for each in good.most))
+    assert [each.pareto_front for each in mark_pareto_fronts([good, better], 1)] == [(True,)] * 2, "of other equations"
+    better = replace(better, question=good.question)
+    assert [each.pareto_front for each in mark_pareto_fronts([good, better], 1)] == [(False,), (True,)]
 
 
 def test_phase_pairs_without_a_reference_solution_take_no_setting_off_the_front() -> None:
