@@ -69,6 +69,10 @@ globalThis.probe = {
     return { titles: all("polygon.mark title").map(each => each.textContent), legends: all(".legend").length, text: box.innerHTML, bars: all("line.line").map(bar => bar.getAttribute("y1") - bar.getAttribute("y2")), path: all("g path")[0].getAttribute("d"),
       around: all("polygon.area")[0].getAttribute("points").split(" ").map(point => point.split(",")[0]), shifts: all("tspan[dy]").map(each => each.getAttribute("dy")) };
   },
+  contactPaths() {
+    const columns = { yaw: [0, 0.2] }, motion = { position: (body, axis) => axis ? [30, 40] : [10, 20], column: name => columns[name] };
+    return [contactPaths({ contact: { lever: 0.5, supports: [[1, 2], [-3, 4]] } }, motion), contactPaths({ contact: { lever: null, supports: null } }, motion)];
+  },
   ranges: () => [[3, 3], [-2, 1, 4, null]].map(values => [true, false].map(log => rangeOf({ log }, values))),
   corner: () => nearestVertex({ rows: [[1, 2], [3, 4]], range: [0, 4] }, (a, b) => [100 * a, 100 * b, 0], 100 * turn, 100 * turn),
 };

@@ -55,6 +55,10 @@ def test_a_plot_with_logarithms_has_marks_bands_and_bars_where_they_belong(visit
     assert "NaN" not in told["text"]
     first, last = told["bars"]  # from 1, the lower end of the axis, to 20, and from 20 to 40
     assert first / last == pytest.approx(np.log(20.0) / np.log(2.0), rel=0.02)
+    at_supports, of_platform = visit.page.evaluate("probe.contactPaths()")  # from (10, 30) to (20, 40) mm, by 0.2 rad
+    expected = [{"x": [-5.0, 190.0], "y": [-15.0, -120.0]}, {"x": [-5.0, 390.0], "y": [-15.0, 280.0]}]
+    assert [{axis: pytest.approx(path[axis]) for axis in path} for path in expected] == at_supports
+    assert of_platform == [{"x": [-10.0, -20.0], "y": [-30.0, -40.0]}]
     assert visit.page.evaluate("probe.corner()") == pytest.approx([2.0 * np.pi] * 2), "the square is closed"
 
 

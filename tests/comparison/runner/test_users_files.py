@@ -18,6 +18,7 @@ from runs import SMALL, Run
 from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
+from comparison.runner import output
 from comparison.runner.cache import Cache, CacheKey, locate_store
 from comparison.runner.manifest import MANIFEST, OwnedFile, format_manifest, list_foreign_files, read_manifest
 from comparison.runner.output import (
@@ -27,7 +28,7 @@ from comparison.runner.output import (
     replace_report,
     resolve_destination,
 )
-from reference.support.files import TEMPORARY_PREFIX
+from reference.support.files import TEMPORARY_PREFIX, write_atomically
 
 TABLES = ["extremes.json", "extremes.png"]
 
@@ -312,3 +313,23 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
 def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert locate_store(resolve_destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")
+
+
+def test_a_file_whose_third_replacement_was_interrupted_is_still_the_study_s(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for content in (b"one", b"two"):
+        publish_files(tmp_path, {"a.csv": content}, "run")
+
+    def interrupted(file: Path, content: bytes) -> None:
+        if file.name != MANIFEST:
+            raise KeyboardInterrupt
+        write_atomically(file, content)
+
+    monkeypatch.setattr(output, "write_atomically", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        publish_files(tmp_path, {"a.csv": b"three"}, "run")
+    monkeypatch.undo()
+    assert (tmp_path / "a.csv").read_bytes() == b"two"
+    assert publish_files(tmp_path, {"a.csv": b"four"}, "run") == [tmp_path / "a.csv"]
+    assert (tmp_path / "a.csv").read_bytes() == b"four"
