@@ -8,7 +8,6 @@ from chains import refusal
 
 from reference.problem import GRAVITY
 from reference.records.formats import READERS, at2, csv_table, read_record, recognize_format
-from reference.records.numerals import parse_fields
 from reference.records.samples import RecordError, join_directions
 
 PEER = "PEER NGA STRONG MOTION DATABASE RECORD\nInvented, 1/1/2000, Nowhere, 000\n"
@@ -450,10 +449,3 @@ def test_a_list_or_a_truth_is_no_option_of_a_plain_text(options, said):
     with pytest.raises(RecordError) as refused:
         read_record(b"1\n2\n3\n4\n", "a.txt", options)
     assert str(refused.value).startswith(said)
-
-
-def test_numbers_without_a_blank_are_told_apart_by_signs_alone() -> None:
-    assert parse_fields(3, "1.50-2.5+.30e-2-1. 4.") == [1.5, -2.5, 0.003, -1.0, 4.0]
-    for cell in ("1.50-2.500.30", "1.50.30-2.5", "1.5-2.5x", "1.5-2"):
-        with pytest.raises(RecordError, match=f"^line 3: '{cell}': must be a number"):
-            parse_fields(3, cell)
