@@ -75,6 +75,14 @@ def test_the_lines_of_a_building_have_its_numbers_with_their_units() -> None:
     ]
 
 
+@pytest.mark.parametrize(("difference", "words"), [(0.9e-6, "(equal dead load)"), (1.1e-6, "in the mean (1.39 MN to")])
+def test_dead_loads_within_a_millionth_of_their_mean_are_equal(difference: float, words: str) -> None:
+    building = describe_building(shear_building())
+    assert building.load_per_support is not None
+    loads = building.load_per_support * np.array([1.0, 1.0 + difference])
+    assert words in replace(building, support_loads=loads).lines[0]
+
+
 def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
     scene = shear_building()
     scenes = [scene.with_values({"excitation.scale": scale, "name": f"job {scale:g}"}) for scale in (2.0, 4.0, 1.0)]

@@ -13,6 +13,7 @@ import multibody
 import reference
 from reference.problem import Amplification
 from reference.problem.phases import phase_coordinates
+from reference.support.html_table import html_table
 
 SCENE = reference.load_scene("fig4-dry").with_values({"duration": 3.0})
 PAIRS = reference.phase_grid(3)
@@ -168,3 +169,6 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     assert "7 s: a &lt; b; friction coefficient at most 0.07</p>" in table
     assert cells(table) == [["1", "3", "", ""], ["2", "2", "150, 110", "5, 6"]]
     assert "; lubrication 0.4 s/m</p>" in chain(lubrication=0.4)._repr_html_()
+    table = html_table("<A>", ["b <"], [["<c>", 3]])
+    assert table.startswith("<p>A</p><table><thead><tr><th>b &lt;</th></tr></thead><tbody>")
+    assert cells(table.removesuffix("</tbody></table>")) == [["&lt;c&gt;", "3"]]

@@ -58,7 +58,7 @@ def at2_files(folder, *names):
         (folder / f"{name}.AT2").write_text(f"{header}{number} 0.0\n")
 
 
-def test_files_of_no_suite_are_one_line(folder):
+def test_files_of_no_suite_are_one_line(folder, monkeypatch):
     at2_files(folder / "mixed", "RSN1_H1", "RSN1_H2")
     (folder / "mixed" / "a.csv").write_text("")
     (folder / "suite" / "a.CSV").write_text((folder / "suite" / "a.csv").read_text())
@@ -70,6 +70,11 @@ def test_files_of_no_suite_are_one_line(folder):
         "bad": "b.csv: line 2: 'one': must be a number",
     }.items():
         said = refusal(load_scene, written(folder, f'suite = "{suite}", motion = 1'), kind=SceneError)
+        assert said.rule.startswith(rule)
+    count = len(os.listdir(folder / "suite"))
+    for most, rule in ((count, "'a.CSV' and 'a.csv'"), (count - 1, f"{count} files: must be at most {count - 1}")):
+        monkeypatch.setattr(suites, "MAX_FILES", most)
+        said = refusal(load_scene, written(folder, 'suite = "suite", motion = 1'), kind=SceneError)
         assert said.rule.startswith(rule)
 
 
