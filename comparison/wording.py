@@ -2,6 +2,7 @@
 
 import math
 import re
+from typing import Any
 
 from markupsafe import Markup, escape
 
@@ -83,6 +84,11 @@ def scientific(value: float) -> str:
 def significant(value: float) -> str:
     """Return a number with seven digits, enough to distinguish a relative 1e-6; an infinite number by its sign."""
     return "" if math.isnan(value) else "\N{INFINITY}" if value == math.inf else f"{value:.7g}"
+
+
+def format_known(pattern: str, *values: Any) -> str:
+    """Return values in a printf pattern, in place of Jinja's filter `format`; "none" if one of them is not a number."""
+    return "none" if any(value != value for value in values) else pattern % values
 
 
 def degrees(phase: float) -> str:

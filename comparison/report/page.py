@@ -21,7 +21,7 @@ from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELL_WORDINGS, word_verdict
 from comparison.surfaces.waterfall import UNEQUAL_PHASES, Waterfall
 from comparison.surfaces.waterfall_chart import make_common_scale, place_bars
-from comparison.wording import degrees, percent, scientific, signed, significant, symbols
+from comparison.wording import degrees, format_known, percent, scientific, signed, significant, symbols
 
 MIN_DRAWN_BAR = 0.01  # A bar chart is not drawn if all differences in it are below this share of the amplification.
 # JavaScript files that are joined in this order into the script of the page
@@ -233,7 +233,7 @@ def _make_template_environment() -> jinja2.Environment:
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     filters = (percent, signed, scientific, degrees, significant, symbols, explain_words)
-    environment.filters.update({function.__name__: function for function in filters})
+    environment.filters.update({function.__name__: function for function in filters} | {"format": format_known})
     environment.globals["term"] = mark_term  # as a global, because Jinja macros do not see the template's variables
     return environment
 

@@ -96,7 +96,7 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     def estimate_mean() -> Estimate:
         """Return the mean of the amplification mu with its error."""
         value = float(values[known].mean())
-        sampling = max(abs(float(np.nanmean(part)) - value) for part in coarse)
+        sampling = max(abs(float(part.mean()) - value) for part in coarse)
         error = SAMPLING_FACTOR * sampling + float(errors.mean())
         return Estimate(value, error if known.all() else float("nan"))
 

@@ -1,5 +1,6 @@
 """Phases of any shape, results as xarray, in one line and as tables, and their drawings."""
 
+import math
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,6 +14,7 @@ import multibody
 import reference
 from reference.problem import Amplification
 from reference.problem.phases import phase_coordinates
+from reference.support import drawing
 from reference.support.html_table import html_table
 
 SCENE = reference.load_scene("fig4-dry").with_values({"duration": 3.0})
@@ -108,7 +110,7 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     np.testing.assert_array_equal(np.asarray(mesh.get_array()).reshape(3, 3), surface.mu[:, 0].reshape(3, 3).T)
 
 
-def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
+def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion, monkeypatch):
     axes = motion.plot()
     assert [line.get_label() for line in axes.get_lines()] == ["body 1, x", "body 1, y", "body 2, x", "body 2, y"]
     np.testing.assert_array_equal(axes.get_lines()[3].get_ydata(), motion.position[:, 1, 1])
@@ -116,6 +118,8 @@ def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
     for name, unit in (("position", "m"), ("velocity", "m/s"), ("absolute_acceleration", "m/s$^2$")):
         assert motion.plot(name, axes=plt.figure().add_subplot()).get_ylabel().endswith(f", {unit}")
     priced = replace(motion, scene=motion.scene.with_values({"title": "from $5 to $6"})).plot()
+    monkeypatch.setattr(drawing, "MAX_TIME_POINTS", len(motion.time) // 3)
+    assert len(motion.plot().get_lines()[0].get_xdata()) == math.ceil(len(motion.time) / 4), "every fourth instant"
     assert priced.get_title() == r"from \$5 to \$6", "no formula"
     plt.close("all")
 

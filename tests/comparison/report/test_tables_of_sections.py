@@ -34,6 +34,7 @@ ROW = Difference(
     independent=59, grids=(GridMean(4, -0.071, 0.091), GridMean(8, -0.081, 0.093)), beyond_error=0.62, resolved=0.73,
     ratio=3.4, not_ok=7, unanswered=5,
 )  # fmt: skip
+DOTS = make_log_scale([0.021, 0.041])
 
 
 def tables_of(section: str, **context: Any) -> Tables:
@@ -43,9 +44,7 @@ def tables_of(section: str, **context: Any) -> Tables:
 
 
 def test_a_difference_has_mean_spread_95_percent_and_maximum_below_their_heads() -> None:
-    tables = tables_of(
-        "differences", results=SimpleNamespace(phased=True), rows=[ROW], dots=make_log_scale([0.021, 0.041])
-    )
+    tables = tables_of("differences", results=SimpleNamespace(phased=True), rows=[ROW], dots=DOTS)
     assert tables.rows(0) == [{
         "scene": "tower", "body": "2", "difference": "like for like", "mean, 95 %, maximum": "", "mean": "−2.1 %",
         "standard deviation": "5.2 %", "95 %": "3.1 %", "maximum": "4.1 %",
@@ -54,6 +53,12 @@ def test_a_difference_has_mean_spread_95_percent_and_maximum_below_their_heads()
         "scene": "tower", "body": "2", "difference": "like for like", "median size": "1.1 %", "maximum at α₁": "90°",
         "at α₂": "45°", "beyond uD": "62 %", "largest, uD": "3.4", "phase pairs": "61", "not ok": "7", "no value": "5",
     }]  # fmt: skip
+
+
+def test_a_share_beyond_errors_is_unknown_without_errors_and_none_without_values() -> None:
+    lacking = [replace(ROW, beyond_error=NAN, ratio=NAN, unanswered=count) for count in (5, 61)]
+    rows = tables_of("differences", results=SimpleNamespace(phased=True), rows=lacking, dots=DOTS).rows(1)
+    assert [[row["beyond uD"], row["largest, uD"]] for row in rows] == [["unknown"] * 2, ["none"] * 2]
 
 
 def test_an_effect_has_mean_error_share_other_order_and_suprema_below_their_heads() -> None:

@@ -60,5 +60,13 @@ def test_unknown_values_widen_the_fractiles_that_they_can_reach() -> None:
     assert np.isnan(distribution.fractiles[-1].error)  # 95 % may be anything
     for known, found in zip(complete.fractiles[1:-1], distribution.fractiles[1:-1]):
         assert abs(found.value - known.value) <= found.error
+    known = np.arange(36.0).reshape(6, 6) ** 2
+    known[0, 0] = known[3, 2] = np.nan
+    low, high = (np.quantile([*known[np.isfinite(known)], end, end], 0.5, method="hazen") for end in (-1e9, 1e9))
+    parts = [known[i::2, j::2] for i in (0, 1) for j in (0, 1)]
+    value = np.quantile(known[np.isfinite(known)], 0.5, method="hazen")
+    sampling = max(abs(np.quantile(part[np.isfinite(part)], 0.5, method="hazen") - value) for part in parts)
+    found = phase_distribution(known, 0.0 * known).fractiles[list(FRACTILES).index(0.5)]
+    assert (found.value, found.error) == pytest.approx((value, 2.0 * sampling + max(high - value, value - low)))
     with pytest.raises(ValueError, match="finite value"):
         phase_distribution(np.full((4, 4), np.nan), np.full((4, 4), np.nan))
