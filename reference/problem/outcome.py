@@ -37,7 +37,8 @@ class Outcome(StrEnum):
 ADVICE: dict[Outcome, str] = {  # what to try after each outcome
     Outcome.OK: "nothing to do",
     Outcome.TOLERANCE_NOT_MET: "the error shown is larger than asked: loosen the tolerance, or give a cutoff v_c",
-    Outcome.RIM_REACHED: "x1^2 + y1^2 reached rho^2 (4.1): lower the amplitude or enlarge the radius",
+    Outcome.RIM_REACHED: "the platform moved to the rim, x1^2 + y1^2 = rho^2 (4.1): lower the amplitude or "
+    "enlarge the radius",
     Outcome.TRAVEL_REACHED: "the platform needs a larger displacement than isolator.travel: lower the amplitude or "
     "enlarge the travel",
     Outcome.CONTACT_LOST: "the contact force reached zero: lower the vertical amplitude, or use the spatial model",

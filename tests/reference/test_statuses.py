@@ -133,6 +133,9 @@ def test_every_outcome_has_advice():
     assert [outcome.name for outcome in Outcome][2:6] == ["RIM_REACHED", "TRAVEL_REACHED", "CONTACT_LOST", "OVERTURNED"]
     assert [outcome for outcome, words in WORDS.items() if words not in ADVICE[outcome]] == []
     assert not any("\n" in text for text in ADVICE.values())
+    assert {text.split()[0] for text in ADVICE.values()} <= {"nothing", "the", "loads", "a", "(5.1)"}, (
+        "it begins a sentence"
+    )
 
 
 def test_a_run_of_too_many_steps_ends_at_its_limit(monkeypatch):
