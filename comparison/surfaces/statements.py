@@ -305,7 +305,9 @@ def word_range_cell(numbers: Headline) -> str:
 
 
 def word_causes_cell(numbers: Headline) -> str:
-    """Return the text on the causes of the difference for the table at the top of the report."""
+    """Return the text on the causes of the difference for the table at the top of the report; "" without any value."""
+    if numbers.first == numbers.second or not numbers.points:
+        return ""
     if not numbers.resolved:
         return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED_TEXT}"
     words = word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")

@@ -182,6 +182,8 @@ def test_the_cells_of_the_first_screen_say_what_the_sentence_says() -> None:
     assert (
         CELL_WORDINGS.causes(replace(KNOWN, resolved=False)) == "the mean is less than five times the numerical error"
     )
+    for nothing in ({"points": 0}, {"second": KNOWN.first}):
+        assert CELL_WORDINGS.causes(replace(KNOWN, **nothing, resolved=False)) == "", "nothing has a cause"
     assert CELL_WORDINGS.causes(replace(KNOWN, resolved=False, error=0.08)) == "the mean is not beyond its error"
     assert CELL_WORDINGS.causes(replace(KNOWN, causes=())) == "Which effect causes it 16 × 16 phases do not tell"
 
