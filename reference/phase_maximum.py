@@ -38,6 +38,10 @@ MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
 MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by more is neither classified nor refined
 
 
+class NoAnswerError(ValueError):
+    """Error of a search over all phases that finds no phase pair with an answer; its message names the outcome."""
+
+
 @dataclass(frozen=True)
 class PhaseMaximum:
     """
@@ -147,7 +151,7 @@ def worst_phases(
         )
     searches = _start_searches(surface, check_phases(starts))
     if not searches:
-        raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
+        raise NoAnswerError(f"scene {scene.name}: no phase pair has an answer: {surface.outcome}")
     shifts: Array = np.pi * find_half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
         highest = max(search.value for search in searches)

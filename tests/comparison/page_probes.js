@@ -59,7 +59,8 @@ globalThis.probe = {
   demands() {
     const one = { displacement: [0.2, 0.03], base_shear: [4, 0.1] }, other = { displacement: [0.25, 0.021], travel_share: [0.5, 0], base_shear: [3, 0.1] }, models = ["exact", "spatial"];
     const rows = (...both) => demandsTable(sceneNow(), { motions: models.map((model, k) => ({ model, demands: both[k] })) }, models)[0].querySelectorAll("tbody tr");
-    return [rows(one, other), rows(null, other)].map(list => [...list].map(row => [...row.cells].map(cell => cell.textContent)));
+    const none = demandsTable(sceneNow(), { motions: models.map(model => ({ model, demands: { displacement: null } })) }, models);
+    return [...[rows(one, other), rows(null, other)].map(list => [...list].map(row => [...row.cells].map(cell => cell.textContent))), none];
   },
   // a value without a logarithm is left out; a bar and a band that reach below zero
   plotWithLogarithms() {

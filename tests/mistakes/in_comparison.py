@@ -1344,5 +1344,13 @@ MISTAKES = (
             "Error bars end at the value.", ("tests/comparison/report/test_page_in_a_browser.py::test_a_plot_with_logarithms_has_marks_bands_and_bars_where_they_belong",)),
     Mistake("comparison/report/templates/motions.js", "(yaw ? yaw[i] * Y * MM : 0)", "(yaw ? yaw[i] * Y : 0)",
             "Rotation counts a thousandth in paths of contacts.", ("tests/comparison/report/test_page_in_a_browser.py::test_a_plot_with_logarithms_has_marks_bands_and_bars_where_they_belong",)),
+    Mistake("comparison/analyses/worst_phases/analysis.py", "except NoAnswerError as error:", "except ZeroDivisionError as error:",
+            "A motion that reaches the rim is a failure of the solver.",
+            ("tests/comparison/analyses/test_worst_phases_in_a_study.py::test_a_scene_without_an_answer_at_any_phase_says_why_and_is_no_failure_of_a_solver",)),
+    Mistake("comparison/surfaces/statements.py", "the top of the report; \"\" without any value.\"\"\"\n    if numbers.first == numbers.second or not numbers.points:", "the top of the report; \"\" without any value.\"\"\"\n    if numbers.first == numbers.second:",
+            "Models without a common value have a cause.",
+            ("tests/comparison/surfaces/test_statements.py::test_the_cells_of_the_first_screen_say_what_the_sentence_says",)),
+    Mistake("comparison/wording.py", "if any(value != value for value in values)", "if all(value is None for value in values)",
+            "A page says nan.", ("tests/comparison/report/test_tables_of_sections.py::test_a_share_beyond_errors_is_unknown_without_errors_and_none_without_values",)),
 )
 # fmt: on

@@ -29,6 +29,7 @@ from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import select_values
 from reference.measures.local_maxima import GRID, find_local_maxima
 from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, make_square_nodes, predict_best
+from reference.phase_maximum import NoAnswerError
 from reference.problem import Scene
 
 SEARCH_TOLERANCE = 1e-5  # relative error of the amplification by the equations in a search for the worst phases
@@ -112,7 +113,10 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
     """In a worker, search the largest value by the equations over all phases, then the engine's largest near it."""
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
-    maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
+    try:
+        maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
+    except NoAnswerError as error:
+        return _state_reason(task, str(error).removeprefix(f"scene {scene.name}: "))
     # Without definition of the peak and friction law: the model's key tells both
     stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}
     worst = LargestOverPhases(scene.name, model.key, quantity, body, **stated)
@@ -126,9 +130,14 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
 
 def _without_value(task: SearchTaskArguments, failed: TaskResult) -> list[LargestOverPhases]:
     """Return, for each model of a search that failed, a result without value that states the reason."""
+    return _state_reason(task, failed.reason)
+
+
+def _state_reason(task: SearchTaskArguments, reason: str) -> list[LargestOverPhases]:
+    """Return, for each model of a search, a result without value that states the reason."""
     scene, model, engine, on_grid, quantity, body, *_ = task
     models = [model, *([engine] if engine else []), *([on_grid[0]] if on_grid else [])]
-    return [LargestOverPhases(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
+    return [LargestOverPhases(scene.name, each.key, quantity, body, reason=reason) for each in models]
 
 
 class WorstPhases(MappedAnalysis[list[LargestOverPhases]]):

@@ -105,12 +105,12 @@ const DEMANDS = [
 ];
 function demandsTable(scene, place, models) {
   const demands = models.map(key => place.motions.find(motion => motion.model === key)?.demands ?? null);
-  if (!demands.some(Boolean)) return [];
   const rows = DEMANDS.flatMap(([key, title, factor, each]) => {
     if (!each) return [[title, factor, demands.map(one => one?.[key] ?? null)]];
     const count = Math.max(...demands.map(one => one?.[key]?.length ?? 0));
     return Array.from({ length: count }, (_, i) => [`${title}: ${each(i)}`, factor, demands.map(one => one?.[key]?.[i] ?? null)]);
   }).filter(([, , values]) => values.some(value => known(value?.[0]) || value?.[2]));
+  if (!rows.length) return [];
   const cell = (value, factor) => {
     const made = element("td", "number", known(value?.[0]) ? digits(factor * value[0]) + (value[1] > 1e-4 * Math.abs(value[0]) ? ` ± ${digits(factor * value[1], 1)}` : "") : value?.[2] ? `none: ${value[2]}` : "none");
     made.dataset.value = known(value?.[0]) ? factor * value[0] : "";

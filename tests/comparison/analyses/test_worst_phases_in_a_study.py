@@ -13,7 +13,7 @@ from comparison.analyses.worst_phases import analysis
 from comparison.analyses.worst_phases.feature import _name_reading, _word_kind
 from comparison.runner.task import make_failed_result
 from comparison.runner.task_results import TaskResults
-from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
+from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.surfaces.distribution import GridMaximum
 from reference.phase_maximum import GRID
@@ -164,6 +164,15 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
         row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NO_PHASES for row in rows
     )
     assert EXACT.key in {row.model for row in rows}
+
+
+def test_a_scene_without_an_answer_at_any_phase_says_why_and_is_no_failure_of_a_solver() -> None:
+    scene = SHORT.with_values({"excitation.scale": 60.0})
+    asked: Any = (scene, SMALL, TRANSLATIONAL, None, "amplification", 2, 1e-3, None)
+    rows = analysis.search_worst_phases(asked)
+    assert [(row.model, row.body, row.reason) for row in rows] == [
+        (model.key, 2, "no phase pair has an answer: rim reached") for model in (SMALL, TRANSLATIONAL)
+    ]
 
 
 @pytest.mark.parametrize(("grid", "kind", "value"), [(1.9, "nearby", 2.0), (2.1, "grid", 2.1)])
