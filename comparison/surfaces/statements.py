@@ -229,18 +229,24 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     known = [each for each in headlines if math.isfinite(each.mean) and each.first != each.second]
     if not known:
         return f"No two models have a value in common. {_capitalize(measured)}."
-    parts = [_word_largest(known), _word_codes(known), f"{_capitalize(measured)}."]
+    lacking = list(dict.fromkeys(each.scene for each in headlines if not math.isfinite(each.mean)))
+    parts = [_word_largest(known, lacking), _word_codes(known), f"{_capitalize(measured)}."]
     return " ".join(part for part in parts if part)
 
 
-def _word_largest(known: Sequence[Headline]) -> str:
-    """Return a sentence on the largest and next mean difference of all bodies, and extremes at single phase pairs."""
+def _word_largest(known: Sequence[Headline], lacking: Sequence[str]) -> str:
+    """
+    Return a sentence on the largest and next mean difference of all bodies, and extremes at single phase pairs.
+
+    lacking: names of scenes with bodies of which the models have no value in common.
+    """
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
     size = word_difference(abs(largest.mean), largest.error).removeprefix("+")
     over = " in the mean over the initial phases" if largest.phases_per_axis > 1 else " under the record"
     than = "lower" if largest.mean < 0.0 else "higher"
     rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
+    rest += f"; no value in common for {name_some(lacking, MAX_NAMED_SCENES)}" if lacking else ""
     single = ""
     if phased:
         low = min((each.low, each.low_error) for each in phased)

@@ -1352,5 +1352,8 @@ MISTAKES = (
             ("tests/comparison/surfaces/test_statements.py::test_the_cells_of_the_first_screen_say_what_the_sentence_says",)),
     Mistake("comparison/wording.py", "if any(value != value for value in values)", "if all(value is None for value in values)",
             "A page says nan.", ("tests/comparison/report/test_tables_of_sections.py::test_a_share_beyond_errors_is_unknown_without_errors_and_none_without_values",)),
+    Mistake("comparison/surfaces/statements.py", "headlines if not math.isfinite(each.mean)))", "headlines if math.isnan(each.error)))",
+            "The first sentence is silent on scenes without a common value.",
+            ("tests/comparison/surfaces/test_statements.py::test_the_verdict_names_the_largest_of_the_other_bodies",)),
 )
 # fmt: on

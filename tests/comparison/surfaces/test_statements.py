@@ -259,3 +259,7 @@ def test_the_verdict_takes_the_ends_over_the_phases_where_there_are_phases() -> 
 def test_the_verdict_names_the_largest_of_the_other_bodies() -> None:
     said = word_verdict([OTHER, KNOWN, replace(OTHER, mean=-0.033), replace(OTHER, mean=0.001)], "m")
     assert "every other body: at most 3.3 %)" in said
+    lost = [replace(KNOWN, scene=name, body=body, mean=NAN) for name in ("shed", "barn") for body in (1, 2)]
+    said = word_verdict([*lost[:2], OTHER, KNOWN, *lost[2:]], "m")
+    assert "every other body: at most 1.2 %; no value in common for shed, barn)" in said
+    assert "is lower; no value in common for barn)" in word_verdict([KNOWN, *lost[2:]], "m")
