@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from reference.measures.story_forces import heights_above_contact, support_loads_at_rest
 from reference.natural_modes import linear_stiffness
@@ -190,10 +191,15 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
     return "\n".join(lines).splitlines()
 
 
+def are_equal_loads(loads: ArrayLike, mean: float) -> bool:
+    """Return whether dead loads of supports, N, count as equal; mean: weight over the number of supports, N."""
+    return float(np.ptp(loads)) <= EQUAL_LOAD_TOLERANCE * mean
+
+
 def _word_loads(building: Building) -> str:
     """Return a phrase on how evenly the supports carry the weight at rest."""
     loads, mean = building.support_loads, building.load_per_support
-    if loads is None or mean is None or float(np.ptp(loads)) <= EQUAL_LOAD_TOLERANCE * mean:
+    if loads is None or mean is None or are_equal_loads(loads, mean):
         return "(equal dead load)"
     return f"in the mean ({word_force(loads.min())} to {word_force(loads.max())} at rest, by statics)"
 

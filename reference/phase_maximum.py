@@ -39,7 +39,16 @@ MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by m
 
 
 class NoAnswerError(ValueError):
-    """Error of a search over all phases that finds no phase pair with an answer; its message names the outcome."""
+    """Error of a search over all phases that finds no phase pair with an answer. reason: without the scene's name."""
+
+    def __init__(self, scene: str, reason: str) -> None:
+        """Keep the reason, and both as the arguments from which a worker's error is made again."""
+        super().__init__(scene, reason)
+        self.reason = reason
+
+    def __str__(self) -> str:
+        """Return the message, one line."""
+        return f"scene {self.args[0]}: {self.reason}"
 
 
 @dataclass(frozen=True)
@@ -151,7 +160,7 @@ def worst_phases(
         )
     searches = _start_searches(surface, check_phases(starts))
     if not searches:
-        raise NoAnswerError(f"scene {scene.name}: no phase pair has an answer: {surface.outcome}")
+        raise NoAnswerError(scene.name, f"no phase pair has an answer: {surface.outcome}")
     shifts: Array = np.pi * find_half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
         highest = max(search.value for search in searches)

@@ -49,7 +49,7 @@ class WorkPart(Part):
 
 
 class Run(Part):
-    """How the report was made: command, times, number of tasks and workers, versions."""
+    """Making of the report: command, times, number of tasks and workers, versions."""
 
     command: Text = Field(description="the command line")
     began: str = Field(description="date and time, UTC")

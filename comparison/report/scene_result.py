@@ -16,7 +16,7 @@ from reference.problem.acceptance import Acceptance
 
 
 class ModelOutcome(Part):
-    """How one model fared in one scene: outcomes over its phase pairs, largest displacements, compute time."""
+    """Outcomes of one model in one scene over its phase pairs, with largest displacements and compute time."""
 
     phases_per_axis: int = Field(description="values of alpha1, and of alpha2")
     points: int = Field(description="phase pairs that the model was asked for")

@@ -111,6 +111,11 @@ class Headline:
         return self.sentence.removeprefix(f"{self.scene}, ")
 
     @property
+    def compared(self) -> bool:
+        """Return whether two models have a value in common."""
+        return self.first != self.second and self.points > 0
+
+    @property
     def within_error(self) -> bool:
         """Return whether the size of the mean difference is at most its error."""
         return abs(self.mean) <= self.error

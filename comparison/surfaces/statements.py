@@ -298,7 +298,7 @@ def _capitalize(text: str) -> str:
 
 def word_difference_cell(numbers: Headline) -> str:
     """Return the text on the mean difference for the table at the top of the report."""
-    if numbers.first == numbers.second or not numbers.points:
+    if not numbers.compared:
         return "no value in common"
     if math.isnan(numbers.error) and numbers.phases_per_axis > 1:
         return f"{signed(numbers.mean)}, too few phases for an error"
@@ -312,7 +312,7 @@ def word_range_cell(numbers: Headline) -> str:
 
 def word_causes_cell(numbers: Headline) -> str:
     """Return the text on the causes of the difference for the table at the top of the report; "" without any value."""
-    if numbers.first == numbers.second or not numbers.points:
+    if not numbers.compared:
         return ""
     if not numbers.resolved:
         return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED_TEXT}"

@@ -45,7 +45,7 @@ ADVICE: dict[Outcome, str] = {  # what to try after each outcome
     Outcome.OVERTURNED: "the tower fell over an edge of its supports: widen the ring or lower the amplitude",
     Outcome.PAINLEVE: "the mass matrix of (3.9) lost its sign, or no slide can begin: lower the friction coefficient "
     "or the swing, or take a heavier platform",
-    Outcome.NON_FINITE_LOAD: "loads or stiffness overflow double precision: rescale the scene",
+    Outcome.NON_FINITE_LOAD: "loads overflow double precision: rescale the scene",
     Outcome.NO_GROUND_MOTION: "(5.1) divides by the ground acceleration: give a nonzero amplitude",
     Outcome.STEP_LIMIT: "the steps or the work of one point are spent: shorten the duration; a looser tolerance may "
     "help the equations, not the engine",

@@ -27,7 +27,7 @@ LOAD_SHIFT_FACTOR = 2.0  # the shift is computed as if all contacts were level; 
 
 @dataclass(frozen=True)
 class Reduction:
-    """Whether a scene permits leaving out a part of the computation, with the reason; true if it does."""
+    """Decision on leaving out a part of a scene's computation, with the reason; true if the scene permits it."""
 
     allowed: bool
     reason: str

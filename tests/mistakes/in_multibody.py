@@ -481,7 +481,7 @@ MISTAKES = (
     Mistake(MODELS + "friction_springs.py", "SLIDE_END_SPEED_RATIO = 0.1", "SLIDE_END_SPEED_RATIO = 0.2",
             "Slides end at twice the speed.", (YIELDING + "test_of_three_supports_the_first_that_slides_or_stops_counts",)),
     Mistake("multibody/integration/refine.py", 'WORK_RANGE = Range(1.0, 1e12, "steps")', 'WORK_RANGE = Range(1.0, 1e7, "steps")',
-            "More than 1e7 steps are refused.", ("tests/test_wrong_arguments.py::test_a_wrong_value_is_one_line_with_the_rule",)),
+            "More than 1e7 steps are refused.", ("tests/test_wrong_arguments.py::test_a_number_beyond_its_range_is_refused_by_every_function_that_takes_it",)),
     Mistake("multibody/integration/termination.py", "return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row", "return Outcome.OVERTURNED if tilt[row] >= 0.5 * math.pi else Outcome.RIM_REACHED, row",
             "A tower that tips over its edge on the way has reached the rim.", ("tests/multibody/test_impact.py::test_tilt_and_liftoff_are_those_of_the_platform",)),
     Mistake("multibody/models/engine.py", 'MODULE = "fast" if "exudyn.exudynCPPfast" in sys.modules else "default"', 'MODULE = "default" if "exudyn.exudynCPPfast" in sys.modules else "fast"',

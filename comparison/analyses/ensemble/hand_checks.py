@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from comparison.analyses.ensemble.quantities import MAX_FOUR_DIGITS
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
 from comparison.analyses.ensemble.rows import label_structures, name_floor
 from comparison.analyses.ensemble.trust import in_percent
@@ -46,7 +47,7 @@ class HandCheck:
 
 def _word_number(value: float) -> str:
     """Return a number as text with four digits; from 10000 on as a whole number."""
-    return f"{value:.4g}" if value < 9999.5 else f"{value:.0f}"
+    return f"{value:.4g}" if value < MAX_FOUR_DIGITS else f"{value:.0f}"
 
 
 def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:

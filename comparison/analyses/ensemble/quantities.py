@@ -53,6 +53,7 @@ DISPLAY_UNITS = {
     "rad": ("mrad", 1e3),
     "m/s^2": ("g", 1.0 / GRAVITY),
 }
+MAX_FOUR_DIGITS = 9999.5  # from here on the format .4g rounds to a power of ten, and a number is written without it
 HIDDEN_IN_FOUR_DIGITS = 5e-5  # An error below this share of the value is not printed: it is below the fourth digit.
 
 
@@ -87,7 +88,7 @@ def word_value(value: float | None, error: float | None, factor: float) -> str:
     if value is None:
         return "none"
     read = factor * value
-    digits = f"{read:.4g}" if abs(read) < 9999.5 else f"{float(f'{read:.4g}'):.0f}"
+    digits = f"{read:.4g}" if abs(read) < MAX_FOUR_DIGITS else f"{float(f'{read:.4g}'):.0f}"
     if abs(read) < 1e-4:
         digits = "0" if read == 0.0 else f"{read:.1e}"
     if error is None or factor * error <= HIDDEN_IN_FOUR_DIGITS * abs(read):

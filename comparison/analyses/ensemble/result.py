@@ -10,6 +10,7 @@ from comparison.json_file import StoredFile
 from comparison.result_types import require, require_size, result
 from comparison.study.models import EXACT
 from comparison.verdicts import Verdict
+from reference.building import are_equal_loads
 from reference.problem.scene import MAX_BODIES
 
 FRACTILE_COUNT = 3  # number of fractiles: 16, 50 and 84 %
@@ -73,6 +74,13 @@ class BuildingRead:
     offsets: Annotated[Sequence[Sequence[float]], "of the centers of mass along x and y, m"] = ()
     sizes: Annotated[Sequence[Sequence[float] | None], "of the bodies along x, y and z, m; null if not stated"] = ()
     sphere_radius: Annotated[float | None, "of the spheres, m; null where the scene states none"] = None
+
+    @property
+    def has_unequal_loads(self) -> bool:
+        """Return whether supports carry different dead loads, as far as their places are stated."""
+        if not self.support_loads or self.load_per_support is None:
+            return False
+        return not are_equal_loads(self.support_loads, self.load_per_support)
 
 
 @result

@@ -116,7 +116,7 @@ def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
     try:
         maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
     except NoAnswerError as error:
-        return _state_reason(task, str(error).removeprefix(f"scene {scene.name}: "))
+        return _state_reason(task, error.reason)
     # Without definition of the peak and friction law: the model's key tells both
     stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}
     worst = LargestOverPhases(scene.name, model.key, quantity, body, **stated)

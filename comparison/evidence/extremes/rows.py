@@ -35,8 +35,8 @@ Phases = tuple[tuple[float, float], ...]  # phase pairs (alpha1, alpha2), rad
 USUAL_PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad, phase pairs at which most extreme cases are computed
 # rad, phase pairs that are extreme cases themselves: by symmetry, forces or velocities vanish or coincide
 SYMMETRIC_PHASES: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-# Largest number of Exudyn's steps for a phase pair of long motions or stiff links (translational model only), in place
-# of MAX_WORK, which is too small for them
+# Largest number of Exudyn's steps for a phase pair of long motions or stiff links (translational model only), for which
+# MAX_WORK is too small
 MAX_WORK_OF_LONG_ROWS = 4e6
 MAX_WORK_OF_TOWERS = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}  # largest number of steps for towers, by number of bodies
 

@@ -66,6 +66,12 @@ class SettingResult:
         if self.mu.ndim != 2 or self.error_estimate.shape != self.mu.shape:
             raise ValueError(f"mu {self.mu.shape}, error_estimate {self.error_estimate.shape}")
 
+    @property
+    def relative_error_estimate(self) -> Array:
+        """Return the estimated error over the amplification, (M, N); infinite or NaN for a body at rest."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.error_estimate / np.abs(self.mu)
+
 
 def sample_phases(points: int) -> Array:
     """Return random phase pairs, (points, 2), rad, the same ones in every run."""
@@ -194,10 +200,9 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
     """
     with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
         error = np.abs(measured.mu / reference_solution - 1.0)
-        error_estimate = measured.error_estimate / np.abs(measured.mu)
     median, most, estimate = (
         [trade.find_error_quantile(column, share) for column in errors.T]
-        for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
+        for errors, share in ((error, 0.5), (error, 0.95), (measured.relative_error_estimate, 0.95))
     )
     return trade.MeasuredSetting(
         **{field.name: getattr(setting, field.name) for field in fields(trade.StatedSetting)},
@@ -216,9 +221,7 @@ def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
 ) -> trade.SolvedQuestion:
     """Return a question (equations to solve) with its reference solution's description, largest error, and checks."""
-    with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
-        error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
-    error = trade.find_error_quantile(error_estimate.ravel(), 1.0)
+    error = trade.find_error_quantile(reference_solution.relative_error_estimate.ravel(), 1.0)
     tolerance = question.reference_solution[1]["tolerance"]
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)

@@ -41,7 +41,7 @@ ABSOLUTE_UNITS = (DEGREES, CYCLE)  # Differences in these units are stated as th
 
 @result
 class SideComparison:
-    """What one code computes for a measured quantity: value, difference from it, uncertainties and verdict."""
+    """Comparison of one code with a measured quantity: its value, difference, uncertainties and verdict."""
 
     value: Annotated[float | None, "S; null without an answer"]
     error: Annotated[float | None, "E = S - D"]
