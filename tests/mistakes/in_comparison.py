@@ -678,7 +678,7 @@ MISTAKES = (
             "An early report is called the last one.", (LEVELS + "each_level_has_a_whole_report_that_names_it",)),
     Mistake(ANALYSES + "ensemble/statistics.py", "p.spectra.error.max(axis=1)", "p.spectra.error.min(axis=1)",
             "A band has the smaller error of two directions.", (OF + "ensemble.py::test_a_band_of_floor_spectra_has_the_larger_direction",)),
-    Mistake(EVIDENCE + "tradeoff/analysis.py", "find_error_quantile(error_estimate.ravel(), 1.0)", "find_error_quantile(error_estimate.ravel(), 0.0)",
+    Mistake(EVIDENCE + "tradeoff/analysis.py", "find_error_quantile(reference_solution.relative_error_estimate.ravel(), 1.0)", "find_error_quantile(reference_solution.relative_error_estimate.ravel(), 0.0)",
             "A reference solution states its smallest error.",
             (EVIDENT + "tradeoff.py::test_a_reference_solution_states_its_error_its_cost_and_what_agrees",)),
     Mistake(EVIDENCE + "extremes/rows.py", "masses=[0.5 * total, 0.5 * total]", "masses=[total, total]",
