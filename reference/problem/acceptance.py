@@ -16,9 +16,9 @@ ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # form of a name that u
 
 
 class LimitTable(Table):
-    """A table of a scene file that states acceptance limits; `limited`: its keys whose values are such limits."""
+    """A table of a scene file that states acceptance limits."""
 
-    limited: ClassVar[tuple[str, ...]]
+    limited: ClassVar[tuple[str, ...]]  # keys of the table whose values are limits
 
     def limits_by_key(self) -> dict[str, float]:
         """Return the limits that the table states, by key."""
@@ -79,7 +79,7 @@ DemandLimits.limited = tuple(name for name in DemandLimits.model_fields if name 
 
 
 def _check_table(value: Any) -> Any:
-    """Raise an error for an unknown key, unless its value is a table: the key may then name a user's own solver."""
+    """Return the table of an unknown key, which may name a user's own solver; raise an error if it is no table."""
     if isinstance(value, dict | Limits):
         return value
     raise PydanticCustomError("extra_forbidden", "unknown key")
@@ -87,9 +87,10 @@ def _check_table(value: Any) -> Any:
 
 class Acceptance(Limits):
     """
-    Limits for `--check`: a table per pair of models; limits in no table hold for `like_for_like` (same friction law).
+    Acceptance limits for `--check`, in one table for each pair of models that is compared.
 
-    Any other table has the name of an engine of the user: its limits against the equations with the same friction law.
+    Limits outside these tables hold for `like_for_like`. A table with another name is named after a solver (engine) of
+    the user, and compares it with the equations under the same friction law.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -137,7 +138,11 @@ class Acceptance(Limits):
         return self.__pydantic_extra__
 
     def list_limited_differences(self) -> list[tuple[str, str, str, float]]:
-        """Return key as written, pair of models, measure and limit of every difference that has a limit."""
+        """
+        Return every limit on a difference of two models as (key as written, pair of models, measure, limit).
+
+        The measure is "median", "maximum" or "ratio".
+        """
         tables = (
             ("", "like-for-like", self),
             ("like_for_like.", "like-for-like", self.like_for_like),
@@ -154,7 +159,7 @@ class Acceptance(Limits):
 
     @property
     def allowed_failures(self) -> int | None:
-        """Number of phase pairs that may lack a result: stated, or 0 if differences or closure have limits, or None."""
+        """Number of phase pairs that may lack a result: `failed`, or 0 if another limit is given; None without any."""
         return (
             0 if self.failed is None and (self.list_limited_differences() or self.closure is not None) else self.failed
         )

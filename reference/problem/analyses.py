@@ -12,7 +12,11 @@ AnalysisNames = Annotated[list[str], Field(min_length=1)]  # list of at least on
 
 
 class Analyses(Table):
-    """Selection of analyses in a report: `only` these, or all except those to `skip`; `also` adds some on request."""
+    """
+    Selection of the analyses in a report: `only` those named, or all except those to `skip`.
+
+    `also` adds analyses that are made on request alone.
+    """
 
     only: AnalysisNames | None = key("analyses that the report makes of the scene; all without it", models=REPORT)
     skip: AnalysisNames | None = key("analyses that the report does not make of the scene", models=REPORT)

@@ -39,7 +39,11 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """Return links' stiffness, lowest first, under loads, N; None: rigid; radius: default bar distance from axis, m."""
+    """
+    Return the stiffness of each link, lowest first; None for a link that is rigid in tension and bending.
+
+    loads: N, weight that each link carries. radius: m, distance of the bars from the axis where none is stated.
+    """
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -72,13 +76,15 @@ def stands_upright(
 
     heights: m, of the centers of mass of all bodies. loads: N, weight that each link carries. shear: (N - 1, 2), N/m.
 
-    Between two bodies that are D apart, displaced by u and rotated by theta along one axis, the points half-way up are
-    apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2. The weight N above sinks by
-    D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Rigid links have one rotation on both sides.
+    Two bodies D apart are displaced by u_1 and u_2 along one axis and rotated by theta_1 and theta_2. The two points
+    half-way up are then apart by d = u_2 - u_1 - (theta_1 + theta_2) D / 2, and the weight N above sinks by
+    D (theta_1^2 + theta_2^2) / 4 + d (theta_1 + theta_2) / 2. Bodies above and below a rigid link rotate as one. The
+    bodies stay upright if the energy of all links less the work of the weights is positive for every such motion.
     """
     rotation = np.cumsum([0] + [link is not None for link in links])  # number of each body's rotation, from 1; 0: none
     count = len(links)
     size = count + int(rotation[-1])
+    # Rows that pick a body's displacement or rotation out of the unknowns: displacements first, then rotations
     unit = np.eye(size + 1)[:, :size]  # last row: zeros, for the platform, which does not move
     moved = [unit[-1], *unit[:count]]
     rotated = [unit[-1] if number == 0 else unit[count + number - 1] for number in rotation]

@@ -17,11 +17,11 @@ FRACTION_TERMS = 20  # terms of the continued fraction of tan x / x: exact in do
 
 @dataclass(frozen=True)
 class StabilityFunctions:
-    """Stiffness of a bar under axial load P over that without load; sway_slope: d sway / dq, q = P l^2 / (4 E J)."""
+    """Ratios of a bar's stiffness under an axial load P to its stiffness without load, with q = P l^2 / (4 E J)."""
 
-    sway: float
-    sway_slope: float
-    bending: float
+    sway: float  # against a sideways displacement of one end
+    sway_slope: float  # derivative of `sway` by q
+    bending: float  # against equal and opposite rotations of the ends
 
 
 def stability_functions(axial_load_parameter: float) -> StabilityFunctions:
@@ -37,9 +37,9 @@ def stability_functions(axial_load_parameter: float) -> StabilityFunctions:
     fraction, slope = 2.0 * FRACTION_TERMS + 1.0, 0.0
     for odd in range(2 * FRACTION_TERMS - 1, 1, -2):
         fraction, slope = odd - q / fraction, -1.0 / fraction + q * slope / fraction**2
-    return StabilityFunctions((fraction - q) / 3.0, (slope - 1.0) / 3.0, 1.0 - q / fraction)
+    return StabilityFunctions(sway=(fraction - q) / 3.0, sway_slope=(slope - 1.0) / 3.0, bending=1.0 - q / fraction)
 
 
 def buckling_load(bending_stiffness: float, length: float) -> float:
-    """Return the load, N, at which a bar buckles sideways whose clamped ends may sway, pi^2 E J / l^2."""
+    """Return the axial load, N, pi^2 E J / l^2, at which a bar buckles whose clamped ends may move sideways."""
     return math.pi**2 * bending_stiffness / length / length

@@ -1,12 +1,13 @@
 """
 Undamped vibration modes of a chain of masses along one axis.
 
-A general eigensolver gets the low frequencies of a long or stiff chain wrong by eps * condition, so the chain is kept
-as its factor: C0 = D^T diag(k) D with D the elongation of each link, hence M0^-1/2 C0 M0^-1/2 = L^T L with
-L = diag(k)^1/2 D M0^-1/2 bidiagonal, its entries free of subtraction. The frequencies are the singular values of L, and
-the entries of a bidiagonal matrix determine every one of them to full relative precision (Demmel and Kahan, SIAM J.
-Sci. Stat. Comput. 11, 1990). They are found by bisection on the Golub-Kahan matrix, which couples link, mass, link,
-mass, ... along the chain: zero diagonal, the entries of L next to it.
+A general eigensolver of the stiffness matrix C0 and the mass matrix M0 gets the low frequencies of a long or stiff
+chain wrong by eps times the condition number. The stiffness is therefore kept as a product, C0 = D^T diag(k) D, where D
+gives the elongation of each link. Hence M0^-1/2 C0 M0^-1/2 = L^T L with the bidiagonal matrix L = diag(k)^1/2 D
+M0^-1/2, whose entries are computed without subtraction. The frequencies are the singular values of L, and the entries
+of a bidiagonal matrix determine every one of them to full relative precision (Demmel and Kahan, SIAM J. Sci. Stat.
+Comput. 11, 1990). They are found by bisection as eigenvalues of the Golub-Kahan matrix. Its rows are link, mass, link,
+mass, ... along the chain; its diagonal is zero, and next to the diagonal stand the entries of L.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ def solve_chain_modes(masses: Array, stiffness: Array, count: int | None = None)
     """
     Return the lowest natural frequencies, (M,), rad/s, and mode shapes, (N, M), kg^-1/2, with modal mass 1.
 
-    masses: (N,), kg. stiffness: (N,), N/m, of the link below each mass; 0 for the first of a free chain, whose first
-    frequency is 0. count: M, all N without.
+    masses: (N,), kg. stiffness: (N,), N/m, of the link below each mass; the first is 0 for a chain that is free, whose
+    first frequency is 0. count: M; all N if it is None.
 
     >>> solve_chain_modes(np.array([2.0]), np.array([8.0]))[0].tolist()
     [2.0]

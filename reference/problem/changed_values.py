@@ -38,7 +38,7 @@ def short_key(key: str) -> str:
 
 
 def word_table(table: Mapping[str, Any]) -> str:
-    """Return the file names of one record, or the keys and numbers of a table, as one text."""
+    """Return the file names of one record, or the keys and numbers of a table, as one text: "slow=0.02+fast=0.04"."""
     parts = [(key, file_name(part)) for key, part in files_by_axis(table).items()]
     return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in parts)
 
@@ -58,7 +58,7 @@ def name_change(key: str, before: Any, value: Any) -> str:
 
 
 def _short_entry(short: str, value: Any) -> str:
-    """Return "key=value" with a text, or with the files or numbers of a table; "" if that is too long for a name."""
+    """Return "key=value" for a text or a table of files or numbers; "" for another value or if too long for a name."""
     if isinstance(value, bool | str):
         text = Path(str(value)).stem
         entry = f"{short}={text}"
@@ -98,7 +98,11 @@ def _changed_key(change: str) -> str:
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
-    """Set a value at a dotted key in nested tables (None removes it); keys: valid ones by table. Raises SceneError."""
+    """
+    Set a value at a dotted key in the nested tables `data`; None removes the key. Raises SceneError.
+
+    scene: its name, for errors. keys: valid keys of each table, by its dotted name.
+    """
     key, value = _put_in_record(scene, data, key, value)
     parts = key.split(".")
     place: Any = data
@@ -118,7 +122,11 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
 
 
 def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tuple[str, Any]:
-    """Return key and new value of the whole record table if `key` is one of its keys; otherwise both unchanged."""
+    """
+    Return the key and the new value of the whole record if `key` is inside its table; otherwise both unchanged.
+
+    A changed record must be read again as a whole.
+    """
     table, _, last = key.rpartition(".")
     record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
     if table != "excitation.record" or not isinstance(record, dict):
@@ -132,7 +140,11 @@ def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tu
 def _index_of(
     scene: str, place: Any, parts: Sequence[str], depth: int, value: Any, keys: Mapping[str, Sequence[str]]
 ) -> Any:
-    """Return the key or list index in `place` that part `depth` of a dotted key names. Raises SceneError if invalid."""
+    """
+    Return the key or the list index that `parts[depth]` means in the table or list `place`. Raises SceneError.
+
+    parts: of the whole dotted key, whose first `depth` parts lead to `place`. value: the new value, for errors.
+    """
     key, part, last = ".".join(parts), parts[depth], depth == len(parts) - 1
     if isinstance(place, list):
         if part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place):

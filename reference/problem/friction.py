@@ -19,24 +19,26 @@ from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
 from reference.problem.validation import FRICTION_FORMS
 from reference.support.arguments import Range
 
-LEAST_LOAD = 1e-6  # smallest ratio of normal force to weight: below it the coefficient stays constant
+LEAST_LOAD = 1e-6  # ratio of normal force to weight below which the coefficient no longer changes with the load
 
 
 @dataclass(frozen=True)
 class Heat:
     """
-    Center temperature of a sliding surface, degrees C: initial + rise * integral of power P(t - s) / sqrt(s) over s.
+    Temperature at the center of a sliding surface, degrees C: initial + rise * integral of P(t - s) / sqrt(s) over s.
 
-    P is the power of friction while the slider covers the center: conduction from its whole contact into a half space.
+    P is the power of friction, counted only while the slider covers the center. The law is that of heat conduction into
+    a half space from a slider's whole contact.
 
     Attributes
     ----------
     initial : float
-        Degrees C.
+        Degrees C, before the motion.
     rise : float
         K / (W s^0.5), for the power of the whole isolator.
     cover : float
-        m. The largest displacement at which the slider covers the center: half the side of a square as large as it.
+        m, the largest displacement at which the slider covers the center: half the side of a square of the contact's
+        area.
     """
 
     initial: float
@@ -45,9 +47,17 @@ class Heat:
 
     @classmethod
     def of(cls, radius: float, conductivity: float, diffusivity: float, initial: float, supports: int) -> Heat:
-        """Return the temperature law of equal sliders with round contacts; arguments: m, W/(m K), m^2/s, degrees C."""
+        """
+        Return the temperature law of equal sliders, one for each support, with round contacts.
+
+        radius: m, of a contact. conductivity: W/(m K). diffusivity: m^2/s. initial: degrees C.
+        """
         area = supports * math.pi * radius**2
-        return cls(initial, math.sqrt(diffusivity / math.pi) / (conductivity * area), 0.5 * math.sqrt(math.pi) * radius)
+        return cls(
+            initial=initial,
+            rise=math.sqrt(diffusivity / math.pi) / (conductivity * area),
+            cover=0.5 * math.sqrt(math.pi) * radius,
+        )
 
     @staticmethod
     def factor(temperature: ArrayLike) -> NDArray[np.float64]:
@@ -160,7 +170,7 @@ class DryFriction:
         return steepness
 
     def in_unit_of_speed(self, unit: float) -> DryFriction:
-        """Return the law for slip speeds in another unit; unit: that unit in m/s."""
+        """Return the same law for slip speeds that are given in a unit of `unit` m/s."""
         return replace(self, rate=self.rate * unit)
 
 
@@ -236,7 +246,7 @@ class VelocityFriction(Table):
 
 
 def kind_of_friction(friction: Any) -> str:
-    """Return which form of friction the user means: a constant or a table."""
+    """Return which form of friction the user means, an entry of FRICTION_FORMS; pydantic then validates this form."""
     return FRICTION_FORMS[int(isinstance(friction, dict | VelocityFriction))]
 
 
@@ -248,21 +258,28 @@ Friction = Annotated[  # friction in a scene file: a constant, or a table
 
 def law_of_friction(stated: float | VelocityFriction | None, weight: float, sliders: int) -> DryFriction:
     """
-    Return the law of dry friction that a scene states under a weight, N; one without friction if it states none.
+    Return the law of dry friction that a scene states, for an isolator that carries a weight, N.
 
-    A `reference_load` refers the coefficients to another load. The heat of `heating` spreads over all sliders. A
-    `yield_displacement` is that under the weight.
+    stated: constant coefficient, table, or None for no friction. sliders: number of sliders, over which the heat
+    spreads. Coefficients that are stated for a `reference_load` are converted to the weight.
     """
     if not isinstance(stated, VelocityFriction):
-        return DryFriction(stated or 0.0, stated or 0.0, 0.0)
+        return DryFriction(slow=stated or 0.0, fast=stated or 0.0, rate=0.0)
     exponent, heating = stated.load_exponent or 0.0, stated.heating
-    share = (weight / stated.reference_load) ** exponent if stated.reference_load else 1.0
+    factor = (weight / stated.reference_load) ** exponent if stated.reference_load else 1.0
     heat = None
     if heating is not None:
-        track = heating.contact_radius, heating.conductivity, heating.diffusivity, heating.initial_temperature
-        heat = Heat.of(*track, sliders)
+        heat = Heat.of(
+            radius=heating.contact_radius,
+            conductivity=heating.conductivity,
+            diffusivity=heating.diffusivity,
+            initial=heating.initial_temperature,
+            supports=sliders,
+        )
     fast = stated.slow if stated.fast is None else stated.fast
-    law = DryFriction(share * stated.slow, share * fast, stated.rate or 0.0, exponent, heat)
+    law = DryFriction(
+        slow=factor * stated.slow, fast=factor * fast, rate=stated.rate or 0.0, exponent=exponent, heat=heat
+    )
     if stated.yield_displacement is not None:
         return replace(law, stiffness=law.largest * weight / stated.yield_displacement)
     return law if stated.initial_stiffness is None else replace(law, stiffness=stated.initial_stiffness)

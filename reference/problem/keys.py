@@ -25,9 +25,9 @@ from reference.support.plain_values import as_hashable, as_plain_values
 
 # Error message of `Table.model_copy` when it is called with values to change
 MODEL_COPY_REFUSAL = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
-# What reads a key, in the words of docs/scene.md: all models, the spatial model, or another part of the program
+# Which models read a key, in the words of docs/scene.md, or which part of the program if it is no model
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
-ENSEMBLE = "`ensemble --check`"  # the command that reads a key
+ENSEMBLE = "`ensemble --check`"
 REQUIRED = ...  # default of a key that every file must state
 
 
@@ -40,9 +40,10 @@ def key(
     other_form: bool = False,
 ) -> Any:
     """
-    Declare a key of a scene file's table: its meaning, the models that read it, and the range of its numbers.
+    Return the pydantic field that declares a key of a scene file's table: its meaning and the range of its numbers.
 
-    other_form: the key has another form than a number, whose lists of numbers have ranges of their own.
+    models: what reads the key. default: value where the file does not state it. other_form: True if the key may also be
+    a list, whose numbers have a range of their own.
     """
     said: dict[str, Any] = {"unit": allowed.unit if allowed else "", "models": models}
     if allowed is not None:
@@ -56,7 +57,7 @@ def range_of(table: type[Table], name: str) -> Range:
 
 
 def _schema_of_key(table: type[Table], name: str) -> dict[str, Any]:
-    """Return what the function `key` stored of a key: meaning, range, unit, models that read it."""
+    """Return what the function `key` stored of a key besides its meaning: range, unit and the models that read it."""
     return cast("dict[str, Any]", table.model_fields[name].json_schema_extra or {})
 
 
@@ -116,7 +117,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
-        """Require numbers of a key, in lists too, to be in its range; lists as its other form have their own ranges."""
+        """Require the numbers of a key, in lists, too, to be in its range; a list that is its other form is skipped."""
         said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])

@@ -48,7 +48,7 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
 
 def grid_axes(phases: Array) -> tuple[Array, Array] | None:
     """
-    Return the two axes (A,) and (B,), rad, of a grid of phases (A, B, 2) or (A B, 2); None for other phases.
+    Return the values of alpha_1, (A,), and of alpha_2, (B,), rad, of a grid of phases (A, B, 2) or (A B, 2).
 
     None if the pairs are no grid of at least 2 x 2 whose alpha_2 runs fastest.
 
@@ -56,11 +56,11 @@ def grid_axes(phases: Array) -> tuple[Array, Array] | None:
     [[0.0, 3.142], [0.0, 3.142]]
     """
     if phases.ndim == 2 and len(phases):
-        turns = np.flatnonzero(phases[:, 0] != phases[0, 0])
-        rows = int(turns[0]) if len(turns) else len(phases)
-        if len(phases) % rows:
+        changes = np.flatnonzero(phases[:, 0] != phases[0, 0])
+        per_row = int(changes[0]) if len(changes) else len(phases)  # number of pairs with the first alpha_1
+        if len(phases) % per_row:
             return None
-        phases = phases.reshape(-1, rows, 2)
+        phases = phases.reshape(-1, per_row, 2)
     if phases.ndim != 3 or min(phases.shape[:2]) < 2:
         return None
     first, second = phases[:, 0, 0], phases[0, :, 1]
@@ -70,9 +70,10 @@ def grid_axes(phases: Array) -> tuple[Array, Array] | None:
 
 def phase_axis(points: int) -> Array:
     """
-    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad; coarser and finer axes share exactly equal phases.
+    Return equally spaced phases 2 pi k / points on [0, 2 pi), rad, (points,).
 
-    They follow from the fraction k / points in lowest terms. Raises ValueError for no whole number from 1 to 10,000.
+    The fraction k / points is reduced to lowest terms, so that a phase which a coarser axis has, too, is exactly equal
+    there. Raises ValueError unless `points` is a whole number from 1 to 10,000.
     """
     steps = np.arange(check_whole_number("points", points, POINTS_PER_AXIS))
     shared = np.gcd(steps, points)
@@ -109,7 +110,11 @@ def phase_grid(points: int) -> Array:
 
 
 def phase_coordinates(phases: Array) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Return dimensions and the coordinates alpha1 and alpha2 of phase pairs (..., 2), rad, in a data set of xarray."""
+    """
+    Return names of dimensions, and the coordinates alpha1 and alpha2, of phase pairs (..., 2), rad, for xarray.
+
+    A grid has the dimensions alpha1 and alpha2, a list "phase", any other shape phase_1, phase_2 and so on.
+    """
     shape, angle = phases.shape[:-1], {"units": "rad"}
     grid = grid_axes(phases) if len(shape) == 2 else None
     if grid is not None:

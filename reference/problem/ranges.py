@@ -34,7 +34,9 @@ LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digi
 
 def check_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
-    Return position, velocity (N, 2) of a `State` within the isolator's radius and travel. Raises one-line ValueError.
+    Return the checked position, m, and velocity, m/s, of an initial `State`, each (N, 2). Raises ValueError.
+
+    radius, travel: m, inside which the platform must start.
     """
     rule = f"must have finite position and velocity of shape ({bodies}, 2)"
     try:

@@ -1,4 +1,9 @@
-"""The two readings of (5.1), and the friction law of a result, in words."""
+"""
+The two readings of (5.1), that is, definitions of its peak acceleration, and the friction law of a result, in words.
+
+In the limit of slip at rest the acceleration jumps by the friction force. "As integrated" takes the peak that a
+numerical integration in time resolves, "literal supremum" the limit itself. They differ only for dry friction.
+"""
 
 from __future__ import annotations
 
@@ -7,22 +12,26 @@ from numpy.typing import NDArray
 
 from reference.problem.scene import Scene
 
-AS_INTEGRATED = "as integrated"  # peak acceleration in amplification (5.1): what an integration in time resolves
-"""The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
-LITERAL_SUPREMUM = "literal supremum"  # peak acceleration in amplification (5.1) with the limit v -> 0+ of slip speed
-"""The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
-BOTH_READINGS = "in both readings"  # without dry friction peaks as integrated and as literal supremum (5.1) are equal
-"""Reading of a factor without dry friction, which is the same as integrated and as literal supremum."""
-DEFAULT_V_REG = 1e-3  # m/s, slip speed below which regularized friction is linear
-"""Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity on both sides."""
-DEFAULT_V_C = 1e-3  # m/s, slip speed below which accelerations do not count as peaks
-"""Slip speed v_c, m/s, above which an integration with steps of about 1 ms sees the motion."""
-SECOND_V_REG_RATIO = 0.1  # second regularization speed over the first, to see the effect of regularization
-"""Second v_reg over the first where two runs estimate the effect of regularization: they show 0.9 of it."""
+AS_INTEGRATED = "as integrated"
+"""Peak acceleration over slip speeds above v_c, or that of a run with regularized friction."""
+LITERAL_SUPREMUM = "literal supremum"
+"""Peak acceleration with the limit of vanishing slip speed under the set-valued law, which no integration reaches."""
+BOTH_READINGS = "in both readings"
+"""Words for an amplification without dry friction, which is the same as integrated and as literal supremum."""
+DEFAULT_V_REG = 1e-3  # m/s
+"""Slip speed v_reg below which regularized friction grows linearly with the slip velocity, in equations and engine."""
+DEFAULT_V_C = 1e-3  # m/s, above which an integration with steps of about 1 ms resolves the motion
+"""Slip speed v_c below which accelerations do not count as peaks."""
+SECOND_V_REG_RATIO = 0.1
+"""Second v_reg over the first, where two runs estimate the effect of regularization: they show 0.9 of it."""
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
-    """Return how peak acceleration in (5.1) is taken: as integrated, literal supremum, "" if no rigid dry friction."""
+    """
+    Return the reading of (5.1) for a run of a scene, "" without rigid dry friction, where both readings agree.
+
+    regularization: v_reg, m/s, or None for set-valued friction. cutoff: v_c, m/s, or None.
+    """
     if not scene.has_dry_friction:
         return ""
     return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED
@@ -35,9 +44,10 @@ def describe_law(
     effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> str:
     """
-    Describe the friction law of a result, and the change by regularization that the result's error does not cover.
+    Describe the friction law of a result, and the effect of regularization that the result's error does not cover.
 
-    effect: what a tenth of v_reg changes in the amplification and in the displacement, m, where that was computed.
+    regularization, cutoff: as in `reading_of`. effect: changes of the amplification and of the displacement, m, with a
+    tenth of v_reg, where they were computed.
     """
     if scene.friction_coefficient == 0.0:
         return "no friction"

@@ -20,8 +20,9 @@ def describe_record(scene: Scene) -> RecordDescription:
     Returns
     -------
     RecordDescription
-        Files and formats, samples, step, s, duration, s, and by direction peak, mean, m/s^2, final velocity, m/s, and
-        displacement, m, of the record as it was read, without `scale` and `detrend`. `lines` has it as text.
+        Files and formats, number of samples, time step and duration, s. For each direction the peak and the mean
+        acceleration, m/s^2, the final velocity, m/s, and the final displacement, m. All are of the record as it was
+        read, without `scale` and `detrend`. `lines` has them as text.
 
     Raises
     ------

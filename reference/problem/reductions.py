@@ -1,8 +1,8 @@
 """
 Parts of the computation that a scene does not need, with the reason, decided from the scene alone.
 
-Each reduction is exact: with and without it a point has the same amplification within the errors. Both sides and the
-study ask here, and nowhere else; `full=True` (`--full`) asks nothing and computes everything.
+Each reduction is exact: a phase pair has the same amplification with and without it, within the errors. The equations,
+the engine and the study ask here and nowhere else; with `full=True` (`--full`) they do not ask and compute everything.
 """
 
 from __future__ import annotations
@@ -16,13 +16,15 @@ from reference.problem.excitation import exponents
 from reference.problem.scene import Scene
 from reference.support.constants import GRAVITY
 
-# Largest phase, rad, of the fastest vibration in a motion that is summed from harmonics: longer motions are integrated
+# Largest angle, rad, through which the fastest vibration runs in a motion that is computed as a sum of harmonics; a
+# motion with a larger one is integrated in time steps
 MAX_VIBRATION_ANGLE = 2e5
 RECORDED_REASON = "a recorded motion: no harmonics, no phases"  # why a record permits no symmetry, plane or linear sum
 
 MAX_TURNABLE_ACCELERATION = 1e300  # m/s^2: larger amplitudes may overflow when turned about the vertical
-# Safety factor on the shift by friction of the supports' center of force, which must stay inside the ring of supports
-LOAD_SHIFT_FACTOR = 2.0  # the shift is computed as if all contacts were level; on a displaced platform they are not
+# Safety factor on the distance by which friction shifts the supports' center of force. The distance is computed as if
+# all contacts were level, which they are not on a displaced platform.
+LOAD_SHIFT_FACTOR = 2.0
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,11 @@ def body_cannot_tilt(scene: Scene) -> Reduction:
 
 
 def is_planar(scene: Scene) -> Reduction:
-    """Find whether the motion stays in one vertical plane (4.7), where `turn_loading_to_x` halves the coordinates."""
+    """
+    Find whether the motion stays in one vertical plane (4.7).
+
+    Half of the coordinates are then enough, after `turn_loading_to_x`.
+    """
     if scene.recorded:
         return Reduction(False, RECORDED_REASON)
     x, y = scene.amplitudes[:2]
@@ -98,7 +104,7 @@ def is_planar(scene: Scene) -> Reduction:
         return Reduction(False, "loads that may overflow when turned")
     if not (x.any() and y.any()):
         return Reduction(True, "loading along one axis: the motion stays in its plane")
-    if (np.divide(x, np.abs(x).max()) * y[::-1] @ [1.0, -1.0]) != 0.0:
+    if (np.divide(x, np.abs(x).max()) * y[::-1] @ [1.0, -1.0]) != 0.0:  # x1 y2 - x2 y1: cross product of the harmonics
         return Reduction(False, "the harmonics act in different directions")
     if (scene.stiffness[:, 0] != scene.stiffness[:, 1]).any():
         return Reduction(False, "loading across links that are not equally stiff in x and y")
@@ -117,7 +123,11 @@ def has_planar_chain(scene: Scene) -> Reduction:
 
 
 def turn_loading_to_x(scene: Scene) -> Scene:
-    """Return a planar scene turned about the vertical to load it along x, which keeps every body's amplification."""
+    """
+    Return a scene of planar motion, turned about the vertical so that its loading acts along x.
+
+    The amplification of every body stays the same.
+    """
     table = scene.model_dump(exclude_none=True)
     horizontal = scene.amplitudes[:2]
     if not horizontal[0].any():  # the loading acts along y: what links have along y becomes theirs along x
@@ -134,7 +144,11 @@ def turn_loading_to_x(scene: Scene) -> Scene:
 
 
 def is_mirror_symmetric(scene: Scene) -> Reduction:
-    """Find whether supports and bodies equal their mirror images: amplifications then have the loading's symmetries."""
+    """
+    Find whether supports and bodies are mirror images of themselves about the axes x and y.
+
+    Only then does a symmetry of the loading over the phases hold for the amplifications in the spatial model, too.
+    """
     supports = scene.isolator.supports or 0
     if scene.offsets.any():
         return Reduction(False, "a center of mass off the axis: mirrored, it is another one")
@@ -153,21 +167,25 @@ def is_mirror_symmetric(scene: Scene) -> Reduction:
 
 
 def find_unused_harmonics(scene: Scene) -> list[int]:
-    """Return the harmonics whose amplitudes are zero, 0 for alpha_1, 1 for alpha_2: their phases change nothing."""
+    """Return the indices (0: first, 1: second) of harmonics without amplitudes, whose phases change nothing."""
     if scene.recorded:
         return [0, 1]
     return [int(harmonic) for harmonic in np.flatnonzero(~scene.amplitudes.any(axis=0))]
 
 
 def has_no_friction_law(scene: Scene) -> Reduction:
-    """Find whether a scene has no friction, so that models with regularized friction repeat the exact equations."""
+    """Find whether a scene has no friction, so that it makes no difference whether a model regularizes friction."""
     if scene.friction_coefficient > 0.0:
         return Reduction(False, "friction")
     return Reduction(True, "no friction: without it v_reg and v_c change nothing")
 
 
 def is_linear(scene: Scene) -> Reduction:
-    """Find whether the small-displacement equations (4.3)-(4.4) are linear, so that motions by each harmonic add up."""
+    """
+    Find whether the equations for small displacements (4.3)-(4.4) are linear.
+
+    The motion is then the sum of the motions that each harmonic causes alone.
+    """
     # Lubrication is not linear: its main force f_c v is, but (4.3) also keeps a product of displacement and velocity.
     if scene.lubricated and scene.friction_coefficient > 0.0:
         return Reduction(False, "lubricated: (4.3) keeps friction terms with xi'' x1 x1', which are not linear")

@@ -43,7 +43,9 @@ def _join_facts(facts: Sequence[str]) -> str:
 @dataclass(frozen=True, repr=False)
 class Amplification:
     """
-    Amplification mu_i (5.1) of N bodies, peak acceleration over the ground's, at pairs of loading phases, array (...).
+    Amplification mu_i (5.1) of N bodies at pairs of initial phases of the loading, which are an array of shape (...).
+
+    The amplification is a body's peak acceleration over that of the ground.
 
     Attributes
     ----------
@@ -67,13 +69,15 @@ class Amplification:
     scene_name, model : str
         What was computed, and by which equations or model of the engine. "" where that was not stated.
     reading : str
-        How the peak in (5.1) is read: "as integrated" or "literal supremum". "" without dry friction, where both agree,
-        and where it was not stated: then `law` is "", too.
+        How the peak in (5.1) is read: "as integrated", as a numerical integration resolves it, or "literal supremum",
+        in the limit of vanishing slip speed. "" without dry friction, where both agree, and where it was not stated:
+        then `law` is "", too.
     law : str
-        Law of friction, and what the error leaves out of it.
+        Law of friction, and the effect of it that the error leaves out.
     regularization_effect : ndarray, (..., N)
-        Change of the amplification from v_reg to a tenth of it: an estimate of what regularization does. NaN where that
-        was not asked for and where either has no answer; 0 without dry friction.
+        Change of the amplification if v_reg, below which regularized friction is linear, is reduced to a tenth. It
+        estimates the effect of regularization. NaN where it was not asked for and where either run has no answer; 0
+        without dry friction.
     displacement_effect : ndarray, (...,), m
         The same change of `displacement`.
     """
@@ -105,7 +109,7 @@ class Amplification:
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
 
     def __repr__(self) -> str:
-        """Return amplifications (5.1), statuses, definition of their peak acceleration and friction law in one line."""
+        """Return amplifications, statuses, the definition of the peak in (5.1) and the friction law in one line."""
         points, bodies = self.status.size, self.mu.shape[-1]
         if points == 1:
             rows = zip(self.mu.reshape(-1), self.error.reshape(-1))
@@ -189,14 +193,16 @@ class Amplification:
 
     def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
         """
-        Draw amplification mu_i (5.1) over a grid of phases; title: scene, body, model, definition of peak acceleration.
+        Draw the amplification mu_i (5.1) of one body over a grid of phases.
+
+        The title names the scene, the body, the model and the definition of the peak acceleration.
 
         Parameters
         ----------
         body : int
             From 1.
         axes : matplotlib Axes, optional
-            With the projection "3d" for a surface, without for a map. A new surface without.
+            With the projection "3d" for a surface, any other for a map. A new surface is drawn if there are none.
 
         Returns
         -------
@@ -249,19 +255,19 @@ class Trajectory:
     scene : Scene
         What moves: `demands` takes masses, radius and duration from it.
     extra : dict of str to ndarray
-        What only one model has, by name.
+        Quantities that only one model has, by name.
     peak : ndarray, (N,), m/s^2
-        Largest absolute acceleration of the run, found between the samples and at one-sided limits; the amplification
-        follows from it. The samples of `absolute_acceleration` miss it by some percent at a stop or under a record. NaN
-        if nothing was run.
+        Largest absolute acceleration of the run, between the samples and on both sides of a jump, too; the
+        amplification follows from it. The samples of `absolute_acceleration` miss it by some percent at a stop or under
+        a record. NaN if nothing was run.
     accuracy : Accuracy, optional
-        What errors are estimated from. None of a motion that ended early, and of a single run.
+        Basis of error estimates. None for a motion that ended early, and for a single run.
     ground : ndarray, (T, 3), m/s^2
         Acceleration of the ground.
     friction_power : ndarray, (T,), W
         Power that friction in the isolator dissipates.
     law : str
-        Law of friction, and what errors leave out of it. "" where it was not stated.
+        Law of friction, and the effect of it that errors leave out. "" where it was not stated.
     """
 
     time: Array
@@ -282,8 +288,8 @@ class Trajectory:
 
     def __post_init__(self) -> None:
         """Fill fields without values with NaN in their shapes."""
-        unknown = {"peak": self.position.shape[1:2], "ground": (len(self.time), 3), "friction_power": self.time.shape}
-        for name, shape in unknown.items():
+        shapes = {"peak": self.position.shape[1:2], "ground": (len(self.time), 3), "friction_power": self.time.shape}
+        for name, shape in shapes.items():
             if not len(getattr(self, name)):
                 object.__setattr__(self, name, np.full(shape, np.nan))
 
@@ -298,8 +304,8 @@ class Trajectory:
         """Return a table of the largest displacement and acceleration of each body for notebooks."""
         moved = np.linalg.norm(self.position[:, :, :2], axis=-1).max(axis=0, initial=0.0)
         rows = [
-            (body, text_of_number(1e3 * far, 4), text_of_number(peak, 5))
-            for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
+            (body, text_of_number(1e3 * distance, 4), text_of_number(peak, 5))
+            for body, (distance, peak) in enumerate(zip(moved, self.peak), 1)
         ]
         heads = "body", "largest displacement from the ground, mm", "largest absolute acceleration, m/s²"
         return html_table(repr(self), heads, rows)
@@ -319,9 +325,9 @@ class Trajectory:
     @property
     def isolator_force(self) -> Array:
         """
-        Horizontal force of the bodies on the isolator, (T, 2), N: -sum_i m_i a_i, which grows with the displacement.
+        Horizontal force of the bodies on the isolator along x and y, (T, 2), N: -sum_i m_i a_i.
 
-        Friction and restoring force together, because links act between the bodies.
+        It equals friction and restoring force together, as forces of the links cancel, and grows with the displacement.
         """
         force: Array = -np.einsum("i,tia->ta", self.scene.masses, self.absolute_acceleration[:, :, :2])
         return force
@@ -402,7 +408,7 @@ class Trajectory:
 @dataclass(frozen=True)
 class Accuracy:
     """
-    Less accurate runs of a motion, and weights of their differences from it in the sum that estimates its errors.
+    Less accurate runs of a motion, from whose differences to it the errors of numbers read from it are estimated.
 
     Attributes
     ----------
@@ -411,9 +417,9 @@ class Accuracy:
     coarser : tuple of Trajectory
         Runs of the same motion with larger errors.
     share : tuple of float
-        Part of the difference to each of them that counts as error of the motion. The parts add up.
+        Fraction of the difference to each of them that counts as error. The error is the sum of these parts.
     floor : float
-        Lower bound of a relative error: closer agreement is treated as accidental.
+        Smallest relative error, which is added to that sum: closer agreement of the runs is treated as accidental.
     """
 
     peak_error: Array
@@ -423,16 +429,16 @@ class Accuracy:
 
     def error_of(self, value: float, others: Sequence[float], scale: float | None = None) -> float:
         """
-        Return the estimated absolute error of a number read from the motion; others: the same from less accurate runs.
+        Return the estimated absolute error of a number that was read from the motion.
 
         Parameters
         ----------
         value : float
-            Read from the motion.
+            The number.
         others : sequence of float
-            The same, read from each of `coarser`.
+            The same number, read from each of `coarser`.
         scale : float, optional
-            What the lower bound of the relative error belongs to, if not to the value.
+            The number of which `floor` is a fraction, if not the value.
 
         Returns
         -------
@@ -462,7 +468,8 @@ class State:
     velocity: Array
 
 
-require_motion = require_type(  # decorator: the function raises TypeError unless it gets a Trajectory
+# Decorator of functions of a Trajectory: TypeError if the first argument is anything else
+require_motion = require_type(
     Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return"
 )
 """Decorator of functions whose first argument is a motion."""

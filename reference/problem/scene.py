@@ -165,7 +165,7 @@ class Scene(Table):
                 raise MisfitError(name, value, span.rule)
 
     def _derive_values(self) -> dict[str, tuple[float, Range]]:
-        """Return values computed from several keys, with their allowed ranges, by the names that an error shows."""
+        """Return values computed from several keys: for each name, as an error shows it, the value and its range."""
         derived = {
             "isolator: radius in m": (self.radius, range_of(Isolator, "radius")),
             "bodies: total mass in kg": (self.total_mass, range_of(Body, "mass")),
@@ -197,7 +197,7 @@ class Scene(Table):
             raise MisfitError("duration", self.duration, rule)
 
     def _check_isolator(self) -> None:
-        """Check that travel is below the pendulum radius, and deflection of supports by the weight small against it."""
+        """Check that the travel and the deflection of the supports under the weight are small enough for the radius."""
         travel, bearings = self.isolator.travel, self.isolator.support_stiffness
         if travel is not None and not travel < self.radius:
             raise MisfitError("isolator.travel", travel, f"must be below the radius, rho = {self.radius:.6g} m")
@@ -316,7 +316,7 @@ class Scene(Table):
 
     @property
     def radius(self) -> float:
-        """Pendulum length rho = R - r, m: as stated, or g T_c^2 / (4 pi^2) of the period T_c; inf for a flat slider."""
+        """Pendulum length rho = R - r, m: as stated, or g T_c^2 / (4 pi^2) for a period T_c; inf for a flat slider."""
         if self.isolator.radius is not None:
             return self.isolator.radius
         assert self.isolator.period is not None
@@ -345,7 +345,7 @@ class Scene(Table):
 
     @cached_property
     def stiffness(self) -> NDArray[np.float64]:
-        """Stiffness k_{i+1,i} of the links along x and y, (N-1, 2), N/m; row i: the link of bodies i and i + 1."""
+        """Stiffness k_{i+1,i} of the links along x and y, (N-1, 2), N/m; row i: link between bodies i and i + 1."""
         rows = [_link_stiffness(body, load) for body, load in zip(self.bodies[1:], self.loads_above)]
         return np.array(rows, dtype=float).reshape(-1, 2)
 
@@ -357,12 +357,12 @@ class Scene(Table):
 
     @property
     def bar_links(self) -> list[BarLink | None]:
-        """Stiffness of links of flexible bars in shear, bending, tension, torsion, lowest first; None: other links."""
+        """Stiffness of each link in shear, bending, tension and torsion, lowest link first; None unless of bars."""
         return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property
     def damping(self) -> NDArray[np.float64]:
-        """Damping c_{i+1,i} of the links along x and y, (N-1, 2), N s/m; row i: the link of bodies i and i + 1."""
+        """Damping c_{i+1,i} of the links along x and y, (N-1, 2), N s/m; row i: link between bodies i and i + 1."""
         if (ratio := self._first_mode_ratio) is not None:
             # damping equal to beta times stiffness has the modal damping ratios beta omega / 2
             first = [solve_chain_modes(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T]
@@ -428,7 +428,7 @@ class Scene(Table):
 
     @cached_property
     def dry_friction(self) -> DryFriction:
-        """Law of the dry friction coefficient by slip speed and normal force; zero friction for a lubricated scene."""
+        """Law of the dry friction coefficient over slip speed and load; its coefficient is 0 in a lubricated scene."""
         sliders = 1 if self.support_places is None else len(self.support_places)
         return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
 
@@ -438,7 +438,7 @@ class Scene(Table):
         return self.friction_coefficient * self.total_mass * GRAVITY / self.dry_friction.stiffness
 
     def require_rigid_friction(self, user: str) -> None:
-        """Raise SceneError if friction is elastic at rest; user: what part of the program needs it rigid."""
+        """Raise SceneError if friction is elastic before it slides; user: part of the program that needs it rigid."""
         table = self.isolator.friction
         if isinstance(table, VelocityFriction) and self.dry_friction.elastic:
             name = "initial_stiffness" if table.yield_displacement is None else "yield_displacement"
@@ -446,7 +446,7 @@ class Scene(Table):
             raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
 
     def with_yield_displacement(self, way: float) -> Scene:
-        """Return the scene, of the same name, with friction that slides after an elastic displacement `way`, m."""
+        """Return the scene, under the same name, with friction that is elastic up to a displacement `way`, m."""
         friction = self.isolator.friction
         if not isinstance(friction, VelocityFriction) or (way == 0.0 and not self.dry_friction.elastic):
             return self if way == 0.0 else self._with_friction({"slow": friction, "yield_displacement": way})
@@ -461,7 +461,7 @@ class Scene(Table):
 
     @property
     def has_dry_friction(self) -> bool:
-        """True for rigid dry friction that is not zero: only this can be regularized, and brings a motion to rest."""
+        """True for dry friction, not zero, that is rigid before it slides: only this can bring a motion to rest."""
         return not self.lubricated and self.friction_coefficient != 0.0 and not self.dry_friction.elastic
 
     @property
@@ -486,9 +486,10 @@ class Scene(Table):
     @cached_property
     def record(self) -> NDArray[np.float64]:
         """
-        Samples of a record, (K, 4): time from 0 on, s, accelerations along x, y, z, m/s^2, scaled; (0, 4) without one.
+        Samples of a record with its scale and zero line, (K, 4); (0, 4) if there is no record.
 
-        A last sample that is not zero is followed by a zero sample, as far behind it as the sample before.
+        Columns are time from 0 on, s, and accelerations along x, y and z, m/s^2. If the last sample is not zero, a zero
+        sample follows it after one more step.
         """
         if not isinstance(self.excitation, Record):
             return np.zeros((0, 4))
@@ -530,7 +531,9 @@ class Scene(Table):
         )
 
     def loading_values(self, amplitude: float) -> dict[str, Any]:
-        """Return keys with values that scale the loading to an amplitude, m/s^2. Raises as `with_amplitude`."""
+        """
+        Return the values for `with_values` that scale the loading to an amplitude, m/s^2. Raises as `with_amplitude`.
+        """
         largest, stated = self.largest_acceleration, amplitude
         amplitude = as_float(stated)
         if not 0.0 < amplitude <= range_of(Excitation, "amplitudes").highest:
@@ -544,7 +547,7 @@ class Scene(Table):
 
     @property
     def has_unloaded_bars(self) -> bool:
-        """True if a link is given by bars whose softening by the weight is left out."""
+        """True if a link is stated by bars, and the scene neglects that the weight above softens them."""
         return any(body.bars is not None and body.bars.load_effect is None for body in self.bodies)
 
     def softened(self) -> Scene:

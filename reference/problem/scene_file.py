@@ -18,7 +18,8 @@ from reference.support.arguments import require_type
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
 
-# Valid keys of a scene file by table, for errors: unlike a scene, a file has no name, and may combine several values
+# Valid keys of every table of a scene file, for error messages. A scene has almost the same keys, but a file states no
+# name, and may give a key several values, which `combine` and `bounds` concern.
 FILE_KEYS = {
     **KEYS,
     "": ("combine", *(key for key in KEYS[""] if key != "name")),
@@ -174,9 +175,8 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
         raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
     if data is None or _is_deeper(data, MAX_NESTING):
         raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
-    if data and data.keys().isdisjoint(
-        (*FILE_KEYS[""], "name")
-    ):  # an error shows nothing of a file that may not be a scene at all
+    # an error shows nothing of a file that may not be a scene at all
+    if data and data.keys().isdisjoint((*FILE_KEYS[""], "name")):
         raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(FILE_KEYS[''])}")
     if "name" in data:
         raise SceneError(label, "name", data["name"], "unknown key; the scene is named after its file")
@@ -202,7 +202,11 @@ def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
 
 
 def find_varied_keys(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
-    """Iterate over the paths in the tables at which a key has several values, with the inline table that gives them."""
+    """
+    Iterate over all keys of the tables `value` that have several values.
+
+    Each is given as its path, that is keys and list indices from the top, and the inline table with its values.
+    """
     if isinstance(value, dict) and path and value.keys() & (RANGE_KEYS | VALUES_KEYS):
         yield path, value
     elif isinstance(value, dict | list):

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MIN_WIDTH_RATIO = 1e-6  # Supports whose width is below this share of their length lie on one line.
+MIN_WIDTH_RATIO = 1e-6  # supports count as on one line if their extent across it is below this fraction of that along
 
 
 def ring_positions(count: int, radius: float) -> Array:
@@ -18,9 +18,10 @@ def ring_positions(count: int, radius: float) -> Array:
 
 def static_shares(places: Array, center: Array) -> Array:
     """
-    Return the shares (K,) of a weight that equally stiff supports carry: N_k = c0 + c1 x_k + c2 y_k in balance with it.
+    Return the fraction of a weight that each of K equally stiff supports carries, (K,); negative if one would pull.
 
-    places: (K, 2), m, not on one line. center: (2,), m, where the weight acts. Negative where a support would pull.
+    Under a rigid platform the forces are linear in the position, N_k = c0 + c1 x_k + c2 y_k, and balance the weight.
+    places: (K, 2), m, not on one line. center: (2,), m, where the weight acts.
 
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     >>> static_shares(square, np.array([1.0, 0.0])).round(12).tolist()

@@ -1,7 +1,7 @@
 """
-Surfaces from half or a quarter of their points, or one line of them, where a symmetry of the motion is exact.
+Amplifications on a grid of phases from half or a quarter of its points, or one line of them, by an exact symmetry.
 
-Which symmetries a scene has is decided by `reductions`; here they become places on a grid of phases.
+Which symmetries a scene has is decided by `reductions`. Here they become indices of grid points with equal results.
 """
 
 from __future__ import annotations
@@ -20,13 +20,21 @@ Array = NDArray[np.float64]
 
 
 def find_half_turns(scene: Scene) -> NDArray[np.intp]:
-    """Return the shifts of both phases, in units of pi, that keep every amplification, (K, 2), first no shift."""
-    turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
-    return turns if has_one_axis_per_harmonic(scene) else turns[: 2 if has_half_turn_symmetry(scene) else 1]
+    """
+    Return the shifts of (alpha_1, alpha_2) that keep every amplification, (K, 2), in units of pi.
+
+    The first row is no shift, so that K is 1, 2 or 4.
+    """
+    shifts = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
+    return shifts if has_one_axis_per_harmonic(scene) else shifts[: 2 if has_half_turn_symmetry(scene) else 1]
 
 
 def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """Return for every phase pair of a grid, (grid^2,), the index of the pair of equal amplification solved for it."""
+    """
+    Return for each of the grid^2 phase pairs the index of the pair that is solved in its place, (grid^2,).
+
+    Both have the same amplification; of all such pairs the one with the lowest index is solved.
+    """
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = find_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
@@ -36,7 +44,11 @@ def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 
 def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
-    """Return the fewest phase pairs (P, 2), rad, that by symmetry stand for a grid, and each point's index in them."""
+    """
+    Return the fewest phase pairs (P, 2), rad, from which symmetry gives a whole grid.
+
+    The second array, (grid, grid), holds for each point of the grid the index of the pair that stands for it.
+    """
     solved, taken = np.unique(indices_of_solved_pairs(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
 
@@ -44,7 +56,11 @@ def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
 def complete_surface(
     scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]
 ) -> tuple[Array, Array, list[str]]:
-    """Return amplification and error (grid, grid, N) on a grid of phases from fewest phase pairs, and all statuses."""
+    """
+    Return amplification and error, each (grid, grid, N), on a grid of phases, and the list of all statuses that arose.
+
+    Only the fewest phase pairs (P, 2) are passed to `solve`; symmetry gives the rest.
+    """
     phases, taken = distinct_pairs(scene, grid)
     answer = solve(scene, phases)
     return answer.mu[taken], answer.error[taken], sorted(set(map(str, answer.status)))

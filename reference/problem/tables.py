@@ -42,7 +42,7 @@ from reference.support.scene_error import MisfitError
 
 
 def _check_damping(value: Any) -> Any:
-    """Return a damping ratio, or coefficients [cx, cy] in N s/m, unchanged; refuse any other form."""
+    """Return the damping of a link unchanged; refuse it unless it is a ratio or a list of two coefficients."""
     if isinstance(value, list) and len(value) == 2:
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -51,7 +51,7 @@ def _check_damping(value: Any) -> Any:
 
 
 def _kind_of_damping(value: Any) -> str:
-    """Return the form of a damping value, a member of DAMPING_FORMS, which selects its validator."""
+    """Return which form of damping the user means, an entry of DAMPING_FORMS; pydantic then validates this form."""
     return DAMPING_FORMS[isinstance(value, list)]
 
 
@@ -142,7 +142,7 @@ class Isolator(Table):
         return len(self.supports) if isinstance(self.supports, list) else self.supports
 
 
-MIN_SPREAD_BARS = 3  # smallest number of bars on a ring: fewer are not equally stiff in bending about all directions
+MIN_SPREAD_BARS = 3  # fewest bars around the axis that are equally stiff in bending about all horizontal directions
 
 
 class Bars(Table):
@@ -189,13 +189,13 @@ class Bars(Table):
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
     def factors(self, load: float) -> StabilityFunctions:
-        """Return the factors by which a load, N, on all bars changes their stiffness; 1 without `load_effect`."""
+        """Return the factors by which a load, N, that all bars carry together changes their stiffness."""
         if self.load_effect is None:
             return stability_functions(0.0)
         return stability_functions(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
 
 
-LINKS = ("period", "stiffness", "bars")  # keys of a body of which exactly one states the link below it
+LINKS = ("period", "stiffness", "bars")  # keys that state the link below a body; a body has exactly one of them
 
 
 class Body(Table):
@@ -304,6 +304,6 @@ class Record(Table):
 
 
 def kind_of_excitation(excitation: Any) -> str:
-    """Return which form of excitation the user means: two frequencies or a recorded motion."""
+    """Return which form of excitation the user means, an entry of EXCITATION_FORMS; pydantic validates this form."""
     recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
     return EXCITATION_FORMS[int(recorded)]

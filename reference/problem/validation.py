@@ -30,7 +30,7 @@ ALONG_AXES = {  # keys of a body whose values are lists: form of the list in err
 LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")
 # For each error of pydantic on a list's length: pydantic's name of the limit, and words before it in the message
 LENGTH_ERRORS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
-MISSING_TABLE_RULES = {  # text of the error for a missing table
+MISSING_TABLE_RULES = {  # text of the error for a missing table, in place of "is required"
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"; '
     "phase-resonance ensemble --suite brings it along"
 }
@@ -56,8 +56,8 @@ def first_scene_error(
     """
     Return the first error of a scene, which carries all others, in the words of the scene file.
 
-    keys: of every table, by its name. tables: of the file, for the order; pydantic's order without. unread: the error
-    of a record that could not be read, which pydantic does not know.
+    keys: valid keys of every table, by its name. tables: content of the file, by which errors are ordered; without it
+    they have pydantic's order. unread: error of a record that could not be read, which pydantic does not know.
     """
     found = invalid.errors(include_url=False)
     unknown = {error["loc"][:-1] for error in found if error["type"] == "extra_forbidden"}
@@ -71,7 +71,7 @@ def first_scene_error(
 
 
 def join_errors(errors: Sequence[SceneError], tables: Mapping[str, Any] | None = None) -> SceneError:
-    """Return the first error of a file, which carries the others, each once; tables: of the file, for the order."""
+    """Return the first error of a file, which carries the others, each once; tables: content of the file, for order."""
     errors = list({(error.key, quote(error.value), error.rule): error for error in errors}.values())
     if tables is not None:
         errors.sort(key=lambda error: _position_in_file(tables, error.key))
@@ -80,7 +80,7 @@ def join_errors(errors: Sequence[SceneError], tables: Mapping[str, Any] | None =
 
 
 def _position_in_file(tables: Any, key: str) -> list[int]:
-    """Return the position of a dotted key in the file, by which errors are ordered; a missing key comes last."""
+    """Return the position of a dotted key in the file, one number per level; a missing key comes last in its table."""
     place = []
     for part in key.split("."):
         if isinstance(tables, Mapping) and part in tables:

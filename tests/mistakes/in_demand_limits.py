@@ -228,7 +228,7 @@ MISTAKES = (
             ("tests/reference/problem/test_hints.py::test_a_missing_loading_is_named",)),
     Mistake("comparison/cli/closing.py", "    if not stated:\n        return []", "    if stated:\n        return []",
             "run --check says nothing of limits on demands.", (PLAN + "check_says_where_limits_on_demands_are_checked",)),
-    Mistake("reference/problem/friction.py", "share * fast, stated.rate or 0.0", "share * fast, 0.2 * (stated.rate or 0.0)",
+    Mistake("reference/problem/friction.py", "rate=stated.rate or 0.0, exponent", "rate=0.2 * (stated.rate or 0.0), exponent",
             "Friction grows with the speed at a fifth of its rate.",
             (HAND + "a_rigid_block_on_velocity_dependent_friction_moves_as_by_hand",)),
     Mistake("comparison/analyses/demands/analysis.py", "estimate_motion_seconds(scene, model) * len(study.solved(scene, model))",
